@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "gait/smooth_internal.h"
 #include "math/euler.h"
+#include "math/smoother_step.h"
 #include "motion/ground_frame.h"
 
 namespace krok::gait {
@@ -115,12 +116,12 @@ void BodyStep::pose(double time, PoseVector& pose,
   if (kind == Kind::first) {
     const double moves = 2 * (length - rest);
     inside = rest + (length - rest) * speed_up((time - start - lead) / scale / moves);
-    part = smooth((time - start) / (lead + 0.9 * moves * scale));
+    part = smoother_step((time - start) / (lead + 0.9 * moves * scale));
   } else if (kind == Kind::last) {
     const double moves = 2 * rest;
     inside = rest * (1 - speed_up(1 - inside / moves));
     const double from = start + 0.2 * moves * scale;
-    part = 1 - smooth((time - from) / (finish - from));
+    part = 1 - smoother_step((time - from) / (finish - from));
   } else if (kind == Kind::only) {
     inside = rest;
   }
@@ -147,11 +148,11 @@ void BodyStep::pose(double time, PoseVector& pose,
   turn.coeffs() = rotation_of(pose, 0);
   rotation_of(pose, 0) = (stance_to_world.orientation * turn).coeffs();
   if (kind == Kind::only) {
-    const double u = smooth((time - start) / (finish - start));
+    const double u = smoother_step((time - start) / (finish - start));
     const double lifted = 4 * kLifted * u * (1 - u);
     pose = lifted * pose + (1 - lifted) * ((1 - u) * stand + u * stand_after);
   } else if (standing > 0) {
-    const double u = smooth((time - start) / (finish - start));
+    const double u = smoother_step((time - start) / (finish - start));
     pose = (1 - standing) * pose + standing * ((1 - u) * stand + u * stand_after);
   } else if (part < 1) {
     pose = part * pose + (1 - part) * stand;
@@ -188,7 +189,7 @@ Gap BodyMotion::gap_after(std::size_t step) const {
     gap.after = after.strike - after.start;
   }
   const double apart = position_of(gap.value, 0).norm();
-  const double strange = smooth((apart - kUsualGap) / kUsualGap);
+  const double strange = smoother_step((apart - kUsualGap) / kUsualGap);
   gap.root_share = (1 - strange) * gap.share;
   gap.after += strange * (after.strike - after.start - gap.after);
   return gap;
@@ -303,7 +304,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
   const StepKind made_of = libraries[at(planned.library)].kind();
   if (!is_first && !is_last) {
-    step.standing = smooth((planned.far - kNear) / (kFar - kNear));
+    step.standing = smoother_step((planned.far - kNear) / (kFar - kNear));
     if (step.standing > 0) {
       step.stand = standing_on(walker, plan.grounded[stance - 1], print);
       step.stand_after = standing_on(walker, print, plan.grounded[stance + 1]);

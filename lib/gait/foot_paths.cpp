@@ -6,6 +6,7 @@
 #include "core/index.h"
 #include "gait/smooth_internal.h"
 #include "math/quaternion.h"
+#include "math/smoother_step.h"
 
 namespace krok::gait {
 
@@ -70,9 +71,9 @@ Vec3 Stance::deviation(const FootPose& blend) const {
 FootPose Stance::at(double time, const FootPose& blend) const {
   double part = 0;
   if (time < flat_from) {
-    part = smooth((flat_from - time) / ramp_of(flat_from - strike));
+    part = smoother_step((flat_from - time) / ramp_of(flat_from - strike));
   } else if (time > flat_to && off > flat_to) {
-    part = smooth((time - flat_to) / ramp_of(off - flat_to));
+    part = smoother_step((time - flat_to) / ramp_of(off - flat_to));
   }
   FootPose foot{flat_, axes_ * leg_->flat_toes.conjugate()};
   if (part == 0) return foot;
@@ -167,7 +168,7 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
     const double u = (times[i] - off_) / (strike_ - off_);
     if (!(u > 0 && u < 1)) continue;
     const FootPose foot = at(times[i], blend[i]);
-    const double wanted = clearance * smooth(away(foot) / kAway);
+    const double wanted = clearance * smoother_step(away(foot) / kAway);
     // The tip of the toes rolls over the ground as the foot leaves.
     const auto points = sole_points(*leg_, foot);
     const std::size_t count = u < kTipUp ? 2 : 3;

@@ -24,7 +24,7 @@ constexpr double kShortOfEndCost = 4;    // per metre
 constexpr double kStandingWidth = 1.25;  // of the sole's, from heel to heel
 // People shorten steps that go up or down, and the first one out of standing.
 constexpr double kTooHighToStride = 0.3;  // metres
-constexpr double kLeastOfUsual = 0.4, kFirstOfUsual = 0.8;
+constexpr double kMinOfUsual = 0.4, kFirstOfUsual = 0.8;
 constexpr double kGentleTurn = 0.15;  // radians a step
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -258,7 +258,7 @@ std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
         }
         const double rise = std::abs(state.sole.height - before.sole.height);
         const double usual =
-            std::max(kLeastOfUsual, 1 - rise / kTooHighToStride) * (j == 0 ? kFirstOfUsual : 1);
+            std::max(kMinOfUsual, 1 - rise / kTooHighToStride) * (j == 0 ? kFirstOfUsual : 1);
         const double off = steps_[i] - steps_[j] - usual;
         const double cost = before.cost + off * off + toes;
         if (cost >= state.cost) continue;

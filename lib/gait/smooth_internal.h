@@ -1,14 +1,6 @@
 #pragma once
 
-#include <algorithm>
-
 namespace krok::gait {
-
-// From 0 to 1, two derivatives zero at both ends; clamped.
-inline double smooth(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 + s * (6 * s - 15));
-}
 
 // The quintic that is 1, with slope or with acceleration 1, at s = 0, its two other derivatives
 // zero, and zero with two derivatives at s = 1.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "math/quaternion.h"
+#include "math/smoother_step.h"
 #include "plant/sole_follower_internal.h"
 
 namespace krok::plant {
@@ -42,12 +43,6 @@ Vec3 in_foot(const Clip& clip, const std::vector<int>& frames, int foot, const S
 
 bool holds(const std::array<int, 2>& time, int frame) {
   return frame >= time[0] && frame <= time[1];
-}
-
-// Smooth from 0 to 1.
-double eased(double share) {
-  const double s = std::clamp(share, 0.0, 1.0);
-  return s * s * s * (10 + s * (6 * s - 15));
 }
 
 }  // namespace
@@ -254,7 +249,7 @@ SoleFollower::Lead SoleFollower::lead(int frame) const {
   const Standing& before = *std::prev(after);
   const Lead from = lead_at(before, holds(before.ball, before.last) ? 1 : 0);
   const double share =
-      eased(static_cast<double>(frame - before.last) / (after->first - before.last));
+      smoother_step(static_cast<double>(frame - before.last) / (after->first - before.last));
   return {from.along + share * (to.along - from.along), from.off + share * (to.off - from.off),
           from.tilt + share * (to.tilt - from.tilt)};
 }
@@ -266,7 +261,7 @@ double SoleFollower::standing_height(int frame) const {
   if (frame >= after->first || after == standings_.begin()) return after->height;
   const Standing& before = *std::prev(after);
   const double share =
-      eased(static_cast<double>(frame - before.last) / (after->first - before.last));
+      smoother_step(static_cast<double>(frame - before.last) / (after->first - before.last));
   return before.height + share * (after->height - before.height);
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
+#include "math/smoother_step.h"
 
 namespace krok::ragdoll {
 
@@ -161,8 +162,7 @@ void GroundClearer::apply(double smoothing) {
     if (std::ranges::all_of(turns_[b], [](const Vec3& turn) { return turn.isZero(); })) continue;
     smooth_over_time(turns_[b], std::max(1.0, smoothing * rate_));
     for (int f = begin_; f < motion_.frames; ++f) {
-      const double since = std::clamp((f - begin_) / rate_ / kFadeIn, 0.0, 1.0);
-      const double fade = since * since * since * (10 + since * (6 * since - 15));
+      const double fade = smoother_step((f - begin_) / rate_ / kFadeIn);
       const Vec3 turn = kGain * fade * turns_[b][at(f - begin_)];
       Transform local = motion_.at(bodies_[b].joint, f);
       if (b == 0) {

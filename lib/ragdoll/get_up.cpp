@@ -8,6 +8,7 @@
 #include "core/index.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
+#include "math/smoother_step.h"
 #include "motion/local_motion.h"
 #include "motion/mirror.h"
 #include "motion/place.h"
@@ -133,11 +134,7 @@ double percentile_99(std::vector<double> values) {
   return values[static_cast<std::size_t>(place)];
 }
 
-// From 0 to 1 at rest at both ends, and its integral from 0.
-double quintic_ease(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * u * (10 + u * (6 * u - 15));
-}
+// The integral of smoother_step() from 0.
 double eased_time(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * u * u * (2.5 + u * (u - 3));
@@ -210,7 +207,7 @@ LocalMotion Riser::way(int frames, int overlap) const {
     const double since = static_cast<double>(f - frames + overlap) / std::max(1, overlap);
     const double time = f >= frames ? f - frames + overlap / 2 : overlap * eased_time(since);
     sample(motion_, time / motion_.rate, moving, scratch);
-    const double left = 1 - quintic_ease(u);
+    const double left = 1 - smoother_step(u);
     for (int j = 0; j < way.joints; ++j) {
       const int parent = fall_.skeleton.parents[at(j)];
       Transform now = parent < 0 ? moving[at(j)] : moving[at(parent)].inverse() * moving[at(j)];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "math/smoother_step.h"
 #include "math/types.h"
 
 namespace krok::timeline {
@@ -79,7 +80,7 @@ double Easing::at(double u) const {
   if (u >= 1) return 1;
   if (curve == Curve::linear) return u;
   if (curve == Curve::smooth) return u * u * (3 - 2 * u);
-  if (curve == Curve::smoother) return u * u * u * (10 + u * (-15 + 6 * u));
+  if (curve == Curve::smoother) return smoother_step(u);
   if (ease == Ease::in) return eased_in(curve, u, false);
   if (ease == Ease::out) return 1 - eased_in(curve, 1 - u, false);
   return u < 0.5 ? 0.5 * eased_in(curve, 2 * u, true) : 1 - 0.5 * eased_in(curve, 2 - 2 * u, true);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRate = 60;           // places per second
 constexpr double kMaxPlaces = 1e6;     // of a node
-constexpr double kLeastWay = 0.05;     // metres from the first place
+constexpr double kMinTravel = 0.05;    // metres from the first place
 constexpr double kStrideWindow = 1.1;  // seconds, see gait::way_of()
 
 // The places of all nodes: a clip of joints without parents.
@@ -44,7 +44,7 @@ bool goes_anywhere(const Clip& clip, int node) {
   const Vec3f from = clip.frame_positions(0)[at(node)];
   for (int f = 1; f < clip.frame_count(); ++f) {
     const Vec3f way = clip.frame_positions(f)[at(node)] - from;
-    if (std::hypot(way.x(), way.z()) > kLeastWay) return true;
+    if (std::hypot(way.x(), way.z()) > kMinTravel) return true;
   }
   return false;
 }
