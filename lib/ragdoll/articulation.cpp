@@ -180,6 +180,12 @@ double Articulation::slide(int joint, int axis) const {
   return ties_[at(joint)].slid[axis];
 }
 
+double Articulation::max_spin() const {
+  double most = 0;
+  for (const BodyState& state : states_) most = std::max(most, state.spin.norm());
+  return most;
+}
+
 void Articulation::push(int body, const Vec3& impulse) {
   states_[at(body)].velocity += impulse / masses_[at(body)];
 }

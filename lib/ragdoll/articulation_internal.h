@@ -82,6 +82,7 @@ class Articulation {
 
   // Impulses about the world's origin at a body, before accelerate().
   void push(int body, const Vec3& impulse);
+  double max_spin() const;  // of a body, radians/s
 
  private:
   enum class Freedom : unsigned char { all, none, turn, hinge, slide };

@@ -36,6 +36,7 @@ struct Fall {
   // Of all steps: the first 0.2 s, in which what the pose has in the ground comes out of it, and
   // the rest.
   WorldMeasures settling, largest;
+  bool jumps = false;  // the motion jumps where the fall begins; the bodies began without speeds
   double simulated = 0;     // seconds until it lies still, or the end
   double least_height = 0;  // metres: lowest centre of a body
 };
@@ -44,11 +45,12 @@ struct Fall {
 std::vector<Transform> pose_at(const Clip& clip, double time);
 
 // Lets a motion's character fall. The bodies start from its pose at `at` and from its speeds, which
-// are differences over one frame to either side. The frames after `at` come from the bodies: the
-// root body gives the position and orientation of its joint, each simulated joint has its body's
-// orientation, all others keep their turn relative to their parent, and positions follow down the
-// tree from the offsets that the pose has, but for bodies that slide. Joints above the root body
-// stand still. Between steps poses are interpolated. The same input gives the same bytes.
+// are differences over one frame to either side; where these are more than a person can move, they
+// begin without. The frames after `at` come from the bodies: the root body gives the position and
+// orientation of its joint, each simulated joint has its body's orientation, all others keep their
+// turn relative to their parent, and positions follow down the tree from the offsets that the pose
+// has, but for bodies that slide. Joints above the root body stand still. Between steps poses are
+// interpolated. The same input gives the same bytes.
 //
 // `bodies` are make_bodies()', `limits` as for make_joints(). Codes: ragdoll-time for times outside
 // the motion or the ranges, ragdoll-value for pushes at bodies that are not there or not finite,

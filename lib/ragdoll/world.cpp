@@ -13,6 +13,9 @@ namespace krok::ragdoll {
 namespace {
 // How often a step is aimed again, and then divided.
 constexpr int kAgain = 1, kDivided = 6;
+// What spins farther in one part of a step would gain energy.
+constexpr double kPartTurn = 0.2;  // radians
+constexpr double kMaxParts = 32;  // of a step
 }  // namespace
 
 struct World::Inside {
@@ -97,8 +100,10 @@ Status World::add(std::span<const Body> bodies, std::span<const BodyState> state
 
 void World::step() {
   Inside& in = *inside_;
-  const double part = kStep / in.options.substeps;
-  for (int i = 0; i < in.options.substeps; ++i) in.advance(part, 0);
+  const double turn = kStep * in.bodies.max_spin();
+  const int parts = std::max(in.options.substeps,
+                             static_cast<int>(std::ceil(std::min(turn / kPartTurn, kMaxParts))));
+  for (int i = 0; i < parts; ++i) in.advance(kStep / parts, 0);
   // Afterwards, so that measures() sees the poses as they are; the next step begins with these.
   in.look();
 }

@@ -57,7 +57,7 @@ class World {
   Status add(std::span<const Body> bodies, std::span<const BodyState> states,
              std::span<const Joint> joints);
 
-  // Moves on by kStep, in `substeps` equal parts.
+  // Moves on by kStep, in `substeps` equal parts, or more where something spins fast.
   void step();
 
   // An impulse (N s, world) at a body's centre of mass.

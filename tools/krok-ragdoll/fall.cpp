@@ -15,6 +15,10 @@ namespace {
 
 constexpr double kLying = 0.5;  // seconds from rest to where all is still
 
+// Tolerances: radians, metres, and a share of the motion's acceleration.
+constexpr double kMaxExcess = 1 * kRadiansPerDegree, kMaxPenetration = 0.005;
+constexpr double kMaxAcceleration = 1.5, kMaxDepth = 0.01;
+
 Json json_of(const krok::ragdoll::WorldMeasures& of) {
   return Json{{"joint_gap", of.joint_gap},
               {"limit_excess", of.limit_excess},
@@ -53,6 +57,51 @@ Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOption
   fallen.clip = std::move(risen->clip);
   fallen.risen = std::move(*risen);
   return fallen;
+}
+
+std::vector<Error> faults_of(const Fallen& fallen) {
+  std::vector<Error> faults;
+  const krok::ragdoll::Fall& fall = fallen.fall;
+  if (fall.jumps) {
+    faults.emplace_back("ragdoll-jump",
+                        "the motion jumps where the fall begins, so that it began without speed",
+                        "another --at, or krok-import --skip-rest-frame auto if a T-pose is before "
+                        "the motion");
+  }
+  if (fall.rest < 0) {
+    faults.emplace_back("ragdoll-moving", "the body still moves where the motion ends",
+                        "a longer --duration lets it come to rest");
+  }
+  if (fall.largest.limit_excess > kMaxExcess) {
+    faults.emplace_back("ragdoll-limit",
+                        fmt::format("a joint is {:.1f} degrees beyond its range (1 is tolerated)",
+                                    fall.largest.limit_excess / kRadiansPerDegree),
+                        "a weaker push");
+  }
+  if (fall.largest.penetration > kMaxPenetration) {
+    faults.emplace_back("ragdoll-penetration",
+                        fmt::format("a body is {:.1f} mm in the ground (5 are tolerated)",
+                                    fall.largest.penetration * 1e3),
+                        "a weaker push, or ground without edges that are sharp or thin");
+  }
+  if (!fallen.risen) return faults;
+  const krok::ragdoll::RisenClip& risen = *fallen.risen;
+  if (risen.acceleration > kMaxAcceleration * risen.motion_acceleration) {
+    faults.emplace_back(
+        "ragdoll-rise-acceleration",
+        fmt::format("getting up turns a joint at {:.1f} x the motion's acceleration (1.5 is "
+                    "tolerated)",
+                    risen.acceleration / risen.motion_acceleration),
+        "another --get-up, which begins more as the body lies");
+  }
+  if (risen.depth > kMaxDepth) {
+    faults.emplace_back("ragdoll-rise-penetration",
+                        fmt::format("getting up takes a body {:.1f} cm into the ground (1 is "
+                                    "tolerated)",
+                                    risen.depth * 1e2),
+                        "another --get-up, or one made for this ground");
+  }
+  return faults;
 }
 
 Json report_of(const Subject& subject, const Fallen& fallen) {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
+#include "cli/motion_fixture.h"
 #include "core/file.h"
 #include "core/index.h"
 #include "formats/anim/anim.h"
@@ -17,25 +17,14 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-class KrokRagdoll : public test::CliTest {
+class KrokRagdoll : public MotionTest {
  protected:
   void SetUp() override {
     samples::WalkOptions options;
     options.steps = 4;
     options.rate = 60;
     walk_ = samples::make_walk(options)->clip;
-    auto file = OutputFile::create(path("walk.anim"));
-    ASSERT_TRUE(file.ok());
-    ASSERT_TRUE(anim::write(walk_, {}, *file).ok());
-    ASSERT_TRUE(file->commit().ok());
-  }
-
-  Clip read(const std::string& name) const {
-    const auto file = InputFile::open(path(name));
-    EXPECT_TRUE(file.ok()) << name;
-    auto clip = anim::read(file->bytes());
-    EXPECT_TRUE(clip.ok()) << name;
-    return std::move(*clip);
+    write("walk.anim", walk_);
   }
 
   test::ToolRun fall(std::vector<std::string> arguments) const {
@@ -87,6 +76,34 @@ TEST_F(KrokRagdoll, WhatStillMovesAtTheEndIsTold) {
   const json early = report({"walk.anim", "--at", "1s", "--duration", "300ms"});
   EXPECT_TRUE(early["result"]["rest"].is_null());
   EXPECT_EQ(early["issues"][0]["code"], "ragdoll-moving");
+}
+
+TEST_F(KrokRagdoll, WhatMissesATolerancePrintsAWarning) {
+  const json torn = report({"walk.anim", "--at", "1s", "--push", "Head=3000Ns,0,0"});
+  EXPECT_GT(torn["result"]["largest"]["limit_excess"].get<double>(), 1 * kRadiansPerDegree);
+  EXPECT_THAT(torn["issues"].dump(), HasSubstr("ragdoll-limit"));
+}
+
+// Captures often begin with a T-pose elsewhere; the speed from it to the first frame of the motion
+// would throw the body out of the world.
+TEST_F(KrokRagdoll, ABodyThatWasElsewhereAFrameBeforeFallsWithoutSpeed) {
+  Clip jumps = walk_;
+  for (Vec3f& place : jumps.frame_positions(0)) place.x() += 3;
+  write("jumps.anim", jumps);
+  const json jumped = report({"jumps.anim", "--at", "0s", "--duration", "2s"});
+  EXPECT_THAT(jumped["issues"].dump(), HasSubstr("ragdoll-jump"));
+  const Clip out = read("out.anim");
+  const std::size_t hips = at(out.skeleton.find("Hips"));
+  EXPECT_LT((out.frame_positions(120)[hips] - out.frame_positions(0)[hips]).norm(), 2.0f);
+}
+
+TEST_F(KrokRagdoll, AMotionWithoutFramesIsRefusedAsSuch) {
+  Clip none = walk_;
+  none.resize(0);
+  write("none.anim", none);
+  const auto run = fall({"none.anim", "-o", "out.anim"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("no frames"));
 }
 
 // Stairs that lead down take the walker further down than level ground does.
