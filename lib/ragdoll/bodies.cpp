@@ -281,10 +281,21 @@ std::vector<int> body_of_joint(const Skeleton& skeleton, const std::vector<Body>
   return carrier;
 }
 
-Result<std::vector<Body>> make_bodies(const Skeleton& skeleton, const RoleMap& roles,
+Result<std::vector<Body>> make_bodies(const Skeleton& motion, const RoleMap& roles,
                                       const BodyOptions& options) {
+  // A mesh is made around a pose that stands, which a capture's reference pose need not do.
+  const Skeleton& skeleton = options.model != nullptr ? options.model->skeleton : motion;
+  if (const std::string difference = difference_in_structure(skeleton, motion);
+      !difference.empty()) {
+    return Error("ragdoll-model", "the model has another skeleton than the motion: " + difference,
+                 "give the model that the motion animates; krok-retarget brings motions to others");
+  }
   if (!roles.humanoid) {
-    return Error("ragdoll-roles", "bodies need a humanoid; the joints are not one's",
+    std::string missing;
+    for (const Role role : missing_roles(roles)) {
+      missing += (missing.empty() ? "" : ", ") + std::string(role_name(role));
+    }
+    return Error("ragdoll-roles", "bodies need a humanoid; no joint is " + missing,
                  "krok-info -v lists the joints and their roles; --map assigns roles");
   }
   if (!(options.mass > 0) || !std::isfinite(options.mass)) {
@@ -296,11 +307,7 @@ Result<std::vector<Body>> make_bodies(const Skeleton& skeleton, const RoleMap& r
   }
   maker.make();
   std::vector<Body> bodies = maker.take();
-  if (options.model != nullptr) {
-    if (Status status = fit_shapes(*options.model, skeleton, bodies); !status) {
-      return status.error();
-    }
-  }
+  if (options.model != nullptr) fit_shapes(*options.model, bodies);
   share_mass(skeleton, roles, options.mass, bodies);
   for (const Body& body : bodies) {
     if (!(volume(body.shape) > 0) || !body.to_joint.position.allFinite()) {

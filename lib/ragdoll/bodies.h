@@ -36,7 +36,8 @@ struct Body {
 
 struct BodyOptions {
   double mass = 75;              // of all bodies
-  const Model* model = nullptr;  // fits shapes to its vertices; its skeleton has the same joints
+  // Fits shapes to its vertices. Its skeleton has the same joints; its reference pose is used.
+  const Model* model = nullptr;
 };
 
 // Bodies of a humanoid: pelvis, one or two for the trunk, head (with the neck), upper and lower
@@ -48,8 +49,12 @@ struct BodyOptions {
 //
 // Codes: ragdoll-roles if the joints are not those of a humanoid; ragdoll-model if the model has
 // other joints; ragdoll-size if a part has no extent, or the mass is not above 0.
-Result<std::vector<Body>> make_bodies(const Skeleton& skeleton, const RoleMap& roles,
+Result<std::vector<Body>> make_bodies(const Skeleton& motion, const RoleMap& roles,
                                       const BodyOptions& options = {});
+
+// Share of the model's vertices within `distance` (metres) of a body or inside one, in the reference
+// pose; 1 for a model without vertices.
+double covered_share(const Model& model, const std::vector<Body>& bodies, double distance);
 
 // For each joint the body that carries it: its own, or the nearest above; -1 above the root body.
 std::vector<int> body_of_joint(const Skeleton& skeleton, const std::vector<Body>& bodies);

@@ -148,6 +148,10 @@ void Collision::Inside::part_overlapping() {
       break;
     }
   }
+  // Bullet does not look at such a pair again, but keeps what it found of it.
+  for (const auto& body : bodies) {
+    world.getPairCache()->cleanProxyFromPairs(body->getBroadphaseHandle(), &dispatcher);
+  }
 }
 
 void Collision::Inside::touch_plane(std::span<const BodyState> states, double step) {

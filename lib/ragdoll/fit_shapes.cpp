@@ -42,15 +42,42 @@ void fit_capsule(const std::vector<Vec3>& points, Body& body) {
   shape.half_length = whole - shape.radius;
 }
 
+// 0 inside.
+double distance_to(const Shape& shape, Vec3 point) {
+  switch (shape.kind) {
+    case Shape::Kind::box:
+      return (point.cwiseAbs() - shape.half).cwiseMax(0).norm();
+    case Shape::Kind::capsule:
+      point.y() -= std::clamp(point.y(), -shape.half_length, shape.half_length);
+      break;
+    case Shape::Kind::sphere:
+      break;
+  }
+  return std::max(0.0, point.norm() - shape.radius);
+}
+
 }  // namespace
 
-Status fit_shapes(const Model& model, const Skeleton& skeleton, std::vector<Body>& bodies) {
-  if (const std::string difference = difference_in_structure(model.skeleton, skeleton);
-      !difference.empty()) {
-    return Error("ragdoll-model", "the model has another skeleton than the motion: " + difference,
-                 "give the model that the motion animates; krok-retarget brings motions to others");
+double covered_share(const Model& model, const std::vector<Body>& bodies, double distance) {
+  if (model.positions.empty()) return 1;
+  std::vector<Transform> to_body;
+  for (const Body& body : bodies) {
+    to_body.push_back((model.skeleton.reference[at(body.joint)] * body.to_joint).inverse());
   }
-  const std::vector<int> carrier = body_of_joint(skeleton, bodies);
+  std::size_t covered = 0;
+  for (const Vec3f& position : model.positions) {
+    const Vec3 point = position.cast<double>();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (distance_to(bodies[b].shape, to_body[b] * point) > distance) continue;
+      ++covered;
+      break;
+    }
+  }
+  return static_cast<double>(covered) / static_cast<double>(model.positions.size());
+}
+
+void fit_shapes(const Model& model, std::vector<Body>& bodies) {
+  const std::vector<int> carrier = body_of_joint(model.skeleton, bodies);
   std::vector<std::vector<Vec3>> points(bodies.size());
   const auto influences = static_cast<std::size_t>(model.influences_per_vertex);
   for (std::size_t v = 0; v < model.positions.size(); ++v) {
@@ -69,7 +96,6 @@ Status fit_shapes(const Model& model, const Skeleton& skeleton, std::vector<Body
       fit_capsule(points[b], bodies[b]);
     }
   }
-  return {};
 }
 
 }  // namespace krok::ragdoll

@@ -112,6 +112,7 @@ Json report_of(const Subject& subject, const Fallen& fallen) {
   json["frames"] = fallen.clip.frame_count();
   json["first_simulated_frame"] = fallen.fall.first_frame;
   json["bodies"] = subject.bodies.size();
+  if (subject.covered) json["mesh_within_3cm"] = *subject.covered;
   json["hash"] = hex(hash.digest());
   json["rest"] = fallen.fall.rest < 0 ? Json() : Json(fallen.fall.rest);
   json["largest"] = json_of(fallen.fall.largest);

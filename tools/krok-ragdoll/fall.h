@@ -14,12 +14,15 @@
 
 namespace krok::cli::ragdoll {
 
+constexpr double kCoverDistance = 0.03;  // metres
+
 // What all falls of a run have in common.
 struct Subject {
   Clip clip;
   RoleMap roles;
   krok::ik::Limits limits;
   std::vector<krok::ragdoll::Body> bodies;
+  std::optional<double> covered;  // share of a model's vertices within kCoverDistance of a body
   // Motions to get up with, and their names; none: what falls stays there.
   std::vector<Clip> rises;
   std::vector<std::string> rise_names;

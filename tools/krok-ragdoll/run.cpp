@@ -31,6 +31,8 @@ namespace krok::cli::ragdoll {
 
 namespace {
 
+constexpr double kMinCovered = 0.9;
+
 // A fall that is to be made, and where it is written.
 struct Plan {
   std::string name, output;
@@ -128,6 +130,15 @@ Status Run::read_bodies() {
     return std::move(bodies).error().in_file(of_model ? given().model : given().input);
   }
   subject_.bodies = std::move(*bodies);
+  if (!model) return {};
+  subject_.covered = krok::ragdoll::covered_share(*model, subject_.bodies, kCoverDistance);
+  if (*subject_.covered < kMinCovered) {
+    context_.warn("ragdoll-model",
+                  fmt::format("{}: {:.0f} % of the vertices are within 3 cm of a body (90 are "
+                              "expected)",
+                              shown(given().model), 100 * *subject_.covered),
+                  "--save-bodies OUT.ragdoll.json, edit the shapes, and give them to --bodies");
+  }
   return {};
 }
 

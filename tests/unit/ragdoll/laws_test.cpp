@@ -109,6 +109,22 @@ TEST(RagdollLaws, AHingeStopsAtItsHardLimit) {
   }
 }
 
+// A hand in the belly's box must be able to leave it, and not be shot out of it; what once held of
+// such a pair must not act on.
+TEST(RagdollLaws, BodiesThatBeginInsideOneAnotherLetEachOtherBe) {
+  WorldOptions options;
+  options.gravity = Vec3::Zero();
+  World world(options, Surroundings());
+  std::vector<BodyState> states(2);
+  states[1].to_world.position = Vec3(0.15, 0, 0);
+  states[1].velocity = Vec3(0.1, 0, 0);
+  const Body body = box({0.1, 0.1, 0.1}, 4);
+  ASSERT_TRUE(world.add(std::vector{body, body}, states, {}).ok());
+  for (int step = 0; step < 240; ++step) world.step();
+  EXPECT_LT(world.state(0).to_world.position.norm(), 1e-9);
+  EXPECT_LT((world.state(1).to_world.position - Vec3(0.25, 0, 0)).norm(), 1e-9);
+}
+
 // Beyond its limit the hinge is a spring: half an oscillation there takes pi sqrt(I / k), and goes
 // as far as spin sqrt(I / k); it comes back as fast as it went.
 TEST(RagdollLaws, ASoftLimitIsASpring) {
