@@ -35,7 +35,7 @@ help:
 	@echo "make golden    write golden files that are missing and renew the generated pages; with FORCE=1"
 	@echo "               replace golden files that differ, too: review them as a diff"
 	@echo "make format    clang-format all sources"
-	@echo "make lint      clang-tidy over each source alone, and each public header by itself; FILES=..."
+	@echo "make lint      clang-tidy, and each public header by itself; FILES='a.cpp b.cpp' for some sources"
 	@echo "make install   install tools, library and headers (PREFIX=/usr/local, DESTDIR=)"
 	@echo "make clean     remove the build folders"
 
@@ -126,12 +126,17 @@ format-check:
 	$(call install-missing,clang-format)
 	$(SOURCES) | xargs clang-format --dry-run --Werror
 
-# Each source alone, as a build without unity compiles it, so that a forgotten #include shows.
-# tests/consumer is a project of its own, built on what is installed.
-FILES ?= $$(git ls-files --cached --others --exclude-standard '*.cpp' | grep -v '^tests/consumer/')
+# The sources of a folder as one, since nine tenths of the time go into their headers. The analyzer
+# follows paths through the sources of a unit only if its name has this word. With FILES each source
+# alone, as a build without unity compiles it, so that a forgotten #include shows.
+FILES ?=
+LINT_UNITS = cmake --preset lint -B build-lint/units -DKROK_UNITY=ON \
+  -DKROK_UNITY_PREFIX=UnifiedSource_ > /dev/null && \
+  grep -o '"file": "[^"]*"' build-lint/units/compile_commands.json | cut -d '"' -f 4 | sort -u | \
+  xargs -P $(JOBS) -n 1 clang-tidy -p build-lint/units --quiet --checks=-bugprone-suspicious-include
 lint: lint-deps headers
-	cmake --preset lint
-	@for file in $(FILES); do echo $$file; done | xargs -P $(JOBS) -n 4 clang-tidy -p build-lint --quiet
+	cmake --preset lint > /dev/null
+	@$(if $(FILES),echo $(FILES) | xargs -P $(JOBS) -n 1 clang-tidy -p build-lint --quiet,$(LINT_UNITS))
 
 # The same for what the last commit changed, at most 12 sources: what .ci/run has the time for.
 lint-changed: lint-deps

@@ -76,7 +76,8 @@ Skeleton Kinematics::skeleton() const {
           skeleton.reference[static_cast<std::size_t>(joint.parent)] * bone_end(bone, length);
     }
     if (joint.is_end) {
-      name = names.make(name + "_end");
+      name += "_end";
+      name = names.make(name);
     }
     skeleton.add(std::move(name), joint.parent, world, joint.is_end);
   }

@@ -33,7 +33,7 @@ void read_geometry(ByteReader& in, Parts& parts) {
   parts.vertices.resize(in.read<std::uint16_t>());
   for (Vertex& vertex : parts.vertices) {
     in.take(13);  // flags, position
-    vertex.joints[0] = in.read<std::int8_t>();
+    vertex.joints[0] = static_cast<int>(in.read<std::int8_t>());
     in.take(1);
     if (!in.ok()) return;
   }
@@ -91,7 +91,7 @@ void read_extra_joints(ByteReader in, std::vector<Vertex>& vertices) {
   const std::size_t each = 6 + 4 * (version - 1);
   if (in.remaining() / each < vertices.size()) return;
   for (Vertex& vertex : vertices) {
-    for (std::size_t k = 1; k < 4; ++k) vertex.joints[k] = in.read<std::int8_t>();
+    for (std::size_t k = 1; k < 4; ++k) vertex.joints[k] = static_cast<int>(in.read<std::int8_t>());
     for (int& weight : vertex.weights) weight = in.read<std::uint8_t>();
     in.take(each - 6);
   }

@@ -159,11 +159,12 @@ class Writer {
       const std::string indent = indentation(joint.depth);
       const std::string& name = skeleton().names[static_cast<std::size_t>(joint.index)];
       if (joint.end_site) {
-        text_ += indent + "End Site\n";
+        text_ += fmt::format("{}End Site\n", indent);
       } else {
-        text_ += indent + (joint.depth == 0 ? "ROOT " : "JOINT ") + written_name(name) + "\n";
+        text_ += fmt::format("{}{} {}\n", indent, joint.depth == 0 ? "ROOT" : "JOINT",
+                             written_name(name));
       }
-      text_ += indent + "{\n" + indent + "\tOFFSET";
+      text_ += fmt::format("{}{{\n{}\tOFFSET", indent, indent);
       for (const double component : joint.offset) {
         text_ += ' ';
         length(component);

@@ -82,7 +82,7 @@ class CarefulIndexer {
       // A line after all rows that is not a row is text; trailing numbers in a file with too few
       // rows are a truncated row.
       if (i > last_row && (enough_rows() || line.text)) return text_after(i);
-      if (line.text && 2 * line.words < channels_) {
+      if (line.text && std::size_t{2} * line.words < channels_) {
         if (Status status = text_between(line); !status) return status;
         continue;
       }

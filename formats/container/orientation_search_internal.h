@@ -17,8 +17,9 @@ struct Step {
   int first = 0, second = 0;
 };
 
-inline constexpr std::array<Step, kSide* kSide> kSteps = [] {
-  std::array<Step, kSide * kSide> steps{};
+inline constexpr std::size_t kStepCount = std::size_t{kSide} * kSide;
+inline constexpr std::array<Step, kStepCount> kSteps = [] {
+  std::array<Step, kStepCount> steps{};
   std::size_t count = 0;
   for (int ring = 0; ring <= kReach; ++ring) {
     for (int i = -ring; i <= ring; ++i) {

@@ -149,7 +149,7 @@ Result<Accessors::Layout> Accessors::view_layout(int view, std::uint64_t offset,
   }
   Layout layout;
   layout.stride = strided && buffer_view.byteStride > 0 ? buffer_view.byteStride : element_size;
-  if (layout.stride < element_size) {
+  if (element_size == 0 || layout.stride < element_size) {
     return fail(
         fmt::format("elements of {} bytes have a stride of {} bytes", element_size, layout.stride));
   }

@@ -29,7 +29,7 @@ struct Places {
 };
 
 // Doubles of scratch memory for joint_tracks(), per joint.
-inline constexpr std::size_t kScratch = 7 * 16;
+inline constexpr std::size_t kScratch = std::size_t{7} * 16;
 
 // Converts joint_to_world, [frames x joints x 3] and [frames x joints x 4], to transforms relative
 // to each joint's parent as a viewer rebuilds it. Signs of the rotations are arbitrary. Adds to

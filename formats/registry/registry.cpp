@@ -150,7 +150,7 @@ bool is_scene(std::string_view content) {
   return scene_kind(content) == kind;
 }
 bool is_pc2(std::string_view content) {
-  return content.starts_with(std::string_view("POINTCACHE2", 12));
+  return content.starts_with(std::string_view("POINTCACHE2\0", 12));
 }
 bool is_glb(std::string_view content) {
   return content.starts_with("glTF");

@@ -82,7 +82,7 @@ class ContourLines {
   struct Edge {
     int row = 0, column = 0;
     bool along_x = true;
-    auto operator<=>(const Edge&) const = default;
+    auto operator<=>(const Edge&) const = default;  // NOLINT(modernize-use-nullptr): LLVM 14
   };
 
   bool crosses(const Edge& edge) const {

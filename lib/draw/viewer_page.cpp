@@ -175,7 +175,7 @@ Status add_motion(const ViewedMotion& viewed, std::size_t prints, Parts& parts) 
 }
 
 // JSON inside a script element must not contain "</script" or "<!--", whatever the names contain.
-std::string script_safe(std::string text) {
+std::string script_safe(std::string_view text) {
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {

@@ -165,7 +165,8 @@ Status PrintPlanner::follow_ground() {
 }
 
 double PrintPlanner::ground_near(double length) const {
-  return heights_[std::min(static_cast<std::size_t>(length / spacing_ + 0.5), heights_.size() - 1)];
+  return heights_[std::min(static_cast<std::size_t>(std::lround(length / spacing_)),
+                           heights_.size() - 1)];
 }
 
 std::vector<double> PrintPlanner::even_places() const {

@@ -192,7 +192,8 @@ void SoleFollower::place(Standing& standing, const GroundBelow& ground) const {
   // Back or ahead, where the longer foot would stand against a step or over an edge.
   double best = 0, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k <= 2 * kTries; ++k) {
-    const double ahead = std::abs(longer) * (k % 2 == 0 ? 1 : -1) * ((k + 1) / 2) / kTries;
+    const int tried = (k + 1) / 2;
+    const double ahead = std::abs(longer) * (k % 2 == 0 ? tried : -tried) / kTries;
     const Vec3 own_heel = heel + (ahead - 0.5 * longer) * forward;
     const double trouble = trouble_at(own_heel, forward, ground) + 0.01 * std::abs(ahead);
     if (trouble >= least) continue;

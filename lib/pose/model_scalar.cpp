@@ -1,3 +1,4 @@
+#include <cassert>
 #include <cmath>
 
 #include "pose/model_kernel_internal.h"
@@ -77,6 +78,7 @@ void set_joint(const Joint& joint, PoseBlock& block, std::size_t lane) {
 }  // namespace
 
 void local_to_model_scalar(const ModelJob& job) {
+  assert(job.count == 0 || job.matrices != nullptr || job.positions != nullptr);
   constexpr std::size_t kLanes = PoseBlock::kLanes;
   const std::size_t blocks = (job.joints + kLanes - 1) / kLanes;
   for (std::size_t pose = 0; pose < job.count; ++pose) {

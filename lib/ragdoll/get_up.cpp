@@ -194,10 +194,12 @@ double Riser::first_duration() const {
 }
 
 // `frames` from the lying pose to the motion's frame overlap / 2, then the rest of the motion.
+// `overlap` is even.
 LocalMotion Riser::way(int frames, int overlap) const {
   LocalMotion way;
   way.joints = local_.joints;
-  way.frames = frames + local_.frames - overlap / 2;
+  const int half = overlap / 2;
+  way.frames = frames + local_.frames - half;
   const std::size_t count = at(way.joints) * at(way.frames);
   way.orientations.resize(count);
   way.positions.resize(count);
@@ -205,7 +207,7 @@ LocalMotion Riser::way(int frames, int overlap) const {
   for (int f = 0; f < way.frames; ++f) {
     const double u = static_cast<double>(f) / frames;
     const double since = static_cast<double>(f - frames + overlap) / std::max(1, overlap);
-    const double time = f >= frames ? f - frames + overlap / 2 : overlap * eased_time(since);
+    const double time = f >= frames ? f - frames + half : overlap * eased_time(since);
     sample(motion_, time / motion_.rate, moving, scratch);
     const double left = 1 - smoother_step(u);
     for (int j = 0; j < way.joints; ++j) {

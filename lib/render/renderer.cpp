@@ -122,8 +122,9 @@ class ViewPainter {
     Light sum = Light::Zero();
     bool changed = false;
     for (int sample = 0; sample < kSamples; ++sample) {
-      const double across = x + (sample % kAcross + 0.5) / kAcross;
-      const double down = y + (sample / kAcross + 0.5) / kAcross;
+      const int column = sample % kAcross, row = sample / kAcross;
+      const double across = x + (column + 0.5) / kAcross;
+      const double down = y + (row + 0.5) / kAcross;
       Light light = ground;
       changed = look(Vec2(across, down), sample, near, light) || changed;
       sum += light;
