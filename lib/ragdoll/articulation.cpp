@@ -55,6 +55,7 @@ Status Articulation::build(std::span<const Body> bodies, std::span<const BodySta
   states_.assign(states.begin(), states.end());
   joints_.assign(joints.begin(), joints.end());
   ties_.resize(joints_.size());
+  anchor_speeds_.assign(joints_.size(), Vec3::Zero());
   twists_.resize(bodies.size(), Vec6::Zero());
   link_of_.assign(bodies.size(), -1);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -133,15 +134,17 @@ void Articulation::add_joint_links(int body, int joint) {
       link_of_[at(body)];
 }
 
-Transform Articulation::parent_frame(const Joint& joint) const {
-  return joint.parent < 0 ? joint.in_parent : states_[at(joint.parent)].to_world * joint.in_parent;
+Transform Articulation::parent_frame(int joint) const {
+  const Joint& its = joints_[at(joint)];
+  const Transform in_parent{anchor(joint), its.in_parent.orientation};
+  return its.parent < 0 ? in_parent : states_[at(its.parent)].to_world * in_parent;
 }
 
 // Where the child is in its joint, and its place from that.
 void Articulation::take_up(int joint) {
   const Joint& its = joints_[at(joint)];
   Ties& ties = ties_[at(joint)];
-  const Transform parent = parent_frame(its);
+  const Transform parent = parent_frame(joint);
   BodyState& child = states_[at(its.child)];
   const Transform relative = parent.inverse() * (child.to_world * its.in_child);
   ties.turned = relative.orientation.normalized();
@@ -165,7 +168,7 @@ void Articulation::set_kinematic(int body, bool kinematic) {
 
 Articulation::Frames Articulation::frames(int joint) const {
   const Joint& its = joints_[at(joint)];
-  return {parent_frame(its), states_[at(its.child)].to_world * its.in_child};
+  return {parent_frame(joint), states_[at(its.child)].to_world * its.in_child};
 }
 
 double Articulation::hinge_angle(int joint) const {
@@ -187,6 +190,7 @@ double Articulation::max_spin() const {
 }
 
 void Articulation::push(int body, const Vec3& impulse) {
+  if (is_kinematic(body)) return;
   states_[at(body)].velocity += impulse / masses_[at(body)];
 }
 
@@ -198,7 +202,7 @@ Vec6 Articulation::body_twist(int body) const {
 void Articulation::set_axes(Link& link) const {
   if (link.joint < 0 || link.freedom == Freedom::none) return;
   const Joint& joint = joints_[at(link.joint)];
-  const Transform parent = parent_frame(joint);
+  const Transform parent = parent_frame(link.joint);
   if (link.freedom == Freedom::slide) {
     for (int i = 0; i < 3; ++i) {
       const bool free = joint.kind == JointKind::prismatic
@@ -216,6 +220,19 @@ void Articulation::set_axes(Link& link) const {
   }
   link.axes.topRows<3>().setIdentity();
   link.axes.bottomRows<3>() = cross_matrix(anchor);
+}
+
+// By the first of the joint's links alone.
+void Articulation::set_drift(int number) {
+  Link& link = links_[at(number)];
+  if (link.joint < 0) return;
+  const Joint& joint = joints_[at(link.joint)];
+  const int slide = ties_[at(link.joint)].slide;
+  if (slide >= 0 && slide != number) return;
+  const Vec3& speed = anchor_speeds_[at(link.joint)];
+  link.drift =
+      spatial(Vec3::Zero(),
+              joint.parent < 0 ? speed : states_[at(joint.parent)].to_world.orientation * speed);
 }
 
 void Articulation::gather(double step, const Vec3& gravity) {
@@ -242,6 +259,7 @@ void Articulation::eliminate(double step) {
   for (std::size_t i = links_.size(); i-- > 0;) {
     Link& link = links_[i];
     if (link.kinematic || link.freedom == Freedom::all) continue;
+    if (!link.drift.isZero(0)) link.momentum.noalias() -= link.inertia * link.drift;
     Link* above = link.parent < 0 ? nullptr : &links_[at(link.parent)];
     if (link.freedom == Freedom::none) {
       if (above != nullptr) {
@@ -280,6 +298,7 @@ void Articulation::distribute() {
         const Vec3 rate = link.inverse * given - link.gain * link.twist;
         link.twist += link.axes * rate;
       }
+      link.twist += link.drift;
     }
     if (link.body >= 0) twists_[at(link.body)] = link.twist;
   }
@@ -291,7 +310,9 @@ void Articulation::accelerate(double step, const Vec3& gravity) {
   ties_before_ = ties_;
   fallen_ = step * gravity;
   hold_distances(step);
+  for (int i = 0; i < static_cast<int>(links_.size()); ++i) set_drift(i);
   gather(step, gravity);
+  pull_held(step);
   eliminate(step);
   distribute();
 }

@@ -19,7 +19,7 @@ Vec3 Articulation::last_rate(const Link& link) const {
   const Vec3 spin = relative.head<3>();
   if (link.freedom == Freedom::turn) return spin;
   if (link.freedom == Freedom::hinge) return {spin.dot(link.axes.col(0).head<3>()), 0, 0};
-  const Vec3 anchor = parent_frame(joint) * ties_[at(link.joint)].slid;
+  const Vec3 anchor = parent_frame(link.joint) * ties_[at(link.joint)].slid;
   const Vec3 velocity = relative.tail<3>() + spin.cross(anchor);
   return link.axes.bottomRows<3>().transpose() * velocity;
 }
@@ -44,7 +44,7 @@ void Articulation::drive(Link& link, double step, Mat3& damping) const {
 // proportional-derivative controllers", 2011), which holds for any gain.
 void Articulation::run_motor(Link& link, double step, Mat3& damping) const {
   const Joint& joint = joints_[at(link.joint)];
-  const Transform parent = parent_frame(joint);
+  const Transform parent = parent_frame(link.joint);
   const Quat child = parent.orientation * ties_[at(link.joint)].turned;
   Vec3 off = rotation_vector(parent.orientation * joint.target * child.conjugate());
   Vec3 speed = parent.orientation * joint.target_speed;
@@ -102,7 +102,7 @@ void Articulation::soft_turn(Link& link, double step, Mat3& damping) const {
     return;
   }
   if (joint.turn.kind != ik::JointLimit::Kind::cone) return;
-  const Quat child = parent_frame(joint).orientation * ties_[at(link.joint)].turned;
+  const Quat child = parent_frame(link.joint).orientation * ties_[at(link.joint)].turned;
   each_cone_side(joint.turn, ties_[at(link.joint)].turned,
                  [&](int, const Vec3& axis, double beyond) {
                    spring(link, child * axis, beyond, step, damping);
@@ -118,6 +118,45 @@ void Articulation::soft_slide(Link& link, double step, Mat3& damping) const {
     spring(link, Vec3::Unit(i), slid - range.max, step, damping);
     spring(link, -Vec3::Unit(i), range.min - slid, step, damping);
   }
+}
+
+// Springs to outside, both parts as they will be at the end of the step, as those of motors.
+void Articulation::pull_held(double step) {
+  for (const auto& [body, hold] : holds_) {
+    Link& link = links_[at(link_of_[at(body)])];
+    if (link.freedom != Freedom::all || link.kinematic) continue;
+    const BodyState& state = states_[at(body)];
+    Vec6 pull = spatial(
+        hold.turn_stiffness *
+            rotation_vector(hold.target.orientation * state.to_world.orientation.conjugate()),
+        hold.stiffness * (hold.target.position - state.to_world.position));
+    pull += spatial(hold.turn_damping * hold.spin, hold.damping * hold.velocity);
+    const Vec6 now = pull - spatial(hold.turn_damping * state.spin, hold.damping * state.velocity);
+    const auto share = [](double asked, double most) { return asked > most ? most / asked : 1.0; };
+    const double turn = share(now.head<3>().norm(), hold.max_torque);
+    const double shift = share(now.tail<3>().norm(), hold.max_force);
+    Vec6 damping;
+    damping.head<3>().setConstant(step * turn * (hold.turn_damping + step * hold.turn_stiffness));
+    damping.tail<3>().setConstant(step * shift * (hold.damping + step * hold.stiffness));
+    // From the twist about the origin to spin and velocity of the centre.
+    Mat6 to_centre = Mat6::Identity();
+    const Vec3& c = state.to_world.position;
+    to_centre.bottomLeftCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;
+    link.inertia += to_centre.transpose() * damping.asDiagonal() * to_centre;
+    link.momentum +=
+        to_centre.transpose() *
+        spatial(step * turn * pull.head<3>(), step * (shift * pull.tail<3>() + hold.support));
+  }
+}
+
+void Articulation::hold(int body, const Hold& hold) {
+  for (auto& [held, its] : holds_) {
+    if (held == body) {
+      its = hold;
+      return;
+    }
+  }
+  holds_.emplace_back(body, hold);
 }
 
 // Soft distances, which are no part of the tree.
@@ -137,29 +176,37 @@ void Articulation::hold_distances(double step) {
       return Vec3(state.velocity + state.spin.cross(point - state.to_world.position));
     };
     const Vec3 axis = apart / length;
+    // What an impulse along the axis at a point of a body gives it; none if it is kinematic.
+    const auto answer = [&](int body, const Vec3& point) {
+      const Vec3 turn = (point - states_[at(body)].to_world.position).cross(axis);
+      return is_kinematic(body)
+                 ? Vec6(Vec6::Zero())
+                 : spatial(inertias_[at(body)].inverse() * turn, axis / masses_[at(body)]);
+    };
     BodyState& child = states_[at(joint.child)];
-    const Vec3 arm = its.child.position - child.to_world.position;
+    const Vec6 of_child = answer(joint.child, its.child.position);
+    const auto along = [&](const Vec6& of, const BodyState& body, const Vec3& point) {
+      return axis.dot(of.tail<3>() + Vec3(of.head<3>()).cross(point - body.to_world.position));
+    };
     double speed = axis.dot(velocity(child, its.child.position));
-    double give = 1 / masses_[at(joint.child)] +
-                  arm.cross(axis).dot(inertias_[at(joint.child)].inverse() * arm.cross(axis));
+    double give = along(of_child, child, its.child.position);
     BodyState* parent = joint.parent < 0 ? nullptr : &states_[at(joint.parent)];
-    Vec3 parent_arm = Vec3::Zero();
+    Vec6 of_parent = Vec6::Zero();
     if (parent != nullptr) {
-      parent_arm = its.parent.position - parent->to_world.position;
+      of_parent = answer(joint.parent, its.parent.position);
       speed -= axis.dot(velocity(*parent, its.parent.position));
-      give += 1 / masses_[at(joint.parent)] +
-              parent_arm.cross(axis).dot(inertias_[at(joint.parent)].inverse() *
-                                         parent_arm.cross(axis));
+      give += along(of_parent, *parent, its.parent.position);
     }
+    if (give <= 0) continue;
     const double stiffness = std::min(joint.stiffness, 0.5 / (step * step * give));
     const double impulse =
         -step * (stiffness * beyond + joint.damping * speed) / (1 + step * joint.damping * give);
     if (impulse * beyond > 0) continue;
-    child.velocity += impulse / masses_[at(joint.child)] * axis;
-    child.spin += inertias_[at(joint.child)].inverse() * (impulse * arm.cross(axis));
+    child.velocity += impulse * of_child.tail<3>();
+    child.spin += impulse * of_child.head<3>();
     if (parent == nullptr) continue;
-    parent->velocity -= impulse / masses_[at(joint.parent)] * axis;
-    parent->spin -= inertias_[at(joint.parent)].inverse() * (impulse * parent_arm.cross(axis));
+    parent->velocity -= impulse * of_parent.tail<3>();
+    parent->spin -= impulse * of_parent.head<3>();
   }
 }
 

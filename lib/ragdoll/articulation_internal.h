@@ -49,9 +49,24 @@ class Articulation {
   const Joint& joint(int joint) const { return joints_[at(joint)]; }
   double mass(int body) const { return masses_[at(body)]; }
 
-  // Moves by others' command; its speeds are what state() has.
+  // Moves by others' command; its speeds are what state() has. It is the root of its tree, or what
+  // it hangs from is kinematic, too.
   void set_kinematic(int body, bool kinematic);
   bool is_kinematic(int body) const { return links_[at(link_of_[at(body)])].kinematic; }
+  // Whether no impulse moves one against the other; -1: the surroundings.
+  bool is_fixed(int a, int b) const {
+    return (a < 0 || is_kinematic(a)) && (b < 0 || is_kinematic(b));
+  }
+
+  // The speed, in the parent's frame, at which a joint's anchor moves in it, as that of a shoulder
+  // does with the collar bone. It moves on with move().
+  void move_anchor(int joint, const Vec3& speed) { anchor_speeds_[at(joint)] = speed; }
+  Vec3 anchor(int joint) const {
+    return joints_[at(joint)].in_parent.position + ties_[at(joint)].moved;
+  }
+
+  // A spring to a pose outside, on a body without a joint.
+  void hold(int body, const Hold& hold);
 
   // The joint's frames in the world, and how far the child's has slid.
   struct Frames {
@@ -100,21 +115,25 @@ class Articulation {
     Mat3 inverse = Mat3::Zero();     // (S^T U + dampers)^-1
     Mat36 gain = Mat36::Zero();      // inverse U^T
     Vec3 impulse = Vec3::Zero();     // on the joint's coordinates, of springs and motors
+    Vec6 drift = Vec6::Zero();       // against the parent, by the anchor's movement
     Vec6 twist = Vec6::Zero();
   };
   struct Ties {                      // of a joint
     int turn = -1, slide = -1;       // links
     Quat turned = Quat::Identity();  // the child's frame in the parent's
     Vec3 slid = Vec3::Zero();        // in the parent's frame
+    Vec3 moved = Vec3::Zero();       // how far the anchor has, in the parent's frame
   };
 
   void add_links(int body, std::span<const int> joint_of, std::vector<bool>& added);
   void add_joint_links(int body, int joint);
   void take_up(int joint);
-  Transform parent_frame(const Joint& joint) const;
+  Transform parent_frame(int joint) const;
   Vec6 body_twist(int body) const;
   void set_axes(Link& link) const;
+  void set_drift(int number);
   void gather(double step, const Vec3& gravity);
+  void pull_held(double step);
   void eliminate(double step);
   void distribute();
   Vec3 last_rate(const Link& link) const;
@@ -132,12 +151,14 @@ class Articulation {
   std::vector<Mat3> inertias_;  // world
   std::vector<BodyState> states_;
   std::vector<Joint> joints_;
-  std::vector<Ties> ties_;         // shape [joints]
-  std::vector<Link> links_;        // parents first
-  std::vector<int> link_of_;       // shape [bodies]
-  std::vector<Vec6> twists_;       // shape [bodies]
-  std::vector<Mat6> responses_;    // shape [links, links]
-  std::vector<BodyState> before_;  // the last move()
+  std::vector<Ties> ties_;                   // shape [joints]
+  std::vector<Link> links_;                  // parents first
+  std::vector<int> link_of_;                 // shape [bodies]
+  std::vector<Vec6> twists_;                 // shape [bodies]
+  std::vector<Mat6> responses_;              // shape [links, links]
+  std::vector<Vec3> anchor_speeds_;          // shape [joints]
+  std::vector<std::pair<int, Hold>> holds_;  // bodies
+  std::vector<BodyState> before_;            // the last move()
   std::vector<Mat3> inertias_before_;
   std::vector<Ties> ties_before_;
   Vec3 fallen_ = Vec3::Zero();  // by gravity in the step, m/s

@@ -35,10 +35,9 @@ void Articulation::place(double step, std::span<const Vec6> moving) {
       ties.turned = (from_rotation_vector(step * turn) * ties.turned).normalized();
     }
     if (ties.slide >= 0) {
-      const Transform parent{joint.parent < 0
-                                 ? Vec3(joint.in_parent.position)
-                                 : before_[at(joint.parent)].to_world * joint.in_parent.position,
-                             old};
+      const Vec3 in_parent = this->anchor(link.joint);
+      const Transform parent{
+          joint.parent < 0 ? in_parent : before_[at(joint.parent)].to_world * in_parent, old};
       const Vec3 anchor = parent * ties.slid;
       const Vec3 speed =
           old.conjugate() * Vec3(relative.tail<3>() + Vec3(relative.head<3>()).cross(anchor));
@@ -46,8 +45,9 @@ void Articulation::place(double step, std::span<const Vec6> moving) {
         if (!links_[at(ties.slide)].axes.col(i).isZero()) ties.slid[i] += step * speed[i];
       }
     }
+    ties.moved += step * anchor_speeds_[at(link.joint)];
     state.to_world =
-        parent_frame(joint) * Transform{ties.slid, ties.turned} * joint.in_child.inverse();
+        parent_frame(link.joint) * Transform{ties.slid, ties.turned} * joint.in_child.inverse();
     state.to_world.orientation.normalize();
   }
 }

@@ -5,6 +5,7 @@
 
 #include "core/result.h"
 #include "math/transform.h"
+#include "ragdoll/body_mode.h"
 #include "roles/roles.h"
 #include "scene/model.h"
 #include "scene/skeleton.h"
@@ -32,6 +33,8 @@ struct Body {
   Shape shape;
   Transform to_joint;  // body_to_joint
   double mass = 1;     // > 0
+  BodyMode mode = BodyMode::simulated;
+  double strength = 1;  // powered: 0 (limp) to 1 (an adult's; the root: as animated)
 };
 
 struct BodyOptions {

@@ -77,7 +77,8 @@ void ImpulseSolver::add_contacts(std::span<const Contact> contacts, double frict
            contacts[end].normal.dot(leader.normal) > kSamePlane) {
       ++end;
     }
-    add_patch(contacts.subspan(first, end - first), friction, restitution);
+    if (!bodies_->is_fixed(leader.a, leader.b))
+      add_patch(contacts.subspan(first, end - first), friction, restitution);
     first = end;
   }
 }
@@ -208,7 +209,7 @@ void ImpulseSolver::add_distance(int joint) {
 void ImpulseSolver::add_limits() {
   for (int j = 0; j < bodies_->joint_count(); ++j) {
     const Joint& joint = bodies_->joint(j);
-    if (joint.soft) continue;
+    if (joint.soft || bodies_->is_fixed(joint.child, joint.parent)) continue;
     if (joint.kind == JointKind::distance) {
       add_distance(j);
       continue;

@@ -1,5 +1,7 @@
 #include "ragdoll/joint.h"
 
+#include <algorithm>
+
 namespace krok::ragdoll {
 
 std::string_view joint_kind_name(JointKind kind) {
@@ -18,6 +20,12 @@ std::string_view joint_kind_name(JointKind kind) {
       return "six_dof";
   }
   return "";
+}
+
+bool can_slide(const Joint& joint) {
+  return joint.kind == JointKind::prismatic || joint.kind == JointKind::distance ||
+         (joint.kind == JointKind::six_dof &&
+          std::ranges::any_of(joint.slide, [](const Range& r) { return r.min != r.max; }));
 }
 
 }  // namespace krok::ragdoll

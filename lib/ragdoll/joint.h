@@ -59,4 +59,7 @@ struct Joint {
   Vec3 target_speed = Vec3::Zero();
 };
 
+// Whether the anchors may come apart: prismatic, distance, and six_dof with a range to slide in.
+bool can_slide(const Joint& joint);
+
 }  // namespace krok::ragdoll

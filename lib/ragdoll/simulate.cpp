@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "motion/sample.h"
+#include "ragdoll/go_on.h"
+#include "ragdoll/motion_follower.h"
 
 namespace krok::ragdoll {
 
@@ -17,6 +20,7 @@ constexpr double kStill = 0.025, kTurn = 0.15;  // metres, radians
 constexpr double kRest = 0.5;                   // seconds
 
 constexpr double kSettling = 0.2;  // seconds
+constexpr double kBlend = 0.5;     // seconds from the simulation to the motion that goes on
 
 // J/kg. A sprinter of 12.3 m/s has 76 (Graubner and Nixdorf 2011), and some more in the limbs.
 constexpr double kMaxEnergy = 120;
@@ -39,7 +43,9 @@ class FallMaker {
   Surroundings moved_ground() const;
   void apply_pushes(int step);
   bool step(int number);
+  void measure_off();
   Pose pose() const;
+  void copy_animated(Pose& pose) const;
   void add_frames(double from, double to, const Pose& before, const Pose& after);
 
   const Clip& motion_;
@@ -51,6 +57,8 @@ class FallMaker {
   // The world's origin is below the character, as Bullet computes in single precision.
   Vec3 origin_ = Vec3::Zero();
   World world_{WorldOptions(), Surroundings()};
+  std::optional<MotionFollower> follower_;
+  std::vector<int> carriers_;  // body_of_joint()
   Fall fall_;
   int frames_ = 0, next_frame_ = 0;
   std::vector<Transform> still_;  // bodies where they have been since then
@@ -108,20 +116,20 @@ Status FallMaker::begin(const ik::Limits& limits) {
   origin_ = start_[at(bodies_.front().joint)].position;
   origin_.y() = 0;
   world_ = World(options_.world, moved_ground());
-  const std::vector<Joint> joints =
+  std::vector<Joint> joints =
       options_.rules.empty()
           ? make_joints(motion_.skeleton, roles_, bodies_, limits, start_, options_.joints)
           : joints_of(options_.rules, bodies_, start_);
-  slides_.assign(bodies_.size(), false);
-  for (const Joint& joint : joints) {
-    slides_[at(joint.child)] =
-        joint.kind == JointKind::prismatic || joint.kind == JointKind::distance ||
-        (joint.kind == JointKind::six_dof &&
-         std::ranges::any_of(joint.slide,
-                             [](const Range& range) { return range.min != range.max; }));
-  }
   std::vector<BodyState> states = start_states();
   leave_out_jumps(states);
+  carriers_ = body_of_joint(motion_.skeleton, bodies_);
+  follower_.emplace(motion_, bodies_, origin_);
+  fall_.follows = follower_->follows();
+  follower_->prepare(options_.at, options_.at + options_.duration, roles_, states, joints);
+  slides_.assign(bodies_.size(), false);
+  for (const Joint& joint : joints) {
+    slides_[at(joint.child)] = can_slide(joint);
+  }
   if (Status status = world_.add(bodies_, states, joints); !status) return status;
   fall_.settling.penetration = world_.measures().penetration;
   fall_.least_height = std::numeric_limits<double>::infinity();
@@ -153,12 +161,15 @@ void FallMaker::apply_pushes(int step) {
 }
 
 Pose FallMaker::pose() const {
-  Pose pose(start_.size());
+  Pose pose(start_.size()), playing(start_.size());
+  world_to_local(motion_.skeleton.parents, follower_->pose(), playing);
   std::vector<int> own(start_.size(), -1);
   for (std::size_t b = 0; b < bodies_.size(); ++b) own[at(bodies_[b].joint)] = static_cast<int>(b);
   for (std::size_t j = 0; j < pose.size(); ++j) {
     const int parent = motion_.skeleton.parents[j];
-    pose[j] = parent < 0 ? start_[j] : pose[at(parent)] * locals_[j];
+    const bool plays = follower_->plays_on(parent < 0 ? 0 : std::max(0, carriers_[at(parent)]));
+    const Transform& local = plays ? playing[j] : locals_[j];
+    pose[j] = parent < 0 ? local : pose[at(parent)] * local;
     if (own[j] < 0) continue;
     const Transform to_world =
         world_.state(own[j]).to_world * bodies_[at(own[j])].to_joint.inverse();
@@ -166,6 +177,16 @@ Pose FallMaker::pose() const {
     if (own[j] == 0 || slides_[at(own[j])]) pose[j].position = to_world.position + origin_;
   }
   return pose;
+}
+
+// What is animated is the motion's, not only near it.
+void FallMaker::copy_animated(Pose& pose) const {
+  if (!fall_.follows) return;
+  Pose motion(pose.size());
+  motion_.get_pose(std::min(next_frame_, motion_.frame_count() - 1), motion);
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    if (bodies_[at(std::max(0, carriers_[j]))].mode == BodyMode::animated) pose[j] = motion[j];
+  }
 }
 
 // The frames in [from, to), seconds of the motion.
@@ -183,13 +204,29 @@ void FallMaker::add_frames(double from, double to, const Pose& before, const Pos
       between[j].orientation = slerp(local_a[j].orientation, local_b[j].orientation, share);
     }
     local_to_world(motion_.skeleton.parents, between, between);
+    copy_animated(between);
     fall_.clip.set_pose(next_frame_, between);
+  }
+}
+
+// The mean is of squares until run() ends.
+void FallMaker::measure_off() {
+  if (!fall_.follows) return;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const Quat target =
+        follower_->pose()[at(bodies_[b].joint)].orientation * bodies_[b].to_joint.orientation;
+    const double off =
+        angle_between(world_.state(static_cast<int>(b)).to_world.orientation, target);
+    fall_.mean_off += off * off / static_cast<double>(bodies_.size());
+    fall_.largest_off = std::max(fall_.largest_off, off);
   }
 }
 
 // False once the character rests.
 bool FallMaker::step(int number) {
+  follower_->lead(world_, options_.at + (number + 1) * World::kStep, options_.world.gravity);
   world_.step();
+  measure_off();
   const WorldMeasures now = world_.measures();
   WorldMeasures& largest = number * World::kStep < kSettling ? fall_.settling : fall_.largest;
   largest.joint_gap = std::max(largest.joint_gap, now.joint_gap);
@@ -213,7 +250,7 @@ bool FallMaker::step(int number) {
     still_since_ = time;
     return true;
   }
-  if (time - still_since_ < kRest) return true;
+  if (fall_.follows || time - still_since_ < kRest) return true;
   for (const Push& push : options_.pushes) {
     if (push.time - options_.at >= time) return true;
   }
@@ -242,6 +279,11 @@ Status FallMaker::run() {
     if (!moves) break;
   }
   for (; next_frame_ < frames_; ++next_frame_) fall_.clip.set_pose(next_frame_, before);
+  fall_.mean_off = std::sqrt(fall_.mean_off * World::kStep / fall_.simulated);
+  if (!options_.go_on) return {};
+  auto whole = go_on(fall_.clip, motion_, kBlend);
+  if (!whole) return whole.error();
+  fall_.clip = std::move(*whole);
   return {};
 }
 

@@ -20,6 +20,7 @@ struct Push {
 struct FallOptions {
   double at = 0;        // seconds of the motion, 0 to its end: the fall begins
   double duration = 3;  // seconds of the fall, 0 to 600
+  bool go_on = false;   // the motion goes on where the fall ends (go_on())
   std::vector<Push> pushes;
   BodyJointOptions joints;
   std::vector<JointRule> rules;  // of the joints, in place of those of `limits` and `joints`
@@ -37,6 +38,10 @@ struct Fall {
   // the rest.
   WorldMeasures settling, largest;
   bool jumps = false;  // the motion jumps where the fall begins; the bodies began without speeds
+  bool follows = false;  // not all bodies are simulated: what lies still may move again
+  // Radians between the orientations of bodies and the motion, of all steps: the root mean square
+  // over all bodies, and the largest.
+  double mean_off = 0, largest_off = 0;
   double simulated = 0;     // seconds until it lies still, or the end
   double least_height = 0;  // metres: lowest centre of a body
 };
@@ -52,9 +57,15 @@ std::vector<Transform> pose_at(const Clip& clip, double time);
 // has, but for bodies that slide. Joints above the root body stand still. Between steps poses are
 // interpolated. The same input gives the same bytes.
 //
+// Bodies whose mode is animated or powered (Body::mode) follow the motion, which plays on and ends
+// with its last pose; so do joints without a body of their own that they carry. Then nothing ends
+// by lying still. A simulated body that hangs from an animated one is moved by it, and what touches
+// an animated one does not move it.
+//
 // `bodies` are make_bodies()', `limits` as for make_joints(). Codes: ragdoll-time for times outside
 // the motion or the ranges, ragdoll-value for pushes at bodies that are not there or not finite,
-// and for a simulation that leaves the finite numbers.
+// and for a simulation that leaves the finite numbers, ragdoll-mode for an animated body below one
+// that is not.
 Result<Fall> simulate_fall(const Clip& motion, const RoleMap& roles,
                            const std::vector<Body>& bodies, const ik::Limits& limits,
                            const FallOptions& options);

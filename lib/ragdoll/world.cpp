@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "math/quaternion.h"
 #include "ragdoll/articulation_internal.h"
 #include "ragdoll/collision_internal.h"
 #include "ragdoll/impulse_solver_internal.h"
@@ -93,6 +94,17 @@ Status World::add(std::span<const Body> bodies, std::span<const BodyState> state
     }
   }
   if (Status status = inside_->bodies.build(bodies, states, joints); !status) return status;
+  for (int b = 0; b < count; ++b) {
+    if (bodies[at(b)].mode != BodyMode::animated) continue;
+    for (const Joint& joint : joints) {
+      if (joint.child == b && joint.kind != JointKind::distance &&
+          (joint.parent < 0 || bodies[at(joint.parent)].mode != BodyMode::animated)) {
+        return Error("ragdoll-mode", "the animated body '" + bodies[at(b)].name +
+                                         "' hangs from what is not animated");
+      }
+    }
+    inside_->bodies.set_kinematic(b, true);
+  }
   inside_->collision.add(bodies, states, joints);
   inside_->look();
   return {};
@@ -118,6 +130,21 @@ void World::set_motor(int joint, const Quat& target, const Vec3& target_speed) {
   its.target_speed = target_speed;
 }
 
+void World::lead(int body, const Transform& to_world) {
+  BodyState& state = inside_->bodies.state(body);
+  state.velocity = (to_world.position - state.to_world.position) / kStep;
+  state.spin =
+      rotation_vector(to_world.orientation * state.to_world.orientation.conjugate()) / kStep;
+}
+
+void World::move_anchor(int joint, const Vec3& in_parent) {
+  inside_->bodies.move_anchor(joint, (in_parent - inside_->bodies.anchor(joint)) / kStep);
+}
+
+void World::hold(int body, const Hold& hold) {
+  inside_->bodies.hold(body, hold);
+}
+
 BodyState World::state(int body) const {
   return inside_->bodies.state(body);
 }
@@ -126,11 +153,12 @@ WorldMeasures World::measures() const {
   const Articulation& bodies = inside_->bodies;
   WorldMeasures measures;
   for (int j = 0; j < bodies.joint_count(); ++j) {
+    if (bodies.is_fixed(bodies.joint(j).child, bodies.joint(j).parent)) continue;
     measures.joint_gap = std::max(measures.joint_gap, bodies.gap(j));
     measures.limit_excess = std::max(measures.limit_excess, bodies.excess(j));
   }
   for (const Contact& contact : inside_->contacts) {
-    if (contact.b >= 0) continue;
+    if (contact.b >= 0 || bodies.is_kinematic(contact.a)) continue;
     const Vec3 point = bodies.state(contact.a).to_world * contact.on_a;
     const double distance = contact.normal.dot(point - contact.on_b);
     measures.penetration = std::max(measures.penetration, -distance);

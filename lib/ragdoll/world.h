@@ -35,6 +35,16 @@ struct Surroundings {
   std::vector<std::array<Vec3, 3>> triangles;  // of either side
 };
 
+// A spring and damper between a body and a pose outside that moves; metres, newtons, radians,
+// world. Each part gives at most its force or torque.
+struct Hold {
+  Transform target;  // of the centre of mass, where it is after the next step
+  Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
+  double stiffness = 0, damping = 0, max_force = 0;             // N/m, N s/m, N; >= 0
+  double turn_stiffness = 0, turn_damping = 0, max_torque = 0;  // N m/rad, N m s/rad, N m
+  Vec3 support = Vec3::Zero();                                  // N, at the centre, besides
+};
+
 // The state of the contacts and joints after a step.
 struct WorldMeasures {
   double joint_gap = 0;     // metres: the largest distance between anchors that should coincide
@@ -53,7 +63,9 @@ class World {
   World& operator=(World&&) noexcept;
 
   // `joints` refer to the bodies. Bodies that a joint ties do not collide, nor do those that
-  // overlap at the start. Called once. Codes ragdoll-value for values out of the ranges above.
+  // overlap at the start. Animated bodies (Body::mode) move by lead() alone, whatever they touch;
+  // the joints of powered ones are as `joints` has them. Called once. Codes ragdoll-value for
+  // values out of the ranges above, ragdoll-mode for an animated body below one that is not.
   Status add(std::span<const Body> bodies, std::span<const BodyState> states,
              std::span<const Joint> joints);
 
@@ -65,6 +77,15 @@ class World {
 
   // Changes where a joint's motor turns to.
   void set_motor(int joint, const Quat& target, const Vec3& target_speed);
+
+  // Where an animated body is after the next step. Without, it moves on as it does.
+  void lead(int body, const Transform& to_world);
+
+  // Where a joint that does not slide has its anchor in the parent's frame after the next step.
+  void move_anchor(int joint, const Vec3& in_parent);
+
+  // Holds a body that no joint ties to one above, from the next step on.
+  void hold(int body, const Hold& hold);
 
   BodyState state(int body) const;
   WorldMeasures measures() const;

@@ -35,7 +35,7 @@ ALLOWED = {
                         "lib/rbf", "lib/terrain"},
     "lib/fit": {"lib/core", "lib/rbf"},
     "lib/ik": BASE | {"lib/roles", "lib/motion", "lib/timeline"},
-    "lib/ragdoll": BASE | {"lib/roles", "lib/ik", "lib/motion"},
+    "lib/ragdoll": BASE | {"lib/roles", "lib/ik", "lib/motion", "lib/timeline"},
     "lib/retarget": BASE | {"lib/roles", "lib/ik", "lib/motion"},
     "lib/skin": BASE,
     "lib/body": BASE | {"lib/roles"},

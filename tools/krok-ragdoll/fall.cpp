@@ -68,7 +68,7 @@ std::vector<Error> faults_of(const Fallen& fallen) {
                         "another --at, or krok-import --skip-rest-frame auto if a T-pose is before "
                         "the motion");
   }
-  if (fall.rest < 0) {
+  if (fall.rest < 0 && !fall.follows) {
     faults.emplace_back("ragdoll-moving", "the body still moves where the motion ends",
                         "a longer --duration lets it come to rest");
   }
@@ -117,6 +117,9 @@ Json report_of(const Subject& subject, const Fallen& fallen) {
   json["rest"] = fallen.fall.rest < 0 ? Json() : Json(fallen.fall.rest);
   json["largest"] = json_of(fallen.fall.largest);
   json["settling"] = json_of(fallen.fall.settling);
+  if (fallen.fall.follows) {
+    json["off_motion"] = {{"mean", fallen.fall.mean_off}, {"largest", fallen.fall.largest_off}};
+  }
   if (!fallen.risen) return json;
   const krok::ragdoll::RisenClip& risen = *fallen.risen;
   Json tried = Json::array();
@@ -139,6 +142,11 @@ Json report_of(const Subject& subject, const Fallen& fallen) {
 
 std::string summary_of(const Subject& subject, const krok::ragdoll::FallOptions& options,
                        const Fallen& fallen) {
+  if (fallen.fall.follows) {
+    return fmt::format("simulated from {:.2f} s to {:.2f} s, {:.1f} degrees off the motion",
+                       options.at, options.at + fallen.fall.simulated,
+                       fallen.fall.mean_off / kRadiansPerDegree);
+  }
   std::string text = fmt::format("a fall from {:.2f} s, ", options.at);
   if (fallen.fall.rest < 0) return text + "not at rest";
   text += fmt::format("at rest after {:.2f} s", fallen.fall.rest);

@@ -37,7 +37,10 @@ void declare_fall(CommandOptions& command, Arguments& a) {
                   "Get up once at rest, with the motion whose first pose, or its mirror image, is "
                   "nearest; repeatable")
       .one_each_time();
-  command.add_option("--duration TIME", a.duration, "Length of the fall").default_str("3s");
+  command
+      .add_option("--duration TIME", a.duration,
+                  "Length of the fall; where the motion plays on, to its end")
+      .default_str("3s");
 }
 
 void declare_body(CommandOptions& command, Arguments& a) {
@@ -117,6 +120,7 @@ void declare(CommandOptions& command, Arguments& arguments) {
                   "Motion, or a capture read as by krok-import (- is standard input)")
       .required();
   declare_fall(command, arguments);
+  declare_follow(command, arguments.follow);
   declare_body(command, arguments);
   declare_surroundings(command, arguments);
   add_orientation_option(command, arguments.orientation);
@@ -163,11 +167,23 @@ Result<Options> understand(const Arguments& a) {
     return usage(fmt::format("--at {} is not a time of 0 or more", shown(a.at)));
   }
   options.at = *begin;
-  const auto duration = parse_clip_time(a.duration);
-  if (!duration || duration->in_frames || !(duration->value > 0 && duration->value <= 600)) {
-    return usage(fmt::format("--duration {} is not a time of up to 600 s", shown(a.duration)));
+  if (!a.duration.empty()) {
+    const auto duration = parse_clip_time(a.duration);
+    if (!duration || duration->in_frames || !(duration->value > 0 && duration->value <= 600)) {
+      return usage(fmt::format("--duration {} is not a time of up to 600 s", shown(a.duration)));
+    }
+    options.duration = duration->value;
   }
-  options.duration = duration->value;
+  auto follow = understand_follow(a.follow);
+  if (!follow) return follow.error();
+  options.follow = std::move(*follow);
+  if (options.follow.until && options.duration) {
+    return usage("--duration and --until exclude each other");
+  }
+  if (options.follow.any() && !a.rises.empty()) {
+    return usage("--get-up needs a fall that comes to rest",
+                 "leave out --powered, --hold and --simulated");
+  }
   const auto mass = number_of(a.mass, "kg");
   if (!mass || !(*mass >= 1 && *mass <= 1000)) {
     return usage(fmt::format("--mass {} is not a mass from 1 to 1000 kg", shown(a.mass)));
@@ -185,6 +201,10 @@ ToolSpec make_spec() {
   spec.examples = {
       {"krok-ragdoll walk.anim --at 1.2s --push Spine2=120Ns,0,40Ns -o fall.anim",
        "a walker is shoved from the side and falls"},
+      {"krok-ragdoll walk.anim --powered 0.6 --push-every 2s -o shoved.anim",
+       "a walker is pushed every two seconds, staggers, and goes on walking"},
+      {"krok-ragdoll walk.anim --simulated left_upper_arm -o limp.anim",
+       "an arm hangs limp while all else stays the motion's"},
       {"krok-ragdoll walk.anim --model walker.model --at 2s --ground stairs.glb --duration 5s -o "
        "fall.anim --json",
        "bodies in the sizes of a character, on a mesh; the report has the measures"},

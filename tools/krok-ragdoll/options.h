@@ -8,6 +8,7 @@
 #include "formats/container/packed_orientation.h"
 #include "math/types.h"
 #include "tools/cli/tool.h"
+#include "tools/krok-ragdoll/follow.h"
 
 namespace krok::cli::ragdoll {
 
@@ -15,12 +16,13 @@ namespace krok::cli::ragdoll {
 struct Arguments {
   std::string input, map, model;
   std::string bodies, save_bodies;
-  std::string at = "0s", duration = "3s", mass = "75kg";
+  std::string at = "0s", duration, mass = "75kg";
   std::vector<std::string> pushes;  // JOINT=X,Y,ZNs[@TIME]
   std::string push_table;
   std::vector<std::string> rises;
   std::string ground = "level";
   std::string limits = "auto";
+  FollowArguments follow;
   double friction = 0.7, restitution = 0;
   bool soft = false;
   OrientationEncoding orientation = OrientationEncoding::xyz;
@@ -40,7 +42,9 @@ struct Options {
   Arguments given;
   std::vector<PushAt> pushes;
   ClipTime at;
-  double duration = 3, mass = 75;
+  std::optional<double> duration;
+  double mass = 75;
+  FollowOptions follow;
 };
 
 void declare(CommandOptions& command, Arguments& arguments);

@@ -1,0 +1,179 @@
+#include "tools/krok-ragdoll/follow.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/index.h"
+#include "core/nearest_name.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/goals/goals.h"
+
+namespace krok::cli::ragdoll {
+
+namespace {
+
+using krok::ragdoll::Body;
+using krok::ragdoll::BodyMode;
+
+constexpr double kHold = 0.5;     // of powered characters
+constexpr double kPushSpeed = 1;  // m/s that a push gives the whole body
+constexpr double kAside = 60 * kRadiansPerDegree;
+
+Error usage_of(std::string message, std::string hint = {}) {
+  return {"usage", std::move(message), std::move(hint)};
+}
+
+Result<std::optional<double>> strength_of(const std::string& text, const char* option) {
+  if (text.empty()) return std::optional<double>();
+  const auto value = parse_finite(text);
+  if (!value || !(*value >= 0 && *value <= 1)) {
+    return usage_of(fmt::format("{} {} is not a strength from 0 to 1", option, shown(text)));
+  }
+  return std::optional<double>(*value);
+}
+
+// The mean of [0, 1), the same on every machine.
+double chance(std::mt19937& random) {
+  return random() / 4294967296.0;
+}
+
+// To the character's left, horizontal.
+Vec3 left_of(const Clip& motion, const RoleMap& roles, double time) {
+  const int left = roles.joint(Role::left_upper_leg), right = roles.joint(Role::right_upper_leg);
+  if (left < 0 || right < 0) return Vec3::UnitX();
+  const auto pose = krok::ragdoll::pose_at(motion, time);
+  Vec3 across = pose[at(left)].position - pose[at(right)].position;
+  across.y() = 0;
+  return across.norm() > 1e-6 ? Vec3(across.normalized()) : Vec3(Vec3::UnitX());
+}
+
+}  // namespace
+
+void declare_follow(CommandOptions& command, FollowArguments& a) {
+  command.group("Playing on");
+  command.add_option("--powered STRENGTH", a.powered,
+                     "Motors in the joints follow the motion: 1 as strong as an adult, 0 limp");
+  command
+      .add_option("--hold STRENGTH", a.hold,
+                  "Hold the root body to the motion from outside, as if by hand: 0 free, 1 as "
+                  "animated; 0.5 with --powered, which keeps a walker on his feet")
+      .default_str("0");
+  command
+      .add_option("--simulated JOINT", a.simulated,
+                  "Simulate only the bodies from this joint on, given by name or role, limp or as "
+                  "strong as --powered; all others stay animated; repeatable")
+      .one_each_time();
+  command.add_option("--push-every TIME", a.push_every,
+                     "Push the chest at this spacing, to alternate sides, with what gives the body "
+                     "1 m/s");
+  command.add_option("--seed N", a.seed, "Seed of the directions of --push-every").default_str("1");
+  command.add_option("--until TIME", a.until,
+                     "Time from which the motion goes on alone, blended within 0.5 s");
+}
+
+Result<FollowOptions> understand_follow(const FollowArguments& a) {
+  FollowOptions options;
+  const auto powered = strength_of(a.powered, "--powered");
+  if (!powered) return powered.error();
+  const auto hold = strength_of(a.hold, "--hold");
+  if (!hold) return hold.error();
+  options.powered = *powered;
+  options.hold = *hold;
+  options.simulated = a.simulated;
+  options.seed = a.seed;
+  if (options.hold && !a.simulated.empty()) {
+    return usage_of("--simulated and --hold exclude each other",
+                    "with --simulated the root body is animated");
+  }
+  if (!a.until.empty()) {
+    const auto until = parse_clip_time(a.until);
+    if (!until || !(until->value > 0)) {
+      return usage_of(fmt::format("--until {} is not a time above 0", shown(a.until)));
+    }
+    options.until = *until;
+  }
+  if (!a.push_every.empty()) {
+    const auto spacing = parse_clip_time(a.push_every);
+    if (!spacing || spacing->in_frames || !(spacing->value >= 0.1 && spacing->value <= 600)) {
+      return usage_of(
+          fmt::format("--push-every {} is not a time from 0.1 to 600 s", shown(a.push_every)));
+    }
+    options.push_every = spacing->value;
+  }
+  return options;
+}
+
+Status set_modes(const FollowOptions& options, const Skeleton& skeleton, const RoleMap& roles,
+                 std::vector<Body>& bodies) {
+  if (!options.any()) return {};
+  const double strength = options.powered.value_or(0);
+  const BodyMode of_rest = strength > 0 ? BodyMode::powered : BodyMode::simulated;
+  std::vector<bool> chosen(bodies.size(), options.simulated.empty());
+  for (const std::string& name : options.simulated) {
+    const int joint = goals::find_joint(name, skeleton, roles);
+    if (joint < 0) {
+      return Error(
+          "ragdoll-joint",
+          fmt::format("--simulated {}: the motion has no joint of that name or role", shown(name)),
+          nearest_hint(name, skeleton.names));
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      for (int j = bodies[b].joint; j >= 0; j = skeleton.parents[at(j)]) {
+        if (j == joint) chosen[b] = true;
+      }
+    }
+    if (std::ranges::find(chosen, true) == chosen.end()) {
+      return Error(
+          "ragdoll-joint",
+          fmt::format("--simulated {}: no body moves with it or a joint below it", shown(name)),
+          "--save-bodies shows what joints have bodies");
+    }
+  }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    bodies[b].mode = chosen[b] ? of_rest : BodyMode::animated;
+    bodies[b].strength = strength;
+  }
+  if (options.simulated.empty()) {
+    Body& root = bodies.front();
+    root.strength = options.hold.value_or(options.powered ? kHold : 0.0);
+    root.mode = root.strength >= 1  ? BodyMode::animated
+                : root.strength > 0 ? BodyMode::powered
+                                    : BodyMode::simulated;
+  }
+  return {};
+}
+
+bool follows_motion(const std::vector<Body>& bodies) {
+  return std::ranges::any_of(bodies,
+                             [](const Body& body) { return body.mode != BodyMode::simulated; });
+}
+
+std::vector<krok::ragdoll::Push> regular_pushes(const FollowOptions& options, const Clip& motion,
+                                                const RoleMap& roles,
+                                                const std::vector<Body>& bodies, double begin,
+                                                double end) {
+  std::vector<krok::ragdoll::Push> pushes;
+  if (options.push_every <= 0) return pushes;
+  const auto carriers = krok::ragdoll::body_of_joint(motion.skeleton, bodies);
+  const int chest = roles.joint(Role::chest), head = roles.joint(Role::head);
+  int body = chest >= 0 ? carriers[at(chest)] : head >= 0 ? carriers[at(head)] : 0;
+  if (chest < 0 && body > 0) body = bodies[at(body)].parent;
+  double mass = 0;
+  for (const Body& each : bodies) mass += each.mass;
+  std::mt19937 random(options.seed);
+  for (int i = 1; begin + i * options.push_every < end; ++i) {
+    const double time = begin + i * options.push_every;
+    const double aside = kAside * (2 * chance(random) - 1);
+    const Vec3 left = left_of(motion, roles, time), forward = left.cross(Vec3::UnitY());
+    const double side = i % 2 == 1 ? 1 : -1;
+    const Vec3 way = side * (std::cos(aside) * left + std::sin(aside) * forward);
+    pushes.push_back({std::max(0, body), kPushSpeed * mass * way, time});
+  }
+  return pushes;
+}
+
+}  // namespace krok::cli::ragdoll
