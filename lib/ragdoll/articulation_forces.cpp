@@ -144,8 +144,8 @@ void Articulation::pull_held(double step) {
     to_centre.bottomLeftCorner<3, 3>() << 0, c.z(), -c.y(), -c.z(), 0, c.x(), c.y(), -c.x(), 0;
     link.inertia += to_centre.transpose() * damping.asDiagonal() * to_centre;
     link.momentum +=
-        to_centre.transpose() *
-        spatial(step * turn * pull.head<3>(), step * (shift * pull.tail<3>() + hold.support));
+        to_centre.transpose() * step *
+        spatial(turn * pull.head<3>() + hold.support_torque, shift * pull.tail<3>() + hold.support);
   }
 }
 

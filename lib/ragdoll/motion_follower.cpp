@@ -129,7 +129,13 @@ void MotionFollower::lead_root(World& world, double time, const Vec3& gravity) c
                      body_at(pose_at(motion_, time + kSmooth), 0).position;
     acceleration = (sum - 2 * target.position) / (kSmooth * kSmooth);
   }
+  Vec3 centre = Vec3::Zero();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    centre += bodies_[b].mass / mass_ * world.state(static_cast<int>(b)).to_world.position;
+  }
+  // At the centre of mass, so that it does not turn what bends.
   hold.support = mass_ * (acceleration - kCarried * gravity);
+  hold.support_torque = (centre - world.state(0).to_world.position).cross(hold.support);
   world.hold(0, hold);
 }
 

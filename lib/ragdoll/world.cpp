@@ -28,7 +28,8 @@ struct World::Inside {
   Articulation bodies;
   ImpulseSolver solver;
   std::vector<BodyState> states;
-  std::span<const Contact> contacts;
+  std::vector<Contact> contacts;
+  std::vector<bool> follow;  // shape [bodies]: the motion has them where they are
 
   void look();
   void advance(double step, int divided);
@@ -37,7 +38,12 @@ struct World::Inside {
 void World::Inside::look() {
   states.clear();
   for (int b = 0; b < bodies.body_count(); ++b) states.push_back(bodies.state(b));
-  contacts = collision.find(states, kStep);
+  contacts.clear();
+  for (const Contact& contact : collision.find(states, kStep)) {
+    if (contact.b < 0 || !follow[at(contact.a)] || !follow[at(contact.b)]) {
+      contacts.push_back(contact);
+    }
+  }
 }
 
 // Steps in which something turns so fast that its limits miss are divided.
@@ -94,6 +100,7 @@ Status World::add(std::span<const Body> bodies, std::span<const BodyState> state
     }
   }
   if (Status status = inside_->bodies.build(bodies, states, joints); !status) return status;
+  for (const Body& body : bodies) inside_->follow.push_back(body.mode != BodyMode::simulated);
   for (int b = 0; b < count; ++b) {
     if (bodies[at(b)].mode != BodyMode::animated) continue;
     for (const Joint& joint : joints) {

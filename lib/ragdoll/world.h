@@ -42,7 +42,8 @@ struct Hold {
   Vec3 velocity = Vec3::Zero(), spin = Vec3::Zero();
   double stiffness = 0, damping = 0, max_force = 0;             // N/m, N s/m, N; >= 0
   double turn_stiffness = 0, turn_damping = 0, max_torque = 0;  // N m/rad, N m s/rad, N m
-  Vec3 support = Vec3::Zero();                                  // N, at the centre, besides
+  // Besides, whatever the pose: a force, and a torque about the centre (N, N m).
+  Vec3 support = Vec3::Zero(), support_torque = Vec3::Zero();
 };
 
 // The state of the contacts and joints after a step.
