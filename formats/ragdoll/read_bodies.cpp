@@ -15,6 +15,7 @@ constexpr double kMaxMass = 1e5;  // kg
 
 using json::Value;
 using ragdoll::Body;
+using ragdoll::BodyMode;
 using ragdoll::Shape;
 using Kind = Value::Kind;
 
@@ -88,10 +89,34 @@ Status Reader::find_joint(const Value& item, const std::string& what, Body& body
   return {};
 }
 
+// Whether the motion leads it, once it plays on.
+Status Reader::read_mode(const Value& item, const std::string& what, Body& body) const {
+  const auto mode = in_.choice(item, what, "mode", {"simulated", "animated", "powered"});
+  if (!mode) return mode.error();
+  if (*mode) body.mode = static_cast<BodyMode>(**mode);
+  const bool hangs = body.parent >= 0 && read_.bodies[at(body.parent)].mode != BodyMode::animated;
+  if (body.mode == BodyMode::animated && hangs) {
+    return in_.wrong(*item.find("mode"),
+                     fmt::format("{} is animated, but '{}', the body above it, is not", what,
+                                 shown(read_.bodies[at(body.parent)].name)),
+                     "animate all bodies from the root to it, or make it \"powered\"");
+  }
+  const Value* const strength = item.find("strength");
+  if (strength == nullptr) return {};
+  if (body.mode != BodyMode::powered) {
+    return in_.wrong(*strength, fmt::format("{} has \"strength\", but is not powered", what),
+                     "add \"mode\": \"powered\"");
+  }
+  const auto number = in_.within(*strength, fmt::format("\"strength\" of {}", what), 0, 1);
+  if (!number) return number.error();
+  body.strength = *number;
+  return {};
+}
+
 Status Reader::read_body(const Value& item) {
   Status status = in_.only(item, "a body",
                            {"name", "joint", "shape", "size", "radius", "length", "offset",
-                            "rotation", "mass", "comment"});
+                            "rotation", "mass", "mode", "strength", "comment"});
   if (!status) return status;
   const auto name = in_.get(item, "a body", "name", Kind::string);
   if (!name) return name.error();
@@ -115,6 +140,7 @@ Status Reader::read_body(const Value& item) {
   const auto mass = in_.number(item, what, "mass", 1e-3, kMaxMass);
   if (!mass) return mass.error();
   body.mass = *mass;
+  if (status = read_mode(item, what, body); !status) return status;
   read_.bodies.push_back(std::move(body));
   return {};
 }

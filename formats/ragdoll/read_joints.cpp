@@ -161,6 +161,20 @@ Status Reader::read_strength(const Value& item, const std::string& what, JointRu
   return {};
 }
 
+// An animated body is where the motion has it, whatever ties it elsewhere.
+Status Reader::check_animated(const Value& item, const std::string& what,
+                              const JointRule& rule) const {
+  const auto animated = [&](int body) {
+    return body >= 0 && read_.bodies[at(body)].mode == ragdoll::BodyMode::animated;
+  };
+  if (skeleton_ == nullptr || rule.kind == JointKind::distance || !animated(rule.child) ||
+      animated(rule.parent))
+    return {};
+  return in_.wrong(*item.find("child"),
+                   fmt::format("{} ties an animated body to what is not animated", what),
+                   "leave out the joint, or make its child \"powered\"");
+}
+
 Status Reader::read_joint(const Value& item) {
   Status status =
       in_.only(item, "a joint",
@@ -183,6 +197,7 @@ Status Reader::read_joint(const Value& item) {
   if (!limit) return limit.error();
   rule.soft = *limit && **limit == 1;
   status = check_keys(item, what, rule);
+  if (status) status = check_animated(item, what, rule);
   if (status) status = values_.vector(item, what, "anchor", false, rule.anchor);
   if (status && item.find("parent_anchor") != nullptr) {
     rule.other_end = Vec3::Zero();

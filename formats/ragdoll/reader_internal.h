@@ -27,11 +27,14 @@ class Reader {
   Status read_body(const json::Value& item);
   Status read_shape(const json::Value& item, const std::string& what, ragdoll::Shape& shape) const;
   Status find_joint(const json::Value& item, const std::string& what, ragdoll::Body& body);
+  Status read_mode(const json::Value& item, const std::string& what, ragdoll::Body& body) const;
   Status read_joint(const json::Value& item);
   Result<int> body_named(const json::Value& name) const;
   Status read_ends(const json::Value& item, ragdoll::JointRule& rule) const;
   Status check_keys(const json::Value& item, const std::string& what,
                     const ragdoll::JointRule& rule) const;
+  Status check_animated(const json::Value& item, const std::string& what,
+                        const ragdoll::JointRule& rule) const;
   Status read_turn(const json::Value& item, const std::string& what,
                    ragdoll::JointRule& rule) const;
   Status read_cone(const json::Value& cone, const std::string& what, ik::JointLimit& turn) const;

@@ -49,13 +49,23 @@ std::string shape_of(const Shape& shape) {
   return fmt::format("\"shape\": \"sphere\", \"radius\": {}", shortest(shape.radius));
 }
 
+// What is simulated says nothing, as in files from before there were modes.
+std::string mode_of(const Body& body) {
+  if (body.mode == ragdoll::BodyMode::simulated) return {};
+  std::string text = fmt::format(",\n     \"mode\": \"{}\"", body_mode_name(body.mode));
+  if (body.mode == ragdoll::BodyMode::powered) {
+    text += fmt::format(", \"strength\": {}", shortest(body.strength));
+  }
+  return text;
+}
+
 std::string text_of(const Body& body, const Skeleton& skeleton) {
   return fmt::format(
       "    {{\"name\": {}, \"joint\": {},\n     {}, \"mass\": {},\n     \"offset\": {}, "
-      "\"rotation\": {}}}",
+      "\"rotation\": {}{}}}",
       json::in_quotes(body.name), json::in_quotes(skeleton.names[at(body.joint)]),
       shape_of(body.shape), shortest(body.mass), list_of(body.to_joint.position),
-      list_of(body.to_joint.orientation));
+      list_of(body.to_joint.orientation), mode_of(body));
 }
 
 std::string turn_of(const ik::JointLimit& turn) {

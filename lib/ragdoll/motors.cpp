@@ -15,7 +15,7 @@ constexpr double kHoldFrequency = 6;     // radians/s at strength 1/2
 constexpr double kHoldForce = 3;         // weights at strength 1/2
 constexpr double kHoldArm = 0.5;         // metres
 constexpr double kStraightOut = 3;       // times what holds a limb straight out
-constexpr double kStrongest = 1 - 1e-6;  // of a hold that is still a spring
+constexpr double kStrongest = 0.99;  // of a hold that is still a spring
 
 // Of the bodies that a joint carries.
 struct Load {

@@ -34,7 +34,7 @@ void add_motors(const std::vector<Body>& bodies, const RoleMap& roles,
 
 // The spring that holds a powered root body: a critically damped one against the whole body's
 // inertia, of the frequency 6 s / (1 - s) radians/s for strength s, which goes from free to as
-// animated, and gives at most 3 s / (1 - s) times the body's weight (of a torque: half a metre of
+// animated (and stays at 0.99), and gives at most 3 s / (1 - s) times the body's weight (of a torque: half a metre of
 // that). Without target and support.
 Hold make_hold(const std::vector<Body>& bodies, std::span<const BodyState> states);
 

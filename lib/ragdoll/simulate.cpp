@@ -45,7 +45,7 @@ class FallMaker {
   bool step(int number);
   void measure_off();
   Pose pose() const;
-  void copy_animated(Pose& pose) const;
+  void copy_animated();
   void add_frames(double from, double to, const Pose& before, const Pose& after);
 
   const Clip& motion_;
@@ -179,13 +179,14 @@ Pose FallMaker::pose() const {
   return pose;
 }
 
-// What is animated is the motion's, not only near it.
-void FallMaker::copy_animated(Pose& pose) const {
+// What is animated is the motion's, bit for bit.
+void FallMaker::copy_animated() {
   if (!fall_.follows) return;
-  Pose motion(pose.size());
-  motion_.get_pose(std::min(next_frame_, motion_.frame_count() - 1), motion);
-  for (std::size_t j = 0; j < pose.size(); ++j) {
-    if (bodies_[at(std::max(0, carriers_[j]))].mode == BodyMode::animated) pose[j] = motion[j];
+  const int frame = std::min(next_frame_, motion_.frame_count() - 1);
+  for (std::size_t j = 0; j < carriers_.size(); ++j) {
+    if (bodies_[at(std::max(0, carriers_[j]))].mode != BodyMode::animated) continue;
+    fall_.clip.frame_positions(next_frame_)[j] = motion_.frame_positions(frame)[j];
+    fall_.clip.frame_orientations(next_frame_)[j] = motion_.frame_orientations(frame)[j];
   }
 }
 
@@ -204,8 +205,8 @@ void FallMaker::add_frames(double from, double to, const Pose& before, const Pos
       between[j].orientation = slerp(local_a[j].orientation, local_b[j].orientation, share);
     }
     local_to_world(motion_.skeleton.parents, between, between);
-    copy_animated(between);
     fall_.clip.set_pose(next_frame_, between);
+    copy_animated();
   }
 }
 

@@ -39,13 +39,14 @@ Result<Description> describe_ragdoll(const InputFile& file, ToolContext&) {
   out.json["kind"] = "ragdoll";
   double mass = 0;
   int soft = 0;
-  std::map<std::string, int> shapes, kinds;
+  std::map<std::string, int> shapes, kinds, modes;
   std::vector<std::string> lines;
   Json bodies = Json::array();
   for (const ragdoll::Body& body : read->bodies) {
     const std::string shape(shape_name(body.shape.kind));
     mass += body.mass;
     ++shapes[shape];
+    ++modes[std::string(body_mode_name(body.mode))];
     lines.push_back(fmt::format("{}: {}, {} kg", body.name, shape, readable(body.mass, 4)));
     bodies.push_back({{"name", body.name}, {"shape", shape}, {"mass", body.mass}});
   }
@@ -54,6 +55,7 @@ Result<Description> describe_ragdoll(const InputFile& file, ToolContext&) {
     soft += rule.soft ? 1 : 0;
   }
   out.add("bodies", fmt::format("{}: {}", read->bodies.size(), list_of(shapes)));
+  if (modes.size() > 1 || !modes.contains("simulated")) out.add("modes", list_of(modes));
   out.add("mass", readable(mass, 6) + " kg");
   out.add("joints", fmt::format("{}: {}", read->joints.size(),
                                 read->joints.empty() ? "none" : list_of(kinds)));

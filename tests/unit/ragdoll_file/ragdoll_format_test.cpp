@@ -121,6 +121,36 @@ TEST_F(RagdollFormat, ASavedFileGivesTheSameFall) {
   }
 }
 
+// Modes come back as they were written; files without them, which are all older ones, stay as they
+// are, byte for byte.
+TEST_F(RagdollFormat, ModesAreKept) {
+  const auto saved = rules(0.3);
+  EXPECT_EQ(write({bodies_, saved}, walk_.skeleton).find("mode"), std::string::npos);
+  std::vector<Body> bodies = bodies_;
+  bodies[0].mode = bodies[1].mode = ragdoll::BodyMode::animated;
+  bodies[2].mode = ragdoll::BodyMode::powered;
+  bodies[2].strength = 0.35;
+  const std::string text = write({bodies, saved}, walk_.skeleton);
+  const auto again = read(text, &walk_.skeleton);
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(write(*again, walk_.skeleton), text);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    EXPECT_EQ(again->bodies[b].mode, bodies[b].mode);
+    EXPECT_EQ(again->bodies[b].strength, bodies[b].strength);
+  }
+}
+
+TEST_F(RagdollFormat, WrongModesAreToldWithTheirPlace) {
+  const test::Mistake mistakes[] = {
+      {"\"mass\": 11", "\"mass\": 11, \"mode\": \"limp\"", "ragdoll-value 4:103", "powered"},
+      {"\"mass\": 11", "\"mass\": 11, \"strength\": 0.5", "ragdoll-value 4:107", "not powered"},
+      {"\"mass\": 11", "\"mass\": 11, \"mode\": \"powered\", \"strength\": 1.5",
+       "ragdoll-value 4:126", "strength"},
+      {"\"mass\": 3", "\"mass\": 3, \"mode\": \"animated\"", "ragdoll-value 7:97", "thigh"}};
+  test::expect_told(kGood, mistakes,
+                    [&](const std::string& text) { return read(text, &walk_.skeleton); });
+}
+
 // Rules are the joints themselves, with angles rounded: the first steps of the falls agree.
 TEST_F(RagdollFormat, RulesAreTheJointsThatWereMade) {
   const auto pose = ragdoll::pose_at(walk_, 0.7);
