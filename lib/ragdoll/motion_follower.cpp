@@ -17,9 +17,9 @@ namespace {
 constexpr double kBeyond = 5 * kRadiansPerDegree;
 // The span of the differences that accelerations are from, seconds: captures tremble.
 constexpr double kSmooth = 0.05;
-// The share of the body's weight that a hold carries. The legs carry the rest, so that the feet
-// find friction.
-constexpr double kCarried = 0.8;
+// The share of the body's weight that a hold carries. The legs carry the rest; with more, feet that
+// a capture has above the ground, or in it, would brake the walk.
+constexpr double kCarried = 0.95;
 
 }  // namespace
 

@@ -24,6 +24,10 @@ struct Load {
   double arm = 0;      // metres from the anchor to the centre of mass
 };
 
+bool is_foot(Role role) {
+  return role == Role::left_foot || role == Role::right_foot;
+}
+
 bool is_below(const std::vector<Body>& bodies, int body, int top) {
   while (body > top) body = bodies[at(body)].parent;
   return body == top;
@@ -98,7 +102,10 @@ void add_motors(const std::vector<Body>& bodies, const RoleMap& roles,
       continue;
     }
     const Vec3 anchor = states[at(joint.child)].to_world * joint.in_child.position;
-    const Load load = load_of(bodies, states, joint.child, anchor);
+    Load load = load_of(bodies, states, joint.child, anchor);
+    if (is_foot(roles.roles[at(body.joint)]) && body.parent > 0) {
+      load.inertia = load_of(bodies, states, body.parent, anchor).inertia;
+    }
     const double frequency = kMotorFrequency * body.strength;
     const double torque = adult_torque(roles.roles[at(body.joint)]);
     joint.motor = body.strength *

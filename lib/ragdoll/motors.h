@@ -27,7 +27,8 @@ inline constexpr double kMotorFrequency = 60;
 double adult_torque(Role role);
 
 // Gives the joints of powered bodies their motors (Joint::motor ...), critically damped against the
-// inertia below the joint in `states`. A joint at a role without a torque gets three times what
+// inertia below the joint in `states`; that of a foot against shank and foot, as the shank swings
+// over it while it stands. A joint at a role without a torque gets three times what
 // carries its bodies held straight out. Joints of other bodies stay as they are.
 void add_motors(const std::vector<Body>& bodies, const RoleMap& roles,
                 std::span<const BodyState> states, std::vector<Joint>& joints);

@@ -270,7 +270,8 @@ Status FallMaker::run() {
     for (const Transform& joint : after) {
       if (!joint.position.allFinite() || !joint.orientation.coeffs().allFinite()) {
         return Error("ragdoll-value", "the simulation left the finite numbers",
-                     "weaker pushes, or shapes that do not overlap");
+                     "weaker pushes, shapes that do not overlap, or a begin where the motion does "
+                     "not jump (after a rest frame)");
       }
     }
     const double next = options_.at + (number + 1) * World::kStep;

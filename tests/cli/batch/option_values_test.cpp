@@ -75,6 +75,12 @@ const std::vector<Value>& values() {
       {"krok-ragdoll", {"--at", "-1s"}, "usage"},
       {"krok-ragdoll", {"--at", "1s", "--push", "Chest=1,2"}, "usage"},
       {"krok-ragdoll", {"--at", "1s", "--mass", "0kg"}, "usage"},
+      {"krok-ragdoll", {"--powered", "1.5"}, "usage"},
+      {"krok-ragdoll", {"--hold", "-0.1"}, "usage"},
+      {"krok-ragdoll", {"--simulated", "left_upper_arm", "--hold", "0.5"}, "usage"},
+      {"krok-ragdoll", {"--powered", "1", "--push-every", "0s"}, "usage"},
+      {"krok-ragdoll", {"--seed", "-1"}, "usage"},
+      {"krok-ragdoll", {"--powered", "1", "--until", "2s", "--duration", "2s"}, "usage"},
       {"krok-ragdoll", {"--at", "1s", "--pushes", "x.csv"}, "usage"},
       {"krok-ragdoll", {"--bodies", "x.ragdoll.json", "--mass", "80kg"}, "usage"},
       {"krok-ragdoll", {"--save-bodies", "x.txt"}, "usage"}};
