@@ -19,8 +19,9 @@ namespace {
 using krok::ragdoll::Body;
 using krok::ragdoll::BodyMode;
 
-constexpr double kHold = 0.5;     // of powered characters
-constexpr double kPushSpeed = 1;  // m/s that a push gives the whole body
+constexpr double kFall = 3, kLongest = 600;  // seconds
+constexpr double kHold = 0.5;                // of powered characters
+constexpr double kPushSpeed = 1;             // m/s that a push gives the whole body
 constexpr double kAside = 60 * kRadiansPerDegree;
 
 Error usage_of(std::string message, std::string hint = {}) {
@@ -107,8 +108,10 @@ Result<FollowOptions> understand_follow(const FollowArguments& a) {
   return options;
 }
 
-Status set_modes(const FollowOptions& options, const Skeleton& skeleton, const RoleMap& roles,
-                 std::vector<Body>& bodies) {
+namespace {
+
+Status choose_modes(const FollowOptions& options, const Skeleton& skeleton, const RoleMap& roles,
+                    std::vector<Body>& bodies) {
   if (!options.any()) return {};
   const double strength = options.powered.value_or(0);
   const BodyMode of_rest = strength > 0 ? BodyMode::powered : BodyMode::simulated;
@@ -147,11 +150,7 @@ Status set_modes(const FollowOptions& options, const Skeleton& skeleton, const R
   return {};
 }
 
-bool follows_motion(const std::vector<Body>& bodies) {
-  return std::ranges::any_of(bodies,
-                             [](const Body& body) { return body.mode != BodyMode::simulated; });
-}
-
+// The pushes from `begin` to before `end`, seconds of the motion.
 std::vector<krok::ragdoll::Push> regular_pushes(const FollowOptions& options, const Clip& motion,
                                                 const RoleMap& roles,
                                                 const std::vector<Body>& bodies, double begin,
@@ -174,6 +173,49 @@ std::vector<krok::ragdoll::Push> regular_pushes(const FollowOptions& options, co
     pushes.push_back({std::max(0, body), kPushSpeed * mass * way, time});
   }
   return pushes;
+}
+
+}  // namespace
+
+bool follows_motion(const std::vector<Body>& bodies) {
+  return std::ranges::any_of(bodies,
+                             [](const Body& body) { return body.mode != BodyMode::simulated; });
+}
+
+Status set_modes(const FollowOptions& options, bool gets_up, const Skeleton& skeleton,
+                 const RoleMap& roles, std::vector<Body>& bodies) {
+  if (Status status = choose_modes(options, skeleton, roles, bodies); !status) return status;
+  const bool follows = follows_motion(bodies);
+  if (!follows && options.until) {
+    return usage_of("--until: nothing follows the motion that is to go on",
+                    "give --powered, --hold or --simulated, or bodies with modes");
+  }
+  if (follows && gets_up) {
+    return usage_of("--get-up needs a fall that comes to rest; the bodies follow the motion");
+  }
+  return {};
+}
+
+Status set_end(const FollowOptions& options, std::optional<double> duration, const Clip& motion,
+               const RoleMap& roles, const std::vector<Body>& bodies,
+               krok::ragdoll::FallOptions& fall) {
+  const double rest = std::clamp(motion.duration() - fall.at, 0.0, kLongest);
+  fall.duration = duration.value_or(follows_motion(bodies) ? rest : kFall);
+  if (options.until) {
+    const double until = options.until->seconds(motion.rate);
+    if (until <= fall.at || until > motion.duration() + 1e-9) {
+      return Error("ragdoll-time",
+                   fmt::format("--until {} s is not between the begin, {} s, and the motion's end, "
+                               "{} s",
+                               until, fall.at, motion.duration()));
+    }
+    fall.duration = until - fall.at;
+    fall.go_on = true;
+  }
+  const auto pushes =
+      regular_pushes(options, motion, roles, bodies, fall.at, fall.at + fall.duration);
+  fall.pushes.insert(fall.pushes.end(), pushes.begin(), pushes.end());
+  return {};
 }
 
 }  // namespace krok::cli::ragdoll

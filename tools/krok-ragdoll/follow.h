@@ -37,18 +37,19 @@ void declare_follow(CommandOptions& command, FollowArguments& arguments);
 Result<FollowOptions> understand_follow(const FollowArguments& arguments);
 
 // Sets the modes of bodies as the options say; without, they keep those of the file. Code
-// ragdoll-joint if the skeleton has no joint of a name.
-Status set_modes(const FollowOptions& options, const Skeleton& skeleton, const RoleMap& roles,
-                 std::vector<krok::ragdoll::Body>& bodies);
+// ragdoll-joint if the skeleton has no joint of a name, usage if what is asked for (`gets_up`:
+// --get-up) does not go with bodies that follow the motion, or with such that do not.
+Status set_modes(const FollowOptions& options, bool gets_up, const Skeleton& skeleton,
+                 const RoleMap& roles, std::vector<krok::ragdoll::Body>& bodies);
 
 bool follows_motion(const std::vector<krok::ragdoll::Body>& bodies);
 
-// The pushes of --push-every at the chest, from `begin` to before `end` (seconds of the motion):
-// impulses that give the whole body 1 m/s, alternately to opposite sides of the character, turned
-// by up to 60 degrees by chance. The same seed gives the same pushes.
-std::vector<krok::ragdoll::Push> regular_pushes(const FollowOptions& options, const Clip& motion,
-                                                const RoleMap& roles,
-                                                const std::vector<krok::ragdoll::Body>& bodies,
-                                                double begin, double end);
+// Sets duration and go_on of a fall that begins at `fall.at`, and adds the pushes of --push-every:
+// at the chest, impulses that give the whole body 1 m/s, alternately to opposite sides of the
+// character, turned by up to 60 degrees by chance. The same seed gives the same pushes. `duration`
+// is as given. Code ragdoll-time if --until is not within the motion.
+Status set_end(const FollowOptions& options, std::optional<double> duration, const Clip& motion,
+               const RoleMap& roles, const std::vector<krok::ragdoll::Body>& bodies,
+               krok::ragdoll::FallOptions& fall);
 
 }  // namespace krok::cli::ragdoll

@@ -32,7 +32,6 @@ namespace krok::cli::ragdoll {
 namespace {
 
 constexpr double kMinCovered = 0.9;
-constexpr double kLongest = 600;  // seconds
 
 // A fall that is to be made, and where it is written.
 struct Plan {
@@ -53,7 +52,6 @@ class Run {
   Status read_bodies();
   void check_cover(const Model& model);
   Status set_modes();
-  Status set_end(Plan& plan) const;
   Status read_given_bodies();
   Status read_rises();
   Status plan_falls();
@@ -149,42 +147,10 @@ void Run::check_cover(const Model& model) {
 }
 
 Status Run::set_modes() {
-  Status status =
-      ragdoll::set_modes(options_.follow, subject_.clip.skeleton, subject_.roles, subject_.bodies);
-  if (!status) return Error(status.error()).in_file(given().input);
-  const bool follows = follows_motion(subject_.bodies);
-  if (!follows && options_.follow.until) {
-    return Error("usage", "--until: nothing follows the motion that is to go on",
-                 "give --powered, --hold or --simulated, or bodies with modes");
-  }
-  if (follows && !given().rises.empty()) {
-    return Error("usage", "--get-up needs a fall that comes to rest; the bodies follow the motion");
-  }
-  return {};
-}
-
-// How long the simulation takes, and what follows it.
-Status Run::set_end(Plan& plan) const {
-  const Clip& clip = subject_.clip;
-  const bool follows = follows_motion(subject_.bodies);
-  plan.fall.duration = options_.duration.value_or(
-      follows ? std::clamp(clip.duration() - plan.fall.at, 0.0, kLongest) : 3.0);
-  if (options_.follow.until) {
-    const double until = options_.follow.until->seconds(clip.rate);
-    if (until <= plan.fall.at || until > clip.duration() + 1e-9) {
-      return Error("ragdoll-time",
-                   fmt::format("--until {} is not between the begin, {} s, and the motion's end, "
-                               "{} s",
-                               shown(given().follow.until), plan.fall.at, clip.duration()))
-          .in_file(given().input);
-    }
-    plan.fall.duration = until - plan.fall.at;
-    plan.fall.go_on = true;
-  }
-  const auto pushes = regular_pushes(options_.follow, clip, subject_.roles, subject_.bodies,
-                                     plan.fall.at, plan.fall.at + plan.fall.duration);
-  plan.fall.pushes.insert(plan.fall.pushes.end(), pushes.begin(), pushes.end());
-  return {};
+  Status status = ragdoll::set_modes(options_.follow, !given().rises.empty(),
+                                     subject_.clip.skeleton, subject_.roles, subject_.bodies);
+  if (status || status.error().code == "usage") return status;
+  return Error(status.error()).in_file(given().input);
 }
 
 Status Run::read_rises() {
@@ -213,7 +179,9 @@ Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& pl
                  fmt::format("{} is after the motion's end, {} s", shown_time, clip.duration()))
         .in_file(given().input);
   }
-  if (Status status = set_end(plan); !status) return status;
+  const Status status =
+      set_end(options_.follow, options_.duration, clip, subject_.roles, subject_.bodies, plan.fall);
+  if (!status) return Error(status.error()).in_file(given().input);
   plan.fall.joints.soft = given().soft;
   plan.fall.rules = given_rules_;
   if (given().bodies.empty()) {

@@ -134,6 +134,44 @@ void run_falls(const std::vector<Walker>& walkers, int count) {
   std::printf("  hash %s\n", hex(hash.digest()).c_str());
 }
 
+// Walks that powered bodies of an adult's strength follow to their end, the root animated, and held
+// while someone pushes.
+void run_powered(const std::vector<Walker>& walkers) {
+  const auto run = [&](double strength, double hold, double push) {
+    double mean = 0, largest = 0, depth = 0, time = 0, simulated = 0;
+    for (const Walker& walker : walkers) {
+      auto bodies = walker.bodies;
+      for (Body& body : bodies) {
+        body.mode = BodyMode::powered;
+        body.strength = strength;
+      }
+      bodies[0].mode = hold < 1 ? BodyMode::powered : BodyMode::animated;
+      bodies[0].strength = hold;
+      FallOptions options;
+      options.duration = walker.clip.duration();
+      options.surroundings.level = true;
+      if (push > 0) options.pushes = {{2, Vec3(push, 0, 0), 1}};
+      const double begin = seconds();
+      const auto fall = simulate_fall(walker.clip, walker.roles, bodies, walker.limits, options);
+      time += seconds() - begin;
+      if (!fall) continue;
+      mean += fall->mean_off * fall->mean_off / static_cast<double>(walkers.size());
+      largest = std::max(largest, fall->largest_off);
+      depth = std::max(depth, fall->largest.penetration);
+      simulated += fall->simulated;
+    }
+    std::printf(
+        "powered %.1f, root held %.1f, push %.0f Ns: %.2f degrees RMS off the walks, at most %.1f, "
+        "ground by %.2f mm, %.1f x real time\n",
+        strength, hold, push, std::sqrt(mean) / kRadiansPerDegree, largest / kRadiansPerDegree,
+        depth * 1e3, simulated / time);
+  };
+  run(1, 1, 0);
+  run(1, 0.5, 0);
+  run(0.6, 0.5, 0);
+  run(0.6, 0.5, 75);
+}
+
 // The same start in Bullet's own world. It does not bring the bodies to rest, so all of it counts.
 void run_bullet(const Walker& walker, int count) {
   std::mt19937 random(7);
@@ -182,6 +220,7 @@ int main(int argc, char** argv) {
   const int falls = argc > 1 ? std::max(1, std::atoi(argv[1])) : 20;
   const std::vector<Walker> walkers = make_walkers();
   run_falls(walkers, falls);
+  run_powered(walkers);
   run_bullet(walkers[0], std::min(falls, 10));
   return 0;
 }

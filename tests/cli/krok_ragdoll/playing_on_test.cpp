@@ -132,7 +132,7 @@ TEST_F(PlayingOn, WrongOptionsAreTold) {
   refused({"--simulated", "Wing"}, "ragdoll-joint", "Wing");
   refused({"--simulated", "Head_end"}, "ragdoll-joint", "no body");
   refused({"--until", "2s"}, "usage", "--until");
-  refused({"--powered", "1", "--until", "90s"}, "ragdoll-time", "90s");
+  refused({"--powered", "1", "--until", "90s"}, "ragdoll-time", "--until 90 s");
   refused({"--powered", "1", "--until", "2s", "--duration", "1s"}, "usage", "--duration");
   refused({"--powered", "1", "--get-up", "walk.anim"}, "usage", "--get-up");
   refused({"--powered", "1", "--push-every", "0s"}, "usage", "--push-every");
