@@ -11,11 +11,12 @@ namespace krok::ragdoll {
 namespace {
 
 constexpr double kGravity = 9.81;
-constexpr double kHoldFrequency = 6;     // radians/s at strength 1/2
-constexpr double kHoldForce = 3;         // weights at strength 1/2
-constexpr double kHoldArm = 0.5;         // metres
-constexpr double kStraightOut = 3;       // times what holds a limb straight out
-constexpr double kStrongest = 0.99;  // of a hold that is still a spring
+constexpr double kHoldFrequency = 6;  // radians/s at strength 1/2
+constexpr double kUpright = 2;        // times that frequency, for turning
+constexpr double kHoldForce = 3;      // weights at strength 1/2
+constexpr double kHoldArm = 0.5;      // metres
+constexpr double kStraightOut = 3;    // times what holds a limb straight out
+constexpr double kStrongest = 0.99;   // of a hold that is still a spring
 
 // Of the bodies that a joint carries.
 struct Load {
@@ -124,8 +125,8 @@ Hold make_hold(const std::vector<Body>& bodies, std::span<const BodyState> state
   hold.stiffness = load.mass * frequency * frequency;
   hold.damping = 2 * load.mass * frequency;
   hold.max_force = kHoldForce * ratio * load.mass * kGravity;
-  hold.turn_stiffness = load.inertia * frequency * frequency;
-  hold.turn_damping = 2 * load.inertia * frequency;
+  hold.turn_stiffness = load.inertia * kUpright * frequency * kUpright * frequency;
+  hold.turn_damping = 2 * load.inertia * kUpright * frequency;
   hold.max_torque = kHoldArm * hold.max_force;
   return hold;
 }

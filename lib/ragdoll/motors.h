@@ -33,10 +33,11 @@ double adult_torque(Role role);
 void add_motors(const std::vector<Body>& bodies, const RoleMap& roles,
                 std::span<const BodyState> states, std::vector<Joint>& joints);
 
-// The spring that holds a powered root body: a critically damped one against the whole body's
-// inertia, of the frequency 6 s / (1 - s) radians/s for strength s, which goes from free to as
-// animated (and stays at 0.99), and gives at most 3 s / (1 - s) times the body's weight (of a torque: half a metre of
-// that). Without target and support.
+// The spring that holds a powered root body: critically damped against the whole body's mass and
+// inertia, with a frequency of 6 s / (1 - s) radians/s for strength s, which goes from free to as
+// animated (and stays at 0.99), and of twice that for turning, so that feet that drag do not tip
+// the body over. It gives at most 3 s / (1 - s) times the body's weight (of a torque: half a metre
+// of that). Without target and support.
 Hold make_hold(const std::vector<Body>& bodies, std::span<const BodyState> states);
 
 }  // namespace krok::ragdoll
