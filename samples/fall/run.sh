@@ -36,4 +36,12 @@ say "5. A skinned walker, images and a page"
 "$bin/krok-skin" -q walker.model fall.anim -o fall.glb --as rig
 "$bin/krok-plot" -q fall.anim --sheet fall.png --moments 16 --sides right --size 200
 "$bin/krok-view" -q fall.anim -o fall.html
-echo "  fall.glb, fall.html, fall.png"
+
+say "6. Hard and soft ranges of motion"
+for limits in hard soft; do
+  options=(--at 1.2s --push "Spine2=40Ns,0,-160Ns")
+  [ $limits = soft ] && options+=(--soft)
+  "$bin/krok-ragdoll" -q walk.anim "${options[@]}" -o $limits.anim
+done
+"$bin/krok-plot" -q hard.anim soft.anim --show angles --from 1.1s --to 3s -o limits.svg
+echo "  fall.glb, fall.html, fall.png, limits.svg"

@@ -26,7 +26,7 @@ TEST_F(FallStory, HoldsWhatItsReadmeTells) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const fs::path out = folder_ / "a folder";
   for (const char* name : {"up.anim", "walker.ragdoll.json", "fall.anim", "fall.glb", "fall.html",
-                           "fall.png", "falls/left.anim", "falls/foot.anim"}) {
+                           "fall.png", "limits.svg", "falls/left.anim", "falls/foot.anim"}) {
     EXPECT_TRUE(fs::exists(out / name)) << name;
   }
   const json up = json::parse(get(out / "up.json"));

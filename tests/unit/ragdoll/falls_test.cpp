@@ -170,6 +170,37 @@ TEST(RagdollBodies, AHumanHasSixteenBodiesOfItsMassSymmetrically) {
   }
 }
 
+// What the chart in samples/fall shows: hard ranges stop the feet that are bent over on landing,
+// soft ones give way by some degrees and push back. Without it --soft would do nothing, or let
+// joints turn as they like.
+TEST(RagdollFalls, SoftRangesGiveWayWhereHardOnesStop) {
+  const Walker walker = make_walker();
+  const auto largest_excess = [&](bool soft) {
+    FallOptions options = on_the_ground(1.2, 3);
+    options.joints.soft = soft;
+    Push push;
+    push.impulse = Vec3(40, 0, -160);
+    push.time = 1.2;
+    options.pushes = {push};
+    const Fall fall = fall_of(walker, options);
+    double largest = 0;
+    std::vector<Transform> pose(walker.clip.skeleton.names.size()), local(pose.size());
+    for (int f = fall.first_frame; f < fall.clip.frame_count(); ++f) {
+      fall.clip.get_pose(f, pose);
+      world_to_local(walker.clip.skeleton.parents, pose, local);
+      for (const Role role : {Role::left_foot, Role::right_foot}) {
+        const auto foot = at(walker.roles.joint(role));
+        largest = std::max(largest, ik::excess(walker.limits[foot], local[foot].orientation));
+      }
+    }
+    return largest / kRadiansPerDegree;
+  };
+  EXPECT_LT(largest_excess(false), 1);
+  const double soft = largest_excess(true);
+  EXPECT_GT(soft, 2);
+  EXPECT_LT(soft, 30);
+}
+
 // A file exporter's choice of axes must not change the body.
 TEST(RagdollBodies, AreTheSameForALyingReferencePose) {
   Skeleton skeleton = test::human_skeleton();
