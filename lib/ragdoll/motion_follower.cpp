@@ -15,6 +15,8 @@ namespace {
 
 // A range that includes a motion ends this far beyond it, so that following it meets no limit.
 constexpr double kBeyond = 5 * kRadiansPerDegree;
+// Swings near half a turn, where swing and twist jump: a motion that comes there has no limits.
+constexpr double kNearOpposite = 150 * kRadiansPerDegree;
 // The span of the differences that accelerations are from, seconds: captures tremble.
 constexpr double kSmooth = 0.05;
 // The share of the body's weight that a hold carries. The legs carry the rest; with more, feet that
@@ -71,6 +73,10 @@ void MotionFollower::include_motion(Joint& joint, std::span<const Quat> turns) c
   // First a half axis where there is none, so that the ellipse need not grow in all directions.
   for (const Quat& now : turns) {
     const ik::LimitAngles angles = ik::measure(turn, now);
+    if (std::hypot(angles.swing[0], angles.swing[1]) > kNearOpposite) {
+      turn = {};
+      return;
+    }
     for (std::size_t i = 0; i < 2; ++i) {
       turn.min_swing[i] = std::max(-kPi, std::min(turn.min_swing[i], angles.swing[i] - kBeyond));
       turn.max_swing[i] = std::min(kPi, std::max(turn.max_swing[i], angles.swing[i] + kBeyond));

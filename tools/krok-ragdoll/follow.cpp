@@ -19,9 +19,9 @@ namespace {
 using krok::ragdoll::Body;
 using krok::ragdoll::BodyMode;
 
-constexpr double kFall = 3, kLongest = 600;  // seconds
-constexpr double kHold = 0.5;                // of powered characters
-constexpr double kPushSpeed = 1;             // m/s that a push gives the whole body
+constexpr double kFall = 3;       // seconds
+constexpr double kHold = 0.5;     // of powered characters
+constexpr double kPushSpeed = 1;  // m/s that a push gives the whole body
 constexpr double kAside = 60 * kRadiansPerDegree;
 
 Error usage_of(std::string message, std::string hint = {}) {
@@ -199,7 +199,7 @@ Status set_modes(const FollowOptions& options, bool gets_up, const Skeleton& ske
 Status set_end(const FollowOptions& options, std::optional<double> duration, const Clip& motion,
                const RoleMap& roles, const std::vector<Body>& bodies,
                krok::ragdoll::FallOptions& fall) {
-  const double rest = std::clamp(motion.duration() - fall.at, 0.0, kLongest);
+  const double rest = std::max(0.0, motion.duration() - fall.at);
   fall.duration = duration.value_or(follows_motion(bodies) ? rest : kFall);
   if (options.until) {
     const double until = options.until->seconds(motion.rate);

@@ -214,6 +214,26 @@ TEST(RagdollModes, AHeldBodySwingsBackWithoutSwingingOver) {
   }
 }
 
+// Turned, it comes back as w t exp(-2 w t): twice as fast.
+TEST(RagdollModes, AHeldBodyTurnsBackTwiceAsFast) {
+  std::vector<Body> bodies{part("held", 20, BodyMode::powered)};
+  bodies[0].strength = 0.5;
+  std::vector<BodyState> states(1);
+  states[0].spin = Vec3(0.5, 0, 0);
+  Hold hold = make_hold(bodies, states);
+  WorldOptions options;
+  options.gravity = Vec3::Zero();
+  World world(options, Surroundings{});
+  ASSERT_TRUE(world.add(bodies, states, {}).ok());
+  world.hold(0, hold);
+  for (int step = 1; step <= 240; ++step) {
+    world.step();
+    const double t = step * World::kStep;
+    const double turned = rotation_vector(world.state(0).to_world.orientation).x();
+    ASSERT_NEAR(turned, 0.5 * t * std::exp(-12 * t), 0.06 * 0.5 / (12 * std::exp(1))) << t;
+  }
+}
+
 // Its force is limited: far away, it accelerates with 3 s / (1 - s) g and no more.
 TEST(RagdollModes, AHoldPullsWithItsLargestForceAtMost) {
   std::vector<Body> bodies{part("held", 20, BodyMode::powered)};
