@@ -112,6 +112,20 @@ Result<PushAt> parse_push(const std::string& text) {
   return push;
 }
 
+Status understand_playing_on(const Arguments& a, Options& options) {
+  auto follow = understand_follow(a.follow);
+  if (!follow) return follow.error();
+  options.follow = std::move(*follow);
+  if (options.follow.until && options.duration) {
+    return usage("--duration and --until exclude each other");
+  }
+  if (options.follow.any() && !a.rises.empty()) {
+    return usage("--get-up needs a fall that comes to rest",
+                 "leave out --powered, --hold and --simulated");
+  }
+  return {};
+}
+
 }  // namespace
 
 void declare(CommandOptions& command, Arguments& arguments) {
@@ -174,16 +188,7 @@ Result<Options> understand(const Arguments& a) {
     }
     options.duration = duration->value;
   }
-  auto follow = understand_follow(a.follow);
-  if (!follow) return follow.error();
-  options.follow = std::move(*follow);
-  if (options.follow.until && options.duration) {
-    return usage("--duration and --until exclude each other");
-  }
-  if (options.follow.any() && !a.rises.empty()) {
-    return usage("--get-up needs a fall that comes to rest",
-                 "leave out --powered, --hold and --simulated");
-  }
+  if (Status status = understand_playing_on(a, options); !status) return status.error();
   const auto mass = number_of(a.mass, "kg");
   if (!mass || !(*mass >= 1 && *mass <= 1000)) {
     return usage(fmt::format("--mass {} is not a mass from 1 to 1000 kg", shown(a.mass)));
