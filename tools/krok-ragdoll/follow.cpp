@@ -61,7 +61,7 @@ void declare_follow(CommandOptions& command, FollowArguments& a) {
   command
       .add_option("--hold STRENGTH", a.hold,
                   "Hold the root body to the motion from outside, as if by hand: 0 free, 1 as "
-                  "animated; 0.5 with --powered, which keeps a walker on his feet")
+                  "animated; 0.5 with --powered, which keeps walkers on their feet")
       .default_str("0");
   command
       .add_option("--simulated JOINT", a.simulated,
