@@ -127,15 +127,9 @@ Status check(const GestureOptions& options) {
 
 Result<Clip> make_gesture(const GestureOptions& options) {
   if (Status status = check(options); !status) return status.error();
-  WalkOptions standing;
-  standing.stature = options.stature;
-  standing.steps = 1;
-  standing.from_standing = true;
-  const auto walk = make_walk(standing);
-  if (!walk) return walk.error();
-  const Actor& actor = walk->actor;
-  std::vector<Transform> stance(actor.skeleton.names.size());
-  walk->clip.get_pose(0, stance);
+  const auto standing = make_standing_actor(options.stature);
+  if (!standing) return standing.error();
+  const auto& [actor, stance] = *standing;
 
   Clip clip;
   clip.skeleton = actor.skeleton;

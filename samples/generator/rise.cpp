@@ -251,18 +251,12 @@ Status check(const RiseOptions& options) {
 
 Result<Clip> make_rise(const RiseOptions& options) {
   if (Status status = check(options); !status) return status.error();
-  WalkOptions standing;
-  standing.stature = options.stature;
-  standing.steps = 1;
-  standing.from_standing = true;
-  const auto walk = make_walk(standing);
-  if (!walk) return walk.error();
-  const Actor& actor = walk->actor;
+  const auto standing = make_standing_actor(options.stature);
+  if (!standing) return standing.error();
+  const auto& [actor, stance] = *standing;
   const double scale = options.stature / kStature;
-  const std::span<const RiseKey> keys = rise_keys(options.from);
   // From where it lies to where it stands: the stance is where the walk begins.
-  std::vector<Transform> stance(actor.skeleton.names.size());
-  walk->clip.get_pose(0, stance);
+  const std::span<const RiseKey> keys = rise_keys(options.from);
   const LegJoints& right = actor.legs[1];
   const Vec3 ankle = scale * keys.back().feet[1].place - actor.ball;
   const Vec3 there(0, 0, stance[at(right.foot)].position.z() - ankle.z());

@@ -86,4 +86,16 @@ Result<Walk> make_walk(const WalkOptions& options) {
   return walk;
 }
 
+Result<StandingActor> make_standing_actor(double stature) {
+  WalkOptions options;
+  options.stature = stature;
+  options.steps = 1;
+  options.from_standing = true;
+  auto walk = make_walk(options);
+  if (!walk) return walk.error();
+  std::vector<Transform> pose(walk->actor.skeleton.names.size());
+  walk->clip.get_pose(0, pose);
+  return StandingActor{std::move(walk->actor), std::move(pose)};
+}
+
 }  // namespace krok::samples

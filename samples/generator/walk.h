@@ -37,4 +37,13 @@ struct Walk {
 // Codes: those of check(WalkOptions), and walk-too-long for more than a million frames.
 Result<Walk> make_walk(const WalkOptions& options);
 
+// An actor in the pose with which a walk from standing begins.
+struct StandingActor {
+  Actor actor;
+  std::vector<Transform> pose;  // joint_to_world
+};
+
+// Fails as make_walk() for a stature out of its range.
+Result<StandingActor> make_standing_actor(double stature);
+
 }  // namespace krok::samples

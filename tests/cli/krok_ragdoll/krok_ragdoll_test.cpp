@@ -19,25 +19,15 @@ using testing::HasSubstr;
 
 class KrokRagdoll : public MotionTest {
  protected:
-  void SetUp() override {
-    samples::WalkOptions options;
-    options.steps = 4;
-    options.rate = 60;
-    walk_ = samples::make_walk(options)->clip;
-    write("walk.anim", walk_);
-  }
+  void SetUp() override { walk_ = write_walk(4); }
 
-  test::ToolRun fall(std::vector<std::string> arguments) const {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    return test::run_tool("krok-ragdoll", std::move(arguments), options);
+  ToolRun fall(std::vector<std::string> arguments) const {
+    return run_here("krok-ragdoll", std::move(arguments));
   }
 
   json report(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(), {"--json", "-o", "out.anim"});
-    const auto run = fall(std::move(arguments));
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    return json::parse(run.out);
+    arguments.insert(arguments.end(), {"-o", "out.anim"});
+    return report_here("krok-ragdoll", std::move(arguments));
   }
 
   float hips_height(const Clip& clip, int frame) const {

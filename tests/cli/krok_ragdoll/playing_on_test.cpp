@@ -17,26 +17,16 @@ using testing::HasSubstr;
 
 class PlayingOn : public MotionTest {
  protected:
-  void SetUp() override {
-    samples::WalkOptions options;
-    options.steps = 10;
-    options.rate = 60;
-    walk_ = samples::make_walk(options)->clip;
-    write("walk.anim", walk_);
-  }
+  void SetUp() override { walk_ = write_walk(10); }
 
   ToolRun call(std::vector<std::string> arguments) const {
-    ToolOptions options;
-    options.folder = folder_.string();
-    return run_tool("krok-ragdoll", std::move(arguments), options);
+    return run_here("krok-ragdoll", std::move(arguments));
   }
 
   json report(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), "walk.anim");
-    arguments.insert(arguments.end(), {"--json", "-o", "out.anim"});
-    const auto run = call(std::move(arguments));
-    EXPECT_EQ(run.exit_code, 0) << run.err;
-    return json::parse(run.out);
+    arguments.insert(arguments.end(), {"-o", "out.anim"});
+    return report_here("krok-ragdoll", std::move(arguments));
   }
 
   static Vec3 place(const Clip& clip, const std::string& joint, int frame) {

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/fixture.h"
+#include "cli/motion_fixture.h"
 #include "core/file.h"
 #include "core/index.h"
 #include "formats/anim/anim.h"
@@ -18,7 +18,7 @@
 namespace krok::test {
 namespace {
 
-class KrokRetarget : public test::CliTest {
+class KrokRetarget : public MotionTest {
  protected:
   void SetUp() override {
     samples::WalkOptions options;
@@ -28,12 +28,7 @@ class KrokRetarget : public test::CliTest {
     write("walk.anim", walk_);
   }
 
-  void write(const std::string& name, const Clip& clip) const {
-    auto file = OutputFile::create(path(name));
-    ASSERT_TRUE(file.ok());
-    ASSERT_TRUE(anim::write(clip, {}, *file).ok());
-    ASSERT_TRUE(file->commit().ok());
-  }
+  using MotionTest::write;
   void write(const std::string& name, const Model& model) const {
     auto file = OutputFile::create(path(name));
     ASSERT_TRUE(file.ok());
@@ -41,21 +36,11 @@ class KrokRetarget : public test::CliTest {
     ASSERT_TRUE(file->commit().ok());
   }
 
-  Clip read(const std::string& name) const {
-    const auto file = InputFile::open(path(name));
-    EXPECT_TRUE(file.ok()) << name;
-    auto clip = anim::read(file->bytes());
-    EXPECT_TRUE(clip.ok()) << name;
-    return std::move(*clip);
+  ToolRun retarget(std::vector<std::string> arguments) const {
+    return run_here("krok-retarget", std::move(arguments));
   }
 
-  test::ToolRun retarget(std::vector<std::string> arguments) const {
-    test::ToolOptions options;
-    options.folder = folder_.string();
-    return test::run_tool("krok-retarget", std::move(arguments), options);
-  }
-
-  // The figure of the walk under names that tell nothing, with so many things on its belt that its
+  // The actor of the walk under names that tell nothing, with so many things on its belt that its
   // shape does not tell either.
   static Skeleton nameless(const Skeleton& from) {
     Skeleton skeleton = from;
