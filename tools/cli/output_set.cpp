@@ -12,13 +12,16 @@ namespace krok::cli {
 
 namespace {
 
-Result<OutputFile> written(const std::string& path, OutputFile::Options options,
-                           const std::function<Status(OutputFile&)>& write) {
+// Nothing if write() returns false.
+Result<std::optional<OutputFile>> written(const std::string& path, OutputFile::Options options,
+                                          const std::function<Result<bool>(OutputFile&)>& write) {
   auto file = OutputFile::create(path, options);
   if (!file) return file.error();
-  if (Status status = write(*file); !status) return std::move(status.error()).in_file(path);
+  auto wanted = write(*file);
+  if (!wanted) return std::move(wanted).error().in_file(path);
+  if (!*wanted) return std::optional<OutputFile>();
   if (Status status = file->seal(); !status) return status.error();
-  return file;
+  return std::optional<OutputFile>(std::move(*file));
 }
 
 }  // namespace
@@ -30,12 +33,20 @@ Status OutputSet::add(const std::string& path, const std::function<Status(Output
 
 Status OutputSet::add_all(const std::vector<std::string>& paths, int jobs,
                           const std::function<Status(std::size_t, OutputFile&)>& write) {
+  return add_some(paths, jobs, [&](std::size_t i, OutputFile& file) -> Result<bool> {
+    if (Status status = write(i, file); !status) return std::move(status).error();
+    return true;
+  });
+}
+
+Status OutputSet::add_some(const std::vector<std::string>& paths, int jobs,
+                           const std::function<Result<bool>(std::size_t, OutputFile&)>& write) {
   for (const std::string& path : paths) {
     if (Status status = context_.check_output(path); !status) return status;
     const std::string place = place_of(path);
     if (!place.empty() && !places_.insert(place).second) return twice_error(path);
   }
-  std::vector<std::optional<Result<OutputFile>>> made(paths.size());
+  std::vector<std::optional<Result<std::optional<OutputFile>>>> made(paths.size());
   std::atomic<bool> failed = false;
   parallel_for(paths.size(), 1, jobs, [&](std::size_t i, std::size_t) {
     if (failed) return;
@@ -48,7 +59,8 @@ Status OutputSet::add_all(const std::vector<std::string>& paths, int jobs,
     if (made[i] && !*made[i]) return made[i]->error();
   }
   for (std::size_t i = 0; i < made.size(); ++i) {
-    files_.push_back(std::move(**made[i]));
+    if (!**made[i]) continue;
+    files_.push_back(std::move(***made[i]));
     paths_.push_back(paths[i]);
   }
   return {};

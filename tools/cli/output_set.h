@@ -25,6 +25,10 @@ class OutputSet {
   Status add_all(const std::vector<std::string>& paths, int jobs,
                  const std::function<Status(std::size_t, OutputFile&)>& write);
 
+  // The same, but without the files for which write() returns false.
+  Status add_some(const std::vector<std::string>& paths, int jobs,
+                  const std::function<Result<bool>(std::size_t, OutputFile&)>& write);
+
   // Renames all files to their final names once each is safely on disk, and adds them to the
   // report. In a batch, files whose names are not known from the command line are handed over to
   // the batch, which renames them in list order.

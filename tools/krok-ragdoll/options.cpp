@@ -219,6 +219,7 @@ ToolSpec make_spec() {
        "back.anim "
        "-o up.anim",
        "falls and gets up, over the front or the back as it lies"}};
+  spec.exit_partly = "with --pushes: some rows failed, all others were written";
   spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
                   return std::string(arguments->push_table.empty() ? ".anim" : "_{name}.anim");
                 }};

@@ -37,6 +37,7 @@ constexpr double kMinCovered = 0.9;
 struct Plan {
   std::string name, output;
   krok::ragdoll::FallOptions fall;
+  Location place;  // of a table's row
 };
 
 class Run {
@@ -64,7 +65,9 @@ class Run {
                OutputFile& file) const;
   Status write_meshes(OutputFile& file) const;
   Status write_one();
-  Status write_all();
+  Result<int> write_all();
+  void report_rows(const std::vector<std::optional<Error>>& failures,
+                   const std::vector<std::vector<Error>>& faults);
 
   const Options& options_;
   ToolContext& context_;
@@ -273,6 +276,8 @@ Status Run::plan_table() {
     };
     Plan plan;
     plan.name = fall.name;
+    plan.place = fall.at_place;
+    plan.place.file = given().push_table;
     auto output = output_of(fall.file_name);
     if (!output) return output.error();
     plan.output = std::move(*output);
@@ -337,41 +342,67 @@ Status Run::write_one() {
   return {};
 }
 
-Status Run::write_all() {
+// A row that fails, as one that does not come to rest and so cannot get up, keeps none of the
+// others from being written.
+Result<int> Run::write_all() {
   std::vector<std::string> paths;
   for (const Plan& plan : plans_) paths.push_back(plan.output);
   std::vector<Json> rows(plans_.size());
   std::vector<std::vector<Error>> faults(plans_.size());
+  std::vector<std::optional<Error>> failures(plans_.size());
   const Provenance provenance = context_.provenance();
   OutputSet outputs(context_);
-  Status status = outputs.add_all(paths, context_.jobs, [&](std::size_t i, OutputFile& file) {
+  const auto make = [&](std::size_t i, OutputFile& file) -> Result<bool> {
     const Plan& plan = plans_[i];
     auto fallen = make_fall(subject_, plan.fall);
+    rows[i] = {{"name", plan.name},
+               {"status", fallen ? "done" : "failed"},
+               {"output", fallen ? Json(plan.output) : Json()},
+               {"at", plan.fall.at}};
     if (!fallen) {
-      Error error = std::move(fallen).error();
-      error.message = fmt::format("the fall '{}': {}", shown(plan.name), error.message);
-      return Status(std::move(error).in_file(given().push_table));
+      rows[i]["code"] = fallen.error().code;
+      rows[i]["message"] = fallen.error().message;
+      failures[i] = std::move(fallen).error();
+      return false;
     }
     faults[i] = faults_of(*fallen);
-    rows[i] = {{"name", plan.name}, {"output", plan.output}, {"at", plan.fall.at}};
     rows[i].update(report_of(subject_, *fallen));
-    return write(plan, provenance, 1, *fallen, file);
-  });
+    if (Status status = write(plan, provenance, 1, *fallen, file); !status) {
+      return std::move(status).error();
+    }
+    return true;
+  };
+  Status status = outputs.add_some(paths, context_.jobs, make);
   if (status) status = outputs.finish();
-  if (!status) return status;
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < plans_.size(); ++i) {
-    for (const Error& fault : faults[i]) {
-      context_.warn(fault.code,
-                    fmt::format("the fall '{}': {}", shown(plans_[i].name), fault.message),
-                    fault.hint);
+  if (!status) return std::move(status).error();
+  report_rows(failures, faults);
+  context_.report.result["falls"] = std::move(rows);
+  const bool all = std::ranges::none_of(failures, &std::optional<Error>::has_value);
+  return all ? kExitDone : kExitPartly;
+}
+
+// Of each row what failed, or which tolerances it misses.
+void Run::report_rows(const std::vector<std::optional<Error>>& failures,
+                      const std::vector<std::vector<Error>>& faults) {
+  std::size_t failed = 0, kept = 0;
+  for (std::size_t i = 0; i < failures.size(); ++i) {
+    const std::string name = fmt::format("the fall '{}': ", shown(plans_[i].name));
+    if (failures[i]) {
+      ++failed;
+      Error error = *failures[i];
+      error.message = name + error.message;
+      error.where = plans_[i].place;
+      context_.diagnose(std::move(error));
+      continue;
     }
     kept += faults[i].empty() ? 1U : 0U;
+    for (const Error& fault : faults[i]) {
+      context_.warn(fault.code, name + fault.message, fault.hint);
+    }
   }
-  context_.report.result["falls"] = std::move(rows);
-  context_.log(fmt::format("{}: {} falls, {} of them within all tolerances", given().push_table,
-                           plans_.size(), kept));
-  return {};
+  context_.log(fmt::format("{}: {} falls, {} of them within all tolerances{}", given().push_table,
+                           failures.size() - failed, kept,
+                           failed > 0 ? fmt::format(", {} failed", failed) : ""));
 }
 
 Result<int> Run::run() {
@@ -382,8 +413,8 @@ Result<int> Run::run() {
                           &Run::plan_falls}) {
     if (Status status = (this->*step)(); !status) return status.error();
   }
-  const Status status = given().push_table.empty() ? write_one() : write_all();
-  if (!status) return status.error();
+  if (!given().push_table.empty()) return write_all();
+  if (const Status status = write_one(); !status) return status.error();
   return kExitDone;
 }
 

@@ -2,7 +2,9 @@
 // how many times real time they run while the body moves, beside a btMultiBody of the same bodies
 // in Bullet's own world, and a hash of the results.
 //
-//   build/bench/ragdoll [FALLS]      20 without a number; KROK_BENCH_EACH=1 prints each fall
+//   build/bench/ragdoll [FALLS [GROUND]]   20 without a number; KROK_BENCH_EACH=1 prints each fall
+//
+// GROUND is up or down (stairs), slope or rough; without it, the ground is level.
 
 #include <algorithm>
 #include <cmath>
@@ -10,15 +12,20 @@
 #include <cstdlib>
 #include <ctime>
 #include <random>
+#include <string>
 
 #include "core/hash.h"
 #include "core/index.h"
 #include "ik/anatomical_limits.h"
 #include "math/quaternion.h"
+#include "motion/place.h"
 #include "motion/sample.h"
+#include "ragdoll/clear_ground.h"
 #include "ragdoll/multibody.h"
 #include "ragdoll/simulate.h"
 #include "samples/generator/walk.h"
+#include "terrain/spec.h"
+#include "terrain/surface.h"
 
 namespace {
 
@@ -38,7 +45,7 @@ struct Walker {
 };
 
 // Straight, in a curve, with short and with long steps, and from standing.
-std::vector<Walker> make_walkers() {
+std::vector<Walker> make_walkers(double rise) {
   std::vector<Walker> walkers;
   for (int kind = 0; kind < 5; ++kind) {
     samples::WalkOptions options;
@@ -48,6 +55,11 @@ std::vector<Walker> make_walkers() {
     if (kind == 2) options.step_length = 0.5;
     if (kind == 3) options.step_length = 0.85;
     if (kind == 4) options.from_standing = true;
+    if (rise != 0) {
+      options.rise = rise;
+      options.step_length = 0.3;
+      options.turn = 0;
+    }
     Walker walker;
     walker.clip = samples::make_walk(options)->clip;
     walker.roles = find_roles(walker.clip.skeleton);
@@ -62,11 +74,60 @@ double share(std::mt19937& random) {
   return random() / 4294967296.0;
 }
 
-FallOptions random_fall(const Walker& walker, std::mt19937& random) {
+// What the walkers fall on.
+struct Ground {
+  const char* name;
+  const char* spec;
+  double rise;  // of a step, metres
+};
+
+constexpr Ground kGrounds[] = {
+    {"level", "level", 0},
+    {"up", "stairs:rise=17cm,run=30cm,count=12,begin=0.25m", 0.17},
+    {"down", "stairs:rise=-17cm,run=30cm,count=12,begin=0.2m", -0.17},
+    {"slope", "slope:20deg,begin=-1m", 0},
+    {"rough", "rough:seed=3,height=25cm", 0},
+};
+
+struct Place {
+  std::unique_ptr<Terrain> terrain;
+  Surroundings surroundings;
+};
+
+Place make_place(const Ground& ground) {
+  Place place;
+  place.terrain = *terrain::from_spec(ground.spec);
+  place.surroundings.level = std::string(ground.spec) == "level";
+  if (place.surroundings.level) return place;
+  const auto surface =
+      terrain::surface_of(*place.terrain, {Vec2(-10, -10), Vec2(10, 14), 0.001, 200'000});
+  for (const auto& corners : surface->triangles) {
+    auto& triangle = place.surroundings.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = surface->positions[corners[k]].cast<double>();
+    }
+  }
+  return place;
+}
+
+// Up or down to where the walker stands on the ground when the fall begins.
+Clip on_ground(const Walker& walker, double when, const Place& place) {
+  Clip clip = walker.clip;
+  if (place.surroundings.level) return clip;
+  Transform move;
+  move.position.y() = depth_in_ground(walker.bodies, pose_at(clip, when), [&](double x, double z) {
+    const auto point = place.terrain->at(x, z);
+    return point ? std::optional<double>(point->height) : std::nullopt;
+  });
+  move_clip(move, clip);
+  return clip;
+}
+
+FallOptions random_fall(const Walker& walker, const Place& place, std::mt19937& random) {
   FallOptions options;
   options.at = walker.clip.duration() * share(random);
   options.duration = 5;
-  options.surroundings.level = true;
+  options.surroundings = place.surroundings;
   Push push;
   push.body = static_cast<int>(share(random) * static_cast<double>(walker.bodies.size()));
   const double angle = 2 * kPi * share(random);
@@ -77,24 +138,25 @@ FallOptions random_fall(const Walker& walker, std::mt19937& random) {
   return options;
 }
 
-void run_falls(const std::vector<Walker>& walkers, int count) {
+void run_falls(const std::vector<Walker>& walkers, const Place& place, int count) {
   std::mt19937 random(7);
   WorldMeasures worst, settling;
-  int at_rest = 0, bad = 0;
+  int at_rest = 0, bad = 0, deep = 0;
   double time = 0, moving = 0, whole = 0, latest = 0, highest = 0;
   Xxh3Stream hash;
   for (int i = 0; i < count; ++i) {
     const Walker& walker = walkers[at(i) % walkers.size()];
-    const FallOptions options = random_fall(walker, random);
+    const FallOptions options = random_fall(walker, place, random);
+    const Clip clip = on_ground(walker, options.at, place);
     const double begin = seconds();
-    const auto fall =
-        simulate_fall(walker.clip, walker.roles, walker.bodies, walker.limits, options);
+    const auto fall = simulate_fall(clip, walker.roles, walker.bodies, walker.limits, options);
     time += seconds() - begin;
     if (!fall.ok() || !check(fall->clip).ok()) {
       ++bad;
       continue;
     }
     at_rest += fall->rest >= 0 ? 1 : 0;
+    deep += fall->largest.penetration > 0.005 ? 1 : 0;
     latest = std::max(latest, fall->rest);
     moving += fall->simulated;
     whole += options.duration;
@@ -111,8 +173,8 @@ void run_falls(const std::vector<Walker>& walkers, int count) {
     add(worst, fall->largest);
     add(settling, fall->settling);
     double top = 0;
-    for (const Vec3f& place : fall->clip.frame_positions(fall->clip.frame_count() - 1)) {
-      top = std::max(top, static_cast<double>(place.y()));
+    for (const Vec3f& joint : fall->clip.frame_positions(fall->clip.frame_count() - 1)) {
+      top = std::max(top, static_cast<double>(joint.y()));
     }
     highest = std::max(highest, top);
     hash.update(std::as_bytes(std::span(fall->clip.positions)));
@@ -128,6 +190,7 @@ void run_falls(const std::vector<Walker>& walkers, int count) {
   };
   print("first 0.2 s", settling);
   print("after that ", worst);
+  std::printf("  %d falls more than 5 mm in the ground\n", deep);
   std::printf("  highest joint at the end %.2f m\n", highest);
   std::printf("  %.1f x real time while moving (%.1f us a step), %.1f x of the falls' length\n",
               moving / time, time / moving * World::kStep * 1e6, whole / time);
@@ -218,9 +281,17 @@ void run_bullet(const Walker& walker, int count) {
 
 int main(int argc, char** argv) {
   const int falls = argc > 1 ? std::max(1, std::atoi(argv[1])) : 20;
-  const std::vector<Walker> walkers = make_walkers();
-  run_falls(walkers, falls);
-  run_powered(walkers);
-  run_bullet(walkers[0], std::min(falls, 10));
-  return 0;
+  const std::string name = argc > 2 ? argv[2] : "level";
+  for (const Ground& ground : kGrounds) {
+    if (ground.name != name) continue;
+    const std::vector<Walker> walkers = make_walkers(ground.rise);
+    run_falls(walkers, make_place(ground), falls);
+    if (ground.name == std::string("level")) {
+      run_powered(walkers);
+      run_bullet(walkers[0], std::min(falls, 10));
+    }
+    return 0;
+  }
+  std::fprintf(stderr, "no ground '%s'\n", name.c_str());
+  return 2;
 }

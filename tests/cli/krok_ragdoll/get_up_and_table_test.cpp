@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
@@ -91,6 +92,29 @@ TEST_F(RagdollFiles, ATableGivesTheFallsOfItsRows) {
   const json alone = result({"walk.anim", "--at", "0.5s", "--push", "Head=0,0,-60@0.7s",
                              "--duration", "1s", "-o", "alone.anim"});
   EXPECT_EQ(alone["hash"], falls[1]["hash"]);
+}
+
+// One body that is shot upwards, and so cannot get up, would take the falls of all other rows
+// along, or be passed over.
+TEST_F(RagdollFiles, ARowThatFailsLeavesTheOthers) {
+  put("pushes.csv",
+      "name,at,joint,x,y,z\n"
+      "up,1,Spine2,0,2500,0\n"
+      "side,1,Spine2,90,0,20\n");
+  const auto run = fall({"walk.anim", "--pushes", "pushes.csv", "--duration", "6s", "--get-up",
+                         "front.anim", "--get-up", "back.anim", "-o", "{name}.anim", "--json"});
+  EXPECT_EQ(run.exit_code, 3) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("pushes.csv:2:4: error: the fall 'up'"));
+  EXPECT_THAT(run.err, HasSubstr("[ragdoll-moving]"));
+  EXPECT_FALSE(std::filesystem::exists(path("up.anim")));
+  EXPECT_TRUE(InputFile::open(path("side.anim")).ok());
+  const json falls = json::parse(run.out)["result"]["falls"];
+  ASSERT_EQ(falls.size(), 2u);
+  EXPECT_EQ(falls[0]["status"], "failed");
+  EXPECT_EQ(falls[0]["code"], "ragdoll-moving");
+  EXPECT_TRUE(falls[0]["output"].is_null());
+  EXPECT_EQ(falls[1]["status"], "done");
+  EXPECT_GE(falls[1]["rest"].get<double>(), 0);
 }
 
 TEST_F(RagdollFiles, MistakesInATableAreToldWithTheirPlace) {
