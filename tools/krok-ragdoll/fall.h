@@ -22,6 +22,7 @@ struct Subject {
   RoleMap roles;
   krok::ik::Limits limits;
   std::vector<krok::ragdoll::Body> bodies;
+  std::vector<krok::ragdoll::JointRule> rules;  // of a file of bodies
   std::optional<double> covered;  // share of a model's vertices within kCoverDistance of a body
   // Motions to get up with, and their names; none: what falls stays there.
   std::vector<Clip> rises;
@@ -39,10 +40,10 @@ struct Fallen {
 // lib/ragdoll.
 Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOptions& options);
 
-// What the fall misses: a code, a message without the fall's name, and what to do. Empty if it keeps
-// all tolerances: at rest, limits exceeded by at most 1 degree and the ground entered by at most
-// 5 mm after the first 0.2 s, getting up within 1.5 x the motion's acceleration and 1 cm of the
-// ground.
+// What the fall misses: a code, a message without the fall's name, and what to do. Empty if it
+// keeps all tolerances: at rest, limits exceeded by at most 1 degree and the ground entered by at
+// most 5 mm after the first 0.2 s, getting up within 1.5 x the motion's acceleration and 1 cm of
+// the ground.
 std::vector<Error> faults_of(const Fallen& fallen);
 
 // The measures for the report.

@@ -12,12 +12,7 @@
 #include "formats/anim/anim.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/goals/goals.h"
-#include "formats/io/open_motion.h"
-#include "formats/io/open_terrain.h"
-#include "formats/limits/limits_format.h"
-#include "formats/model/model_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
-#include "ik/anatomical_limits.h"
 #include "ragdoll/body_meshes.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
@@ -25,13 +20,11 @@
 #include "tools/krok-ragdoll/fall.h"
 #include "tools/krok-ragdoll/ground.h"
 #include "tools/krok-ragdoll/push_table.h"
-#include "tools/shared/role_input.h"
+#include "tools/krok-ragdoll/read_subject.h"
 
 namespace krok::cli::ragdoll {
 
 namespace {
-
-constexpr double kMinCovered = 0.9;
 
 // A fall that is to be made, and where it is written.
 struct Plan {
@@ -48,13 +41,6 @@ class Run {
 
  private:
   const Arguments& given() const { return options_.given; }
-  Status read_motion();
-  Status read_limits();
-  Status read_bodies();
-  void check_cover(const Model& model);
-  Status set_modes();
-  Status read_given_bodies();
-  Status read_rises();
   Status plan_falls();
   Status plan_table();
   Result<std::string> output_of(const std::string& file_name) const;
@@ -72,107 +58,8 @@ class Run {
   const Options& options_;
   ToolContext& context_;
   Subject subject_;
-  std::vector<krok::ragdoll::JointRule> given_rules_;
   std::vector<Plan> plans_;
 };
-
-Status Run::read_motion() {
-  auto clip = io::open_motion(given().input, context_);
-  if (!clip) return clip.error();
-  subject_.clip = std::move(*clip);
-  if (subject_.clip.frame_count() == 0) {
-    return Error("ragdoll-time", "the motion has no frames, so that nothing falls")
-        .in_file(given().input);
-  }
-  const auto find = io::open_role_map(given().map, context_);
-  if (!find) return find.error();
-  auto roles = (*find)(subject_.clip.skeleton);
-  if (!roles) return roles.error();
-  subject_.roles = std::move(*roles);
-  return {};
-}
-
-Status Run::read_limits() {
-  if (given().limits == "none") return {};
-  if (given().limits == "auto") {
-    subject_.limits = krok::ik::anatomical_limits(subject_.clip.skeleton, subject_.roles);
-    return {};
-  }
-  const auto file = context_.open_input(given().limits);
-  if (!file) return file.error();
-  auto limits = limits::read(file->text(), subject_.clip.skeleton);
-  if (!limits) return std::move(limits).error().in_file(given().limits);
-  subject_.limits = std::move(*limits);
-  return {};
-}
-
-Status Run::read_given_bodies() {
-  const auto file = context_.open_input(given().bodies);
-  if (!file) return file.error();
-  auto read = ragdoll_file::read(file->text(), &subject_.clip.skeleton);
-  if (!read) return std::move(read).error().in_file(given().bodies);
-  subject_.bodies = std::move(read->bodies);
-  given_rules_ = std::move(read->joints);
-  return set_modes();
-}
-
-Status Run::read_bodies() {
-  if (!given().bodies.empty()) return read_given_bodies();
-  krok::ragdoll::BodyOptions how;
-  how.mass = options_.mass;
-  std::optional<Model> model;
-  if (!given().model.empty()) {
-    const auto file = context_.open_input(given().model);
-    if (!file) return file.error();
-    auto read = model::read(file->bytes());
-    if (!read) return std::move(read).error().in_file(given().model);
-    model = std::move(*read);
-    how.model = &*model;
-  }
-  auto bodies = krok::ragdoll::make_bodies(subject_.clip.skeleton, subject_.roles, how);
-  if (!bodies) {
-    const bool of_model = bodies.error().code == "ragdoll-model";
-    return std::move(bodies).error().in_file(of_model ? given().model : given().input);
-  }
-  subject_.bodies = std::move(*bodies);
-  if (model) check_cover(*model);
-  return set_modes();
-}
-
-void Run::check_cover(const Model& model) {
-  subject_.covered = krok::ragdoll::covered_share(model, subject_.bodies, kCoverDistance);
-  if (*subject_.covered >= kMinCovered) return;
-  context_.warn("ragdoll-model",
-                fmt::format("{}: {:.0f} % of the vertices are within 3 cm of a body (90 are "
-                            "expected)",
-                            shown(given().model), 100 * *subject_.covered),
-                "--save-bodies OUT.ragdoll.json, edit the shapes, and give them to --bodies");
-}
-
-Status Run::set_modes() {
-  Status status = ragdoll::set_modes(options_.follow, !given().rises.empty(),
-                                     subject_.clip.skeleton, subject_.roles, subject_.bodies);
-  if (status || status.error().code == "usage") return status;
-  return Error(status.error()).in_file(given().input);
-}
-
-Status Run::read_rises() {
-  for (const std::string& path : given().rises) {
-    auto clip = io::open_motion(path, context_);
-    if (!clip) return clip.error();
-    // Checked here, so that the message has the file's name.
-    const auto fits = krok::ragdoll::choose_rise(subject_.clip, 0, {&*clip, 1}, subject_.roles,
-                                                 subject_.bodies, false);
-    if (!fits) return Error(fits.error()).in_file(path);
-    subject_.rises.push_back(std::move(*clip));
-    subject_.rise_names.push_back(name_of_input(path));
-  }
-  if (subject_.rises.empty()) return {};
-  auto terrain = io::open_terrain(given().ground, {}, context_);
-  if (!terrain) return terrain.error();
-  subject_.terrain = std::move(*terrain);
-  return {};
-}
 
 Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& plan) {
   const Clip& clip = subject_.clip;
@@ -186,7 +73,7 @@ Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& pl
       set_end(options_.follow, options_.duration, clip, subject_.roles, subject_.bodies, plan.fall);
   if (!status) return Error(status.error()).in_file(given().input);
   plan.fall.joints.soft = given().soft;
-  plan.fall.rules = given_rules_;
+  plan.fall.rules = subject_.rules;
   if (given().bodies.empty()) {
     // Through rules even if no file is written, so that a saved file gives the same fall.
     const auto pose = krok::ragdoll::pose_at(clip, plan.fall.at);
@@ -409,10 +296,10 @@ Result<int> Run::run() {
   if (Status status = check_output_kind(context_.output, "-o", registry::Kind::anim); !status) {
     return status.error();
   }
-  for (const auto step : {&Run::read_motion, &Run::read_limits, &Run::read_bodies, &Run::read_rises,
-                          &Run::plan_falls}) {
-    if (Status status = (this->*step)(); !status) return status.error();
-  }
+  auto subject = read_subject(options_, context_);
+  if (!subject) return subject.error();
+  subject_ = std::move(*subject);
+  if (Status status = plan_falls(); !status) return status.error();
   if (!given().push_table.empty()) return write_all();
   if (const Status status = write_one(); !status) return status.error();
   return kExitDone;

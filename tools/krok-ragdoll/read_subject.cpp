@@ -1,0 +1,158 @@
+#include "tools/krok-ragdoll/read_subject.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "core/text.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_terrain.h"
+#include "formats/limits/limits_format.h"
+#include "formats/model/model_format.h"
+#include "formats/ragdoll/ragdoll_format.h"
+#include "ik/anatomical_limits.h"
+#include "tools/cli/file_name.h"
+#include "tools/krok-ragdoll/follow.h"
+#include "tools/shared/role_input.h"
+
+namespace krok::cli::ragdoll {
+
+namespace {
+
+constexpr double kMinCovered = 0.9;
+
+class SubjectReader {
+ public:
+  SubjectReader(const Options& options, ToolContext& context)
+      : options_(options), context_(context) {}
+
+  Result<Subject> read();
+
+ private:
+  const Arguments& given() const { return options_.given; }
+  Status read_motion();
+  Status read_limits();
+  Status read_bodies();
+  Status read_given_bodies();
+  void check_cover(const Model& model);
+  Status set_modes();
+  Status read_rises();
+
+  const Options& options_;
+  ToolContext& context_;
+  Subject subject_;
+};
+
+Status SubjectReader::read_motion() {
+  auto clip = io::open_motion(given().input, context_);
+  if (!clip) return clip.error();
+  subject_.clip = std::move(*clip);
+  if (subject_.clip.frame_count() == 0) {
+    return Error("ragdoll-time", "the motion has no frames, so that nothing falls")
+        .in_file(given().input);
+  }
+  const auto find = io::open_role_map(given().map, context_);
+  if (!find) return find.error();
+  auto roles = (*find)(subject_.clip.skeleton);
+  if (!roles) return roles.error();
+  subject_.roles = std::move(*roles);
+  return {};
+}
+
+Status SubjectReader::read_limits() {
+  if (given().limits == "none") return {};
+  if (given().limits == "auto") {
+    subject_.limits = krok::ik::anatomical_limits(subject_.clip.skeleton, subject_.roles);
+    return {};
+  }
+  const auto file = context_.open_input(given().limits);
+  if (!file) return file.error();
+  auto limits = limits::read(file->text(), subject_.clip.skeleton);
+  if (!limits) return std::move(limits).error().in_file(given().limits);
+  subject_.limits = std::move(*limits);
+  return {};
+}
+
+Status SubjectReader::read_given_bodies() {
+  const auto file = context_.open_input(given().bodies);
+  if (!file) return file.error();
+  auto read = ragdoll_file::read(file->text(), &subject_.clip.skeleton);
+  if (!read) return std::move(read).error().in_file(given().bodies);
+  subject_.bodies = std::move(read->bodies);
+  subject_.rules = std::move(read->joints);
+  return set_modes();
+}
+
+Status SubjectReader::read_bodies() {
+  if (!given().bodies.empty()) return read_given_bodies();
+  krok::ragdoll::BodyOptions how;
+  how.mass = options_.mass;
+  std::optional<Model> model;
+  if (!given().model.empty()) {
+    const auto file = context_.open_input(given().model);
+    if (!file) return file.error();
+    auto read = model::read(file->bytes());
+    if (!read) return std::move(read).error().in_file(given().model);
+    model = std::move(*read);
+    how.model = &*model;
+  }
+  auto bodies = krok::ragdoll::make_bodies(subject_.clip.skeleton, subject_.roles, how);
+  if (!bodies) {
+    const bool of_model = bodies.error().code == "ragdoll-model";
+    return std::move(bodies).error().in_file(of_model ? given().model : given().input);
+  }
+  subject_.bodies = std::move(*bodies);
+  if (model) check_cover(*model);
+  return set_modes();
+}
+
+void SubjectReader::check_cover(const Model& model) {
+  subject_.covered = krok::ragdoll::covered_share(model, subject_.bodies, kCoverDistance);
+  if (*subject_.covered >= kMinCovered) return;
+  context_.warn("ragdoll-model",
+                fmt::format("{}: {:.0f} % of the vertices are within 3 cm of a body (90 are "
+                            "expected)",
+                            shown(given().model), 100 * *subject_.covered),
+                "--save-bodies OUT.ragdoll.json, edit the shapes, and give them to --bodies");
+}
+
+Status SubjectReader::set_modes() {
+  Status status = ragdoll::set_modes(options_.follow, !given().rises.empty(),
+                                     subject_.clip.skeleton, subject_.roles, subject_.bodies);
+  if (status || status.error().code == "usage") return status;
+  return Error(status.error()).in_file(given().input);
+}
+
+Status SubjectReader::read_rises() {
+  for (const std::string& path : given().rises) {
+    auto clip = io::open_motion(path, context_);
+    if (!clip) return clip.error();
+    // Checked here, so that the message has the file's name.
+    const auto fits = krok::ragdoll::choose_rise(subject_.clip, 0, {&*clip, 1}, subject_.roles,
+                                                 subject_.bodies, false);
+    if (!fits) return Error(fits.error()).in_file(path);
+    subject_.rises.push_back(std::move(*clip));
+    subject_.rise_names.push_back(name_of_input(path));
+  }
+  if (subject_.rises.empty()) return {};
+  auto terrain = io::open_terrain(given().ground, {}, context_);
+  if (!terrain) return terrain.error();
+  subject_.terrain = std::move(*terrain);
+  return {};
+}
+
+Result<Subject> SubjectReader::read() {
+  for (const auto step : {&SubjectReader::read_motion, &SubjectReader::read_limits,
+                          &SubjectReader::read_bodies, &SubjectReader::read_rises}) {
+    if (Status status = (this->*step)(); !status) return status.error();
+  }
+  return std::move(subject_);
+}
+
+}  // namespace
+
+Result<Subject> read_subject(const Options& options, ToolContext& context) {
+  return SubjectReader(options, context).read();
+}
+
+}  // namespace krok::cli::ragdoll
