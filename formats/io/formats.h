@@ -13,7 +13,7 @@
 #include "scene/clip.h"
 
 // The table of what can be read: one row per format, with what it can hold and how that is read.
-// open_motion(), open_scene() and open_model() choose by it. How formats are recognised is in
+// open_motion(), open_scene() and open_shown_model() choose by it. How formats are recognised is in
 // formats/registry.
 
 namespace krok::io {
@@ -22,15 +22,17 @@ struct Format {
   registry::Kind kind = registry::Kind::unknown;
 
   // For formats without a kind in formats/registry: the ending, in lower case without a dot, and
-  // whether a file's bytes are such. A known kind goes before.
+  // whether a file's bytes are such. A known kind goes before. For motions: tools ask by kind
+  // whether a file is a scene or a model.
   std::string_view ending = {};
   bool (*recognises)(std::span<const std::byte> content) = nullptr;
 
   // Null for what the format cannot hold. The file is open already and of this kind.
   Result<Clip> (*read_motion)(const InputFile& file, Inputs& inputs,
                               const MotionOptions& options) = nullptr;
-  // For captures instead of read_motion; with `stream`, frames are read when asked for, if format
-  // and file allow it.
+  // For captures instead of read_motion, and for any motion that krok-import is to read: it does
+  // not call read_motion. With `stream`, frames are read when asked for, if format and file allow
+  // it.
   Result<OpenedCapture> (*open_capture)(const InputFile& file, Inputs& inputs,
                                         const CaptureReading& reading, bool stream) = nullptr;
   Result<nodes::Scene> (*read_scene)(const InputFile& file, Inputs& inputs,
