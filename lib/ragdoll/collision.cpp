@@ -1,14 +1,15 @@
 #include "ragdoll/collision_internal.h"
 
-#include <BulletCollision/CollisionDispatch/btInternalEdgeUtility.h>
 #include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <btBulletCollisionCommon.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "core/index.h"
+#include "ragdoll/ground_edges_internal.h"
 
 namespace krok::ragdoll {
 
@@ -16,12 +17,10 @@ namespace {
 
 // Bullet keeps contacts up to this distance, metres: what falls 10 m/s comes that far in a step.
 constexpr float kReach = 0.04F;
-constexpr double kThick = 0.03;  // metres: what is deeper below a face is on its other side
-constexpr double kDrift =
-    5e-3;                       // metres by which a kept contact's points may drift along a surface
-constexpr double kWall = 1e-3;  // of a face's normal, upwards
+constexpr double kThick = 0.03;      // metres: what is deeper below a face is on its other side
+constexpr double kWall = 1e-3;       // of a face's normal, upwards
 constexpr std::size_t kTouches = 2;  // of a feeler, as in the corner below a step
-constexpr double kSamePlace = 0.02;  // metres between points of one contact
+constexpr double kSamePlace = 0.03;  // metres between points of one contact
 constexpr double kSameWay = 0.98;    // cosine between normals of one contact
 
 btVector3 to_bullet(const Vec3& v) {
@@ -54,13 +53,6 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
   return box;
 }
 
-// The edges between a mesh's triangles stop nothing.
-bool smooth_edges(btManifoldPoint& point, const btCollisionObjectWrapper* body, int, int,
-                  const btCollisionObjectWrapper* mesh, int part, int index) {
-  btAdjustInternalEdgeContacts(point, mesh, body, part, index);
-  return false;
-}
-
 }  // namespace
 
 // In the order in which they are made; destroyed in the reverse one.
@@ -79,12 +71,20 @@ struct Collision::Inside {
   btDbvtBroadphase broadphase;
   btCollisionWorld world{&dispatcher, &broadphase, &configuration};
   btTriangleMesh mesh;
-  btTriangleInfoMap edges;
+  GroundEdges edges{{}};
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<btCollisionObject>> bodies;
   std::vector<std::unique_ptr<btCollisionObject>> grounds;
+  std::vector<Shape> solids;                              // shape [bodies]
   std::vector<Feelers> feelers;                           // shape [bodies]
   std::vector<std::vector<std::array<float, 3>>> memory;  // shape [bodies, kTouches * feelers]
+  // Of what touched edges in the last step, and does so now.
+  struct EdgeMemory {
+    int body = 0, edge = 0;
+    Vec3 on_a;
+    std::array<float, 3> impulses = {};
+  };
+  std::vector<EdgeMemory> on_edges, on_edges_before;
   std::vector<Contact> contacts;
 
   ~Inside();
@@ -92,6 +92,9 @@ struct Collision::Inside {
   void part_overlapping();
   void touch_plane(std::span<const BodyState> states, double step);
   void touch_faces(std::span<const BodyState> states, double step);
+  void touch_edges(std::size_t body, const Transform& pose, std::span<const int> near,
+                   double reach);
+  void connect_edges();
   bool is_on_face(const Contact& of) const;
   void take_manifolds(std::span<const BodyState> states);
 };
@@ -114,21 +117,18 @@ Collision::Inside::Feelers Collision::Inside::feelers_of(const Shape& shape) {
 
 Collision::Inside::~Inside() {
   for (const auto& body : bodies) world.removeCollisionObject(body.get());
-  for (const auto& ground : grounds) world.removeCollisionObject(ground.get());
 }
 
 void Collision::Inside::add_mesh(const Surroundings& surroundings) {
   for (const auto& t : surroundings.triangles) {
     mesh.addTriangle(to_bullet(t[0]), to_bullet(t[1]), to_bullet(t[2]));
   }
+  edges = GroundEdges(surroundings.triangles);
   auto shape = std::make_unique<btBvhTriangleMeshShape>(&mesh, true);
-  btGenerateInternalEdgeInfo(shape.get(), &edges);
   shape->setMargin(0);
   auto ground = std::make_unique<btCollisionObject>();
   ground->setCollisionShape(shape.get());
-  ground->setUserIndex(-1);
-  ground->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT |
-                            btCollisionObject::CF_CUSTOM_MATERIAL_CALLBACK);
+  ground->setCollisionFlags(btCollisionObject::CF_STATIC_OBJECT);
   shapes.push_back(std::move(shape));
   grounds.push_back(std::move(ground));
 }
@@ -183,7 +183,7 @@ class Faces final : public btTriangleCallback {
   struct Face {
     Vec3 normal;
     std::array<Vec3, 3> corners, inward;
-    bool wall = false;
+    bool wall = false;  // whose free side is not known
 
     bool is_beside(const Vec3& point) const {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -193,10 +193,17 @@ class Faces final : public btTriangleCallback {
     }
   };
 
-  const std::vector<Face>& faces() const { return faces_; }
-  void clear() { faces_.clear(); }
+  explicit Faces(const GroundEdges& edges) : edges_(edges) {}
 
-  void processTriangle(btVector3* corners, int, int) override {
+  const std::vector<Face>& faces() const { return faces_; }
+  const std::vector<int>& numbers() const { return numbers_; }  // of triangles
+  void clear() {
+    faces_.clear();
+    numbers_.clear();
+  }
+
+  void processTriangle(btVector3* corners, int, int number) override {
+    numbers_.push_back(number);
     Face face;
     for (std::size_t k = 0; k < 3; ++k) face.corners[k] = from_bullet(corners[k]);
     const auto& [a, b, c] = face.corners;
@@ -207,11 +214,17 @@ class Faces final : public btTriangleCallback {
     face.inward = {face.normal.cross(b - a), face.normal.cross(c - b), face.normal.cross(a - c)};
     face.wall = std::abs(face.normal.y()) < kWall;
     if (face.normal.y() < 0) face.normal = -face.normal;  // ground is solid below
+    if (const Vec3& out = edges_.wall_side(number); face.wall && !out.isZero()) {
+      face.normal = out;
+      face.wall = false;
+    }
     faces_.push_back(face);
   }
 
  private:
+  const GroundEdges& edges_;
   std::vector<Face> faces_;
+  std::vector<int> numbers_;
 };
 
 struct Touch {
@@ -238,8 +251,10 @@ void touch(const Vec3& point, double radius, const Vec3& free, double reach,
   Vec3 out = Vec3::Zero();
   for (const Touch& candidate : touches) {
     if (kept == kTouches) break;
-    const auto behind = [&](const Faces::Face& face) {
+    const Vec3 on_face = candidate.on_body - candidate.gap * candidate.normal;
+    const auto behind = [&](const Faces::Face& face) {  // and not another step's wall
       return std::abs(face.normal.dot(candidate.normal)) > kSameWay &&
+             std::abs(face.normal.dot(face.corners[0] - on_face)) < kThick &&
              face.is_beside(candidate.on_body + out);
     };
     if (kept > 0 && (touches[0].normal.dot(candidate.normal) > kSameWay ||
@@ -256,8 +271,11 @@ void touch(const Vec3& point, double radius, const Vec3& free, double reach,
 // rolls over them; on faces, points are therefore found anew in each step, in double precision.
 void Collision::Inside::touch_faces(std::span<const BodyState> states, double step) {
   const auto* shape = static_cast<const btBvhTriangleMeshShape*>(grounds[0]->getCollisionShape());
-  Faces faces;
+  Faces faces(edges);
   std::vector<Touch> touches;
+  std::vector<int> near;
+  std::swap(on_edges, on_edges_before);
+  on_edges.clear();
   for (std::size_t b = 0; b < feelers.size(); ++b) {
     const Transform& pose = states[b].to_world;
     const double fall = step * (states[b].velocity.norm() + states[b].spin.norm());
@@ -287,6 +305,51 @@ void Collision::Inside::touch_faces(std::span<const BodyState> states, double st
         contacts.push_back(contact);
       }
     }
+    near.clear();
+    for (const int triangle : faces.numbers()) {
+      std::ranges::copy(edges.of_triangle(triangle), std::back_inserter(near));
+    }
+    std::ranges::sort(near);
+    near.erase(std::ranges::unique(near).begin(), near.end());
+    touch_edges(b, pose, near, 0.01 + 2 * fall);
+  }
+  connect_edges();
+}
+
+void Collision::Inside::touch_edges(std::size_t body, const Transform& pose,
+                                    std::span<const int> near, double reach) {
+  std::vector<EdgeTouch> touches;
+  for (const int edge : near) {
+    touches.clear();
+    touch_edge(solids[body], pose, edges[edge], reach, touches);
+    for (const EdgeTouch& touch : touches) {
+      Contact contact;
+      contact.a = static_cast<int>(body);
+      contact.normal = touch.normal;
+      contact.on_a = pose.inverse() * touch.on_body;
+      contact.on_b = touch.on_body - touch.gap * touch.normal;
+      if (is_on_face(contact)) continue;
+      EdgeMemory now{contact.a, edge, contact.on_a, {}};
+      for (const EdgeMemory& before : on_edges_before) {
+        if (before.body == now.body && before.edge == edge &&
+            (before.on_a - now.on_a).norm() < kSamePlace) {
+          now.impulses = before.impulses;
+          break;
+        }
+      }
+      on_edges.push_back(now);
+      contacts.push_back(contact);
+    }
+  }
+}
+
+// Once all are there, as the memory moves while it grows.
+void Collision::Inside::connect_edges() {
+  std::size_t next = 0;
+  for (Contact& contact : contacts) {
+    if (contact.impulses[0] != nullptr) continue;
+    auto& impulses = on_edges[next++].impulses;
+    contact.impulses = {&impulses[0], &impulses[1], &impulses[2]};
   }
 }
 
@@ -312,23 +375,17 @@ void Collision::Inside::take_manifolds(std::span<const BodyState> states) {
       // The other's point from the distance, which is exact where the points are rounded.
       const Vec3 on_b = on_a - static_cast<double>(point.getDistance()) * contact.normal;
       contact.on_a = states[at(contact.a)].to_world.inverse() * on_a;
-      contact.on_b = contact.b < 0 ? on_b : states[at(contact.b)].to_world.inverse() * on_b;
+      contact.on_b = states[at(contact.b)].to_world.inverse() * on_b;
       contact.impulses = {&point.m_appliedImpulse, &point.m_appliedImpulseLateral1,
                           &point.m_appliedImpulseLateral2};
-      if (contact.b < 0) {  // an edge or a corner of the mesh
-        const Vec3 apart = from_bullet(point.m_positionWorldOnA - point.m_positionWorldOnB);
-        const Vec3 along = apart - contact.normal.dot(apart) * contact.normal;
-        if (along.norm() > kDrift || is_on_face(contact)) continue;
-      }
       contacts.push_back(contact);
     }
   }
 }
 
 Collision::Collision(const Surroundings& surroundings) : inside_(std::make_unique<Inside>()) {
-  // Bullet has one callback and one reach for all worlds; these are the same for all.
-  static const bool set =
-      (gContactAddedCallback = smooth_edges, gContactBreakingThreshold = kReach, true);
+  // Bullet has one reach for all worlds; this is the same for all.
+  static const bool set = (gContactBreakingThreshold = kReach, true);
   (void)set;
   Inside& in = *inside_;
   in.dispatcher.setDispatcherFlags(
@@ -356,11 +413,10 @@ void Collision::add(std::span<const Body> bodies, std::span<const BodyState> sta
     object->setActivationState(DISABLE_DEACTIVATION);
     in.world.addCollisionObject(object.get());
     in.bodies.push_back(std::move(object));
+    in.solids.push_back(bodies[b].shape);
     in.feelers.push_back(Inside::feelers_of(bodies[b].shape));
     in.memory.emplace_back(kTouches * in.feelers.back().points.size());
   }
-  // After the bodies: that puts the ground last in each pair, as smooth_edges() needs it.
-  for (const auto& ground : in.grounds) in.world.addCollisionObject(ground.get());
   for (const Joint& joint : joints) {
     if (joint.parent < 0) continue;
     btCollisionObject *a = in.bodies[at(joint.parent)].get(), *b = in.bodies[at(joint.child)].get();
