@@ -31,17 +31,25 @@ mkdir -p falls
 cp -- "$story/pushes.csv" .
 "$bin/krok-ragdoll" walk.anim --pushes pushes.csv --duration 5s -o 'falls/{name}.anim' --json=falls.json
 
-say "5. A skinned walker, images and a page"
+say "5. Down stairs"
+stairs=stairs:rise=-17cm,run=30cm,count=12,begin=20cm
+"$generators/make-walk" -q --steps 10 --rise -17cm --step-length 30cm -o down.bvh
+"$bin/krok-ragdoll" down.bvh --at 5.3s --push Spine2=10Ns,0,140Ns --duration 8s --ground $stairs \
+  --get-up front.anim --get-up back.anim --get-up side.anim -o stairs.anim --json=stairs.json
+"$bin/krok-plot" -q stairs.anim --ground $stairs --whole-ground --strip stairs.png --sides left \
+  --moments 5.3s,5.9s,6.4s,7s,9s,11s,12s,13.8s --size 200
+
+say "6. A skinned walker, images and a page"
 "$bin/krok-body" -q fall.anim -o walker.model
 "$bin/krok-skin" -q walker.model fall.anim -o fall.glb --as rig
 "$bin/krok-plot" -q fall.anim --sheet fall.png --moments 16 --sides right --size 200
 "$bin/krok-view" -q fall.anim -o fall.html
 
-say "6. Hard and soft ranges of motion"
+say "7. Hard and soft ranges of motion"
 for limits in hard soft; do
   options=(--at 1.2s --push "Spine2=40Ns,0,-160Ns")
   [ $limits = soft ] && options+=(--soft)
   "$bin/krok-ragdoll" -q walk.anim "${options[@]}" -o $limits.anim
 done
 "$bin/krok-plot" -q hard.anim soft.anim --show angles --from 1.1s --to 3s -o limits.svg
-echo "  fall.glb, fall.html, fall.png, limits.svg"
+echo "  fall.glb, fall.html, fall.png, stairs.png, limits.svg"

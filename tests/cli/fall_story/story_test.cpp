@@ -25,8 +25,9 @@ TEST_F(FallStory, HoldsWhatItsReadmeTells) {
   const ToolRun made = story("'a folder'");
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const fs::path out = folder_ / "a folder";
-  for (const char* name : {"up.anim", "walker.ragdoll.json", "fall.anim", "fall.glb", "fall.html",
-                           "fall.png", "limits.svg", "falls/left.anim", "falls/foot.anim"}) {
+  for (const char* name :
+       {"up.anim", "walker.ragdoll.json", "fall.anim", "fall.glb", "fall.html", "fall.png",
+        "stairs.anim", "stairs.png", "limits.svg", "falls/left.anim", "falls/foot.anim"}) {
     EXPECT_TRUE(fs::exists(out / name)) << name;
   }
   const json up = json::parse(get(out / "up.json"));
@@ -35,6 +36,11 @@ TEST_F(FallStory, HoldsWhatItsReadmeTells) {
   EXPECT_LT(rises["penetration"].get<double>(), 0.01);
   EXPECT_LT(rises["acceleration"].get<double>(), 1.5 * rises["motion_acceleration"].get<double>());
   EXPECT_EQ(json::parse(get(out / "falls.json"))["result"]["falls"].size(), 6U);
+
+  const json stairs = json::parse(get(out / "stairs.json"))["result"];
+  EXPECT_LT(stairs["largest"]["penetration"].get<double>(), 0.005);
+  EXPECT_GT(stairs["rest"].get<double>(), 0);
+  EXPECT_LT(stairs["get_up"]["penetration"].get<double>(), 0.015);
 
   const auto file = InputFile::open((out / "fall.anim").string());
   ASSERT_TRUE(file.ok());
