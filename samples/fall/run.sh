@@ -37,7 +37,7 @@ stairs=stairs:rise=-17cm,run=30cm,count=12,begin=20cm
 "$bin/krok-ragdoll" down.bvh --at 5.3s --push Spine2=10Ns,0,140Ns --duration 8s --ground $stairs \
   --get-up front.anim --get-up back.anim --get-up side.anim -o stairs.anim --json=stairs.json
 "$bin/krok-plot" -q stairs.anim --ground $stairs --whole-ground --strip stairs.png --sides left \
-  --moments 5.3s,5.9s,6.4s,7s,9s,11s,12s,13.8s --size 200
+  --moments 5.3s,5.9s,6.4s,7s,9s,11s,12s,13s --size 200
 
 say "6. A skinned walker, images and a page"
 "$bin/krok-body" -q fall.anim -o walker.model
