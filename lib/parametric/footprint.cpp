@@ -66,9 +66,9 @@ void add_flat_frames(const ClipContacts& given, FootSide side, int joint, Median
 // Whether contacts are at different heights, as on a slope, where a flat foot is tilted.
 bool climbs(const ClipContacts& given) {
   if (given.contacts == nullptr || given.contacts->stays.empty()) return false;
-  const auto [low, high] = std::ranges::minmax(
-      given.contacts->stays |
-      std::views::transform([](const Stay& stay) { return stay.place.y(); }));
+  const auto [low, high] =
+      std::ranges::minmax(given.contacts->stays |
+                          std::views::transform([](const Stay& stay) { return stay.place.y(); }));
   return high - low > kClimb * given.contacts->leg_length;
 }
 

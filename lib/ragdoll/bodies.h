@@ -38,7 +38,7 @@ struct Body {
 };
 
 struct BodyOptions {
-  double mass = 75;              // of all bodies
+  double mass = 75;  // of all bodies
   // Fits shapes to its vertices. Its skeleton has the same joints; its reference pose is used.
   const Model* model = nullptr;
 };
@@ -55,8 +55,8 @@ struct BodyOptions {
 Result<std::vector<Body>> make_bodies(const Skeleton& motion, const RoleMap& roles,
                                       const BodyOptions& options = {});
 
-// Share of the model's vertices within `distance` (metres) of a body or inside one, in the reference
-// pose; 1 for a model without vertices.
+// Share of the model's vertices within `distance` (metres) of a body or inside one, in the
+// reference pose; 1 for a model without vertices.
 double covered_share(const Model& model, const std::vector<Body>& bodies, double distance);
 
 // For each joint the body that carries it: its own, or the nearest above; -1 above the root body.

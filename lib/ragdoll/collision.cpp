@@ -1,6 +1,5 @@
 #include "ragdoll/collision_internal.h"
 
-#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
 #include <btBulletCollisionCommon.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 
 #include "core/index.h"
 #include "ragdoll/ground_edges_internal.h"
+#include "ragdoll/ground_faces_internal.h"
 
 namespace krok::ragdoll {
 
@@ -17,11 +17,7 @@ namespace {
 
 // Bullet keeps contacts up to this distance, metres: what falls 10 m/s comes that far in a step.
 constexpr float kReach = 0.04F;
-constexpr double kThick = 0.03;      // metres: what is deeper below a face is on its other side
-constexpr double kWall = 1e-3;       // of a face's normal, upwards
-constexpr std::size_t kTouches = 2;  // of a feeler, as in the corner below a step
 constexpr double kSamePlace = 0.03;  // metres between points of one contact
-constexpr double kSameWay = 0.98;    // cosine between normals of one contact
 
 btVector3 to_bullet(const Vec3& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
@@ -177,96 +173,6 @@ void Collision::Inside::touch_plane(std::span<const BodyState> states, double st
   }
 }
 
-// Faces of the ground near a body.
-class Faces final : public btTriangleCallback {
- public:
-  struct Face {
-    Vec3 normal;
-    std::array<Vec3, 3> corners, inward;
-    bool wall = false;  // whose free side is not known
-
-    bool is_beside(const Vec3& point) const {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (inward[k].dot(point - corners[k]) < 0) return false;
-      }
-      return true;
-    }
-  };
-
-  explicit Faces(const GroundEdges& edges) : edges_(edges) {}
-
-  const std::vector<Face>& faces() const { return faces_; }
-  const std::vector<int>& numbers() const { return numbers_; }  // of triangles
-  void clear() {
-    faces_.clear();
-    numbers_.clear();
-  }
-
-  void processTriangle(btVector3* corners, int, int number) override {
-    numbers_.push_back(number);
-    Face face;
-    for (std::size_t k = 0; k < 3; ++k) face.corners[k] = from_bullet(corners[k]);
-    const auto& [a, b, c] = face.corners;
-    face.normal = (b - a).cross(c - a);
-    const double size = face.normal.norm();
-    if (!(size > 1e-12)) return;
-    face.normal /= size;
-    face.inward = {face.normal.cross(b - a), face.normal.cross(c - b), face.normal.cross(a - c)};
-    face.wall = std::abs(face.normal.y()) < kWall;
-    if (face.normal.y() < 0) face.normal = -face.normal;  // ground is solid below
-    if (const Vec3& out = edges_.wall_side(number); face.wall && !out.isZero()) {
-      face.normal = out;
-      face.wall = false;
-    }
-    faces_.push_back(face);
-  }
-
- private:
-  const GroundEdges& edges_;
-  std::vector<Face> faces_;
-  std::vector<int> numbers_;
-};
-
-struct Touch {
-  double gap = 0;
-  Vec3 normal, on_body;
-};
-
-// Where a ball of `radius` about `point` touches faces, the shallowest first, at most two. `free`
-// is on the free side of walls. What is behind a shallower face and no more behind a deeper one
-// when it has come out of the first, as at the edge of a step, does not touch the deeper one.
-void touch(const Vec3& point, double radius, const Vec3& free, double reach,
-           std::span<const Faces::Face> faces, std::vector<Touch>& touches) {
-  touches.clear();
-  for (const Faces::Face& face : faces) {
-    const double side = face.wall && face.normal.dot(free - face.corners[0]) < 0 ? -1 : 1;
-    const Vec3 normal = side * face.normal;
-    const Vec3 on_body = point - radius * normal;
-    const double gap = normal.dot(on_body - face.corners[0]);
-    if (gap < -kThick || gap > reach || !face.is_beside(on_body)) continue;
-    touches.push_back({gap, normal, on_body});
-  }
-  std::ranges::stable_sort(touches, std::greater(), &Touch::gap);
-  std::size_t kept = 0;
-  Vec3 out = Vec3::Zero();
-  for (const Touch& candidate : touches) {
-    if (kept == kTouches) break;
-    const Vec3 on_face = candidate.on_body - candidate.gap * candidate.normal;
-    const auto behind = [&](const Faces::Face& face) {  // and not another step's wall
-      return std::abs(face.normal.dot(candidate.normal)) > kSameWay &&
-             std::abs(face.normal.dot(face.corners[0] - on_face)) < kThick &&
-             face.is_beside(candidate.on_body + out);
-    };
-    if (kept > 0 && (touches[0].normal.dot(candidate.normal) > kSameWay ||
-                     !std::ranges::any_of(faces, behind))) {
-      continue;
-    }
-    touches[kept++] = candidate;
-    if (candidate.gap < 0) out -= 1.01 * candidate.gap * candidate.normal;
-  }
-  touches.resize(kept);
-}
-
 // Bullet keeps points on a mesh from step to step, and one set for all its triangles, while a body
 // rolls over them; on faces, points are therefore found anew in each step, in double precision.
 void Collision::Inside::touch_faces(std::span<const BodyState> states, double step) {
@@ -288,8 +194,8 @@ void Collision::Inside::touch_faces(std::span<const BodyState> states, double st
     const double radius = feelers[b].radius;
     for (std::size_t k = 0; k < feelers[b].points.size(); ++k) {
       const Vec3 point = pose * feelers[b].points[k];
-      touch(point, radius, radius > 0 ? point : pose.position, 0.01 + 2 * fall, faces.faces(),
-            touches);
+      find_touches(point, radius, radius > 0 ? point : pose.position, 0.01 + 2 * fall,
+                   faces.faces(), touches);
       for (std::size_t i = 0; i < kTouches; ++i) {
         std::array<float, 3>& impulses = memory[b][kTouches * k + i];
         if (i >= touches.size()) {

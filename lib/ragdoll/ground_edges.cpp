@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kWeld = 1e-5;           // metres: corners nearer than that are one
 constexpr double kSharp = 0.01;          // sine of the least angle between faces
-constexpr double kUprightFace = 1e-3;        // of a wall's normal, upwards
+constexpr double kUprightFace = 1e-3;    // of a wall's normal, upwards
 constexpr double kStraight = 1e-4;       // metres off the line of what is one edge
 constexpr double kSameNormal = 0.99999;  // cosine
 constexpr double kDeepest = 0.03;        // metres: what is deeper is on the other side

@@ -37,7 +37,7 @@ struct Fall {
   // Of all steps: the first 0.2 s, in which what the pose has in the ground comes out of it, and
   // the rest.
   WorldMeasures settling, largest;
-  bool jumps = false;  // the motion jumps where the fall begins; the bodies began without speeds
+  bool jumps = false;    // the motion jumps where the fall begins; the bodies began without speeds
   bool follows = false;  // not all bodies are simulated: what lies still may move again
   // Radians between the orientations of bodies and the motion, of all steps: the root mean square
   // over all bodies, and the largest.

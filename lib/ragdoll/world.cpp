@@ -16,7 +16,7 @@ namespace {
 constexpr int kAgain = 1, kDivided = 6;
 // What spins farther in one part of a step would gain energy.
 constexpr double kPartTurn = 0.2;  // radians
-constexpr double kMaxParts = 32;  // of a step
+constexpr double kMaxParts = 32;   // of a step
 }  // namespace
 
 struct World::Inside {

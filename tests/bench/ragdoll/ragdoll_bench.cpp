@@ -118,8 +118,8 @@ GroundHeight heights_of(const Place& place) {
 }
 
 // Metres that bodies are below the terrain itself, straight up, 0.2 s after the begin and later: a
-// check of what the simulation reports, which knows only the contacts that it finds. On stairs it is
-// too large beside a riser.
+// check of what the simulation reports, which knows only the contacts that it finds. On stairs it
+// is too large beside a riser.
 double depth_below(const Place& place, const Walker& walker, const Fall& fall) {
   double deepest = 0;
   std::vector<Transform> pose(fall.clip.skeleton.names.size());
