@@ -132,7 +132,7 @@ format-check:
 FILES ?=
 LINT_UNITS = cmake --preset lint -B build-lint/units -DKROK_UNITY=ON \
   -DKROK_UNITY_PREFIX=UnifiedSource_ > /dev/null && \
-  grep -o '"file": "[^"]*"' build-lint/units/compile_commands.json | cut -d '"' -f 4 | sort -u | \
+  grep -o '"file": "[^"]*"' build-lint/units/compile_commands.json | cut -d '"' -f 4 | grep -v page_text | sort -u | \
   xargs -P $(JOBS) -n 1 clang-tidy -p build-lint/units --quiet --checks=-bugprone-suspicious-include
 lint: lint-deps headers
 	cmake --preset lint > /dev/null

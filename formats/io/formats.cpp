@@ -40,6 +40,11 @@ std::vector<Format>& table() {
   return rows;
 }
 
+bool reads_motion(const Format& format) {
+  return format.kind != Kind::asf &&
+         (format.read_motion != nullptr || format.open_capture != nullptr);
+}
+
 }  // namespace
 
 std::span<const Format> formats() {
@@ -67,6 +72,22 @@ const Format& format_of(const InputFile& file) {
     if (!format.ending.empty() && ending == "." + std::string(format.ending)) return format;
   }
   return kNone;
+}
+
+bool is_motion(const InputFile& file) {
+  const Format& format = format_of(file);
+  return reads_motion(format);
+}
+
+std::vector<std::string> motion_endings() {
+  std::vector<std::string> endings;
+  for (const Format& format : table()) {
+    if (!reads_motion(format)) continue;
+    const std::string_view ending =
+        format.kind == Kind::unknown ? format.ending : registry::kind_name(format.kind);
+    if (!ending.empty()) endings.push_back("." + std::string(ending));
+  }
+  return endings;
 }
 
 }  // namespace krok::io

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/io/inputs.h"
 #include "formats/io/open_capture.h"
@@ -30,9 +32,8 @@ struct Format {
   // Null for what the format cannot hold. The file is open already and of this kind.
   Result<Clip> (*read_motion)(const InputFile& file, Inputs& inputs,
                               const MotionOptions& options) = nullptr;
-  // For captures instead of read_motion, and for any motion that krok-import is to read: it does
-  // not call read_motion. With `stream`, frames are read when asked for, if format and file allow
-  // it.
+  // For captures instead of read_motion, where there are conventions to find (krok-import --unit
+  // and so on). With `stream`, frames are read when asked for, if format and file allow it.
   Result<OpenedCapture> (*open_capture)(const InputFile& file, Inputs& inputs,
                                         const CaptureReading& reading, bool stream) = nullptr;
   Result<nodes::Scene> (*read_scene)(const InputFile& file, Inputs& inputs,
@@ -50,5 +51,11 @@ const Format& format_of(registry::Kind kind);
 
 // The format of an open file, by its content, else by its name.
 const Format& format_of(const InputFile& file);
+
+// Whether open_motion() reads the file: false for scenes, and for a skeleton without a motion.
+bool is_motion(const InputFile& file);
+
+// ".anim", ".bvh" and so on: what tools that read motions look for in folders.
+std::vector<std::string> motion_endings();
 
 }  // namespace krok::io

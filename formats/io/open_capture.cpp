@@ -156,18 +156,43 @@ Result<OpenedCapture> open_asf(const InputFile& file, Inputs& /*inputs*/,
   return read_whole(*std::move(read), std::move(details));
 }
 
+namespace {
+
+// A motion without conventions to choose, as a capture. Krok's own needs no import.
+Result<OpenedCapture> open_as_capture(const Format& format, const InputFile& file, Inputs& inputs,
+                                      const CaptureReading& reading) {
+  if (Status status = check_no_skeleton(file, reading); !status) return status.error();
+  if (Status status = check_bvh_choices(reading); !status) return status.error();
+  auto clip = format.read_motion(file, inputs, {});
+  if (!clip) return clip.error();
+  auto roles = roles_of(clip->skeleton, reading);
+  if (!roles) return roles.error();
+  Capture capture;
+  capture.clip = *std::move(clip);
+  capture.roles = *std::move(roles);
+  return read_whole(std::move(capture), {});
+}
+
+}  // namespace
+
 Status use_capture(const InputFile& file, Inputs& inputs, const CaptureReading& reading, bool whole,
                    const std::function<Status(const OpenedCapture& opened)>& use) {
   const Format& format = format_of(file);
-  const auto open = format.open_capture != nullptr ? format.open_capture : open_bvh;
-  auto opened = open(file, inputs, reading, !whole);
+  const auto open = [&](bool stream) {
+    if (format.open_capture != nullptr) return format.open_capture(file, inputs, reading, stream);
+    if (format.read_motion != nullptr && format.kind == registry::Kind::unknown) {
+      return open_as_capture(format, file, inputs, reading);
+    }
+    return open_bvh(file, inputs, reading, stream);
+  };
+  auto opened = open(!whole);
   if (!opened) return opened.error();
   if (opened->streamed) {
     std::atomic<bool> faulty = false;
     opened->frames = watched(opened->frames, faulty);
     Status status = use(*opened);
     if (!faulty) return status;
-    opened = open(file, inputs, reading, false);
+    opened = open(false);
     if (!opened) return opened.error();
   }
   return use(*opened);

@@ -55,7 +55,8 @@ void plain_blend(const std::vector<PlainClip>& clips, const double* times, const
     const auto part = static_cast<float>(wanted - frame);
     const float rest = 1 - part;
     const float weight = weights[c];
-    const PlainJoint* before = clips[static_cast<std::size_t>(c)].joints.data() + frame * kJoints;
+    const PlainJoint* before = clips[static_cast<std::size_t>(c)].joints.data() +
+                               static_cast<std::ptrdiff_t>(frame) * kJoints;
     const PlainJoint* after = before + kJoints;
     for (int j = 0; j < kJoints; ++j) {
       for (int i = 0; i < 3; ++i) {

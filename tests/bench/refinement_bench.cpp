@@ -142,7 +142,7 @@ class Trial {
       }
       best = std::min(best, seconds_since(begin));
     }
-    return best / static_cast<double>(points_.size() / d_) * 1e9;
+    return best * static_cast<double>(d_) / static_cast<double>(points_.size()) * 1e9;
   }
 
   void row(const std::string& name, int inserted, const Weigh& weigh, double roughness = NAN,

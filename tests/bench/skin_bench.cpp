@@ -100,7 +100,8 @@ void eigen_columns(Scene& scene) {
     const std::uint16_t* joints = &scene.model.influence_joints[v * kInfluences];
     const float* weights = &scene.model.influence_weights[v * kInfluences];
     const auto column = [&](std::size_t k, int c) {
-      return Eigen::Map<const Vec4f, Eigen::Aligned16>(scene.palette[joints[k]].elements + 4 * c);
+      return Eigen::Map<const Vec4f, Eigen::Aligned16>(scene.palette[joints[k]].elements +
+                                                       std::ptrdiff_t{4} * c);
     };
     Vec4f x = weights[0] * column(0, 0), y = weights[0] * column(0, 1);
     Vec4f z = weights[0] * column(0, 2), origin = weights[0] * column(0, 3);

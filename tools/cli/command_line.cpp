@@ -29,7 +29,7 @@ std::vector<std::string> arguments_of(const std::vector<GivenOption>& options) {
     const std::string dashed = (option.name.size() == 1 ? "-" : "--") + option.name;
     for (const std::string& value : option.values) {
       if (option.is_flag) {
-        arguments.push_back(dashed + "=" + value);
+        arguments.push_back(fmt::format("{}={}", dashed, value));
       } else {
         arguments.push_back(dashed);
         arguments.push_back(value);

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-cam/run.h"
 #include "tools/shared/orientation_option.h"
@@ -140,7 +141,7 @@ ToolSpec make_spec() {
                    {"krok-cam film.glb -o shot.cam", "extracts it"},
                    {"krok-cam captures/*.bvh --still --view left --out-dir cameras",
                     "one camera per file, framing the whole motion from the left"}};
-  spec.batch = {{".anim", ".bvh", ".amc"},
+  spec.batch = {io::motion_endings(),
                 [arguments]() -> Result<std::string> { return ending(*arguments); }};
   return spec;
 }

@@ -11,6 +11,7 @@
 #include "formats/cam/cam.h"
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/gltf/add_camera.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/registry/registry.h"
@@ -189,6 +190,7 @@ Result<Shot> make_shot(const Options& options, ToolContext& context) {
   const auto file = context.open_input(options.input);
   if (!file) return file.error();
   const Kind kind = registry::identify(file->path(), file->bytes());
+  if (io::is_motion(*file)) return from_motion(options, *file, context);
   if (is_keys(*file, kind)) return from_keys(options, *file);
   switch (kind) {
     case Kind::cam:
@@ -196,10 +198,6 @@ Result<Shot> make_shot(const Options& options, ToolContext& context) {
     case Kind::glb:
     case Kind::gltf:
       return from_scene(options, *file, context);
-    case Kind::anim:
-    case Kind::bvh:
-    case Kind::amc:
-      return from_motion(options, *file, context);
     default:
       break;
   }

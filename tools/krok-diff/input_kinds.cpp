@@ -6,6 +6,7 @@
 #include <array>
 #include <string_view>
 
+#include "formats/io/formats.h"
 #include "formats/registry/registry.h"
 
 namespace krok::cli::diff {
@@ -66,12 +67,9 @@ Result<InputKind> kind_of(const InputFile& file) {
   const auto bytes = file.bytes();
   if (begins_with(bytes, kExrMagic)) return InputKind::morphs;
   if (begins_with(bytes, kPointCacheMagic)) return InputKind::points;
+  if (io::is_motion(file)) return InputKind::motion;
   const Kind kind = registry::identify(file.path(), bytes);
   switch (kind) {
-    case Kind::anim:
-    case Kind::bvh:
-    case Kind::amc:
-      return InputKind::motion;
     case Kind::model:
       return InputKind::model;
     case Kind::cam:

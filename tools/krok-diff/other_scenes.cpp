@@ -127,7 +127,7 @@ Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Sc
     compare::SceneMesh mesh;
     mesh.only_points = true;
     mesh.vertex_count = runs[i].count;
-    if (runs.size() > 1) mesh.name = partner->meshes[i].name;
+    if (runs.size() > 1 && partner != nullptr) mesh.name = partner->meshes[i].name;
     scene.meshes.push_back(std::move(mesh));
   }
   const auto samples = static_cast<std::size_t>(points.samples());

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-edit/run.h"
 #include "tools/shared/orientation_option.h"
@@ -178,7 +179,7 @@ ToolSpec make_spec() {
       {"krok-edit walk.anim -o both.anim --append turn.anim --blend 0.3s --at-origin --heading 0",
        "two motions in sequence, from the origin towards +Z"}};
   spec.needs_output = false;  // --list-sequences writes nothing
-  spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
+  spec.batch = {io::motion_endings(), [arguments]() -> Result<std::string> {
                   if (arguments->list_sequences) {
                     return Error(
                         "usage",

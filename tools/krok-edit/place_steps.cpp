@@ -53,7 +53,7 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
   Transform move;
   std::string line;
   Clip& clip = edit.clip;
-  const auto apply = [&](const Transform& step, std::string done) {
+  const auto apply = [&](const Transform& step, const std::string& done) {
     move_clip(step, clip);
     move = step * move;
     line += (line.empty() ? "" : ", ") + done;

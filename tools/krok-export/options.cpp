@@ -1,10 +1,13 @@
 #include "tools/krok-export/options.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "capture/conventions.h"
 #include "core/quantity.h"
 #include "formats/bvh/bvh_writer.h"
+#include "formats/io/formats.h"
 #include "tools/cli/one_of.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-export/run.h"
@@ -126,7 +129,7 @@ ToolSpec make_spec() {
       {"krok-export capture.bvh -o capture.glb",
        "directly from a capture; -v prints the detected conventions"},
       {"krok-export walk.anim --format csv -o - | head", "the first rows"}};
-  spec.batch = {{".anim", ".bvh", ".amc"}, [options] { return extension_of(options->format); }};
+  spec.batch = {io::motion_endings(), [options] { return extension_of(options->format); }};
   return spec;
 }
 

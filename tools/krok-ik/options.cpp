@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
+#include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-ik/run.h"
 #include "tools/shared/orientation_option.h"
@@ -263,7 +264,7 @@ ToolSpec make_spec() {
       {"krok-ik walk.anim --learn-limits run.anim --learn-limits dance.anim --write-limits "
        "actor.limits.json",
        "the ranges that an actor uses in captures, as a file for --limits"}};
-  spec.batch = {{".anim", ".bvh", ".amc"}, always(".anim")};
+  spec.batch = {io::motion_endings(), always(".anim")};
   return spec;
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "formats/io/formats.h"
 #include "formats/registry/registry.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_kind.h"
@@ -196,11 +197,14 @@ ToolSpec make_spec() {
       {"krok-import captures --out-dir motions --keep-going",
        "all captures in a folder; run again, it processes only new, changed and failed files"}};
   // Only files with motion; an Acclaim skeleton or an MD5 mesh is read with the motion beside it.
-  spec.batch = {
-      {".bvh", ".amc", ".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"},
-      [options]() -> Result<std::string> {
-        return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
-      }};
+  std::vector<std::string> endings = io::motion_endings();
+  std::erase(endings, ".anim");
+  for (const char* scene : {".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"}) {
+    endings.emplace_back(scene);
+  }
+  spec.batch = {std::move(endings), [options]() -> Result<std::string> {
+                  return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
+                }};
   return spec;
 }
 

@@ -33,6 +33,9 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
 // A skeleton, or a motion with the skeleton beside it.
 Result<Description> describe_acclaim(const InputFile& file, const SkeletonOptions& how,
                                      ToolContext& context);
+// Any other motion of the table of formats (formats/io/formats.h).
+Result<Description> describe_motion(const InputFile& file, const SkeletonOptions& how,
+                                    ToolContext& context);
 // glTF, and formats read through Assimp.
 Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
                                    const SkeletonOptions& how, ToolContext& context);

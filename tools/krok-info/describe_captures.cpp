@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include "core/text.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/io/open_capture.h"
+#include "formats/io/open_motion.h"
 #include "tools/krok-info/describe.h"
 
 namespace krok::cli::info {
@@ -67,6 +69,22 @@ Result<Description> describe_acclaim(const InputFile& file, const SkeletonOption
         return add_capture(capture, "joints in the reference pose", how, out);
       });
   if (!status) return status.error();
+  return out;
+}
+
+Result<Description> describe_motion(const InputFile& file, const SkeletonOptions& how,
+                                    ToolContext& context) {
+  const auto clip = io::open_motion(file, context);
+  if (!clip) return clip.error();
+  const std::string ending = extension(file.path());
+  Description out;
+  out.what = fmt::format("a motion ({})", ending);
+  out.json["kind"] = ending.empty() ? ending : ending.substr(1);
+  add_timing(clip->frame_count(), clip->rate, out);
+  if (Status status = add_skeleton(clip->skeleton, how, out); !status) return status.error();
+  std::vector<Vec3> positions;
+  for (const Transform& joint : clip->skeleton.reference) positions.push_back(joint.position);
+  add_size<Vec3>(positions, "joints in the reference pose", out);
   return out;
 }
 

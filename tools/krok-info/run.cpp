@@ -1,5 +1,6 @@
 #include "tools/krok-info/run.h"
 
+#include "formats/io/formats.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
@@ -37,6 +38,7 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
     default:
       break;
   }
+  if (io::is_motion(file)) return describe_motion(file, how, context);
   return Error(
       "info-kind",
       "is " + std::string(registry::describe_content(file.bytes())) +

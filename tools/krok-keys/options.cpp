@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "formats/io/formats.h"
 #include "tools/cli/one_of.h"
 #include "tools/krok-keys/run.h"
 #include "tools/shared/role_input.h"
@@ -152,7 +153,7 @@ ToolSpec make_spec() {
       {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"}};
   spec.exit_no = "--find steps was given and no step was found";
   spec.needs_output = false;
-  spec.batch = {{".anim", ".bvh", ".amc"}, always(".keys.json")};
+  spec.batch = {io::motion_endings(), always(".keys.json")};
   return spec;
 }
 

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/io/formats.h"
 #include "tools/cli/one_of.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-plot/run.h"
@@ -342,7 +343,7 @@ ToolSpec make_spec() {
        "an animated character with the colours and textures of its materials; without "
        "a motion, in its reference pose"}};
   spec.needs_output = false;  // --sheet and --strip have their own output files
-  spec.batch = {{".anim", ".bvh", ".amc"}, always(".svg")};
+  spec.batch = {io::motion_endings(), always(".svg")};
   spec.check = [arguments] { return check(*arguments); };
   return spec;
 }

@@ -253,7 +253,10 @@ class TableLines {
 void report_choice(const Table& table, const Choice& choice, const TableOptions& options,
                    const std::string& path, ToolContext& context) {
   std::string chosen;
-  const auto add = [&](std::string words) { chosen += (chosen.empty() ? "" : ", ") + words; };
+  const auto add = [&](std::string_view words) {
+    chosen += chosen.empty() ? "" : ", ";
+    chosen += words;
+  };
   if (options.x.empty()) {
     add(choice.x ? fmt::format("x is '{}'", shown(table.columns()[*choice.x].header))
                  : "x is the row number");

@@ -7,6 +7,7 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-ragdoll/run.h"
 #include "tools/shared/orientation_option.h"
@@ -220,7 +221,7 @@ ToolSpec make_spec() {
        "-o up.anim",
        "falls and gets up, over the front or the back as it lies"}};
   spec.exit_partly = "with --pushes: some rows failed, all others were written";
-  spec.batch = {{".anim", ".bvh", ".amc"}, [arguments]() -> Result<std::string> {
+  spec.batch = {io::motion_endings(), [arguments]() -> Result<std::string> {
                   return std::string(arguments->push_table.empty() ? ".anim" : "_{name}.anim");
                 }};
   return spec;

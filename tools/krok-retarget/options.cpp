@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/numbers.h"
+#include "formats/io/formats.h"
 #include "terrain/spec.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-retarget/run.h"
@@ -122,7 +123,7 @@ ToolSpec make_spec() {
                     "a walk of krok-walk on another skeleton, on the same stairs"},
                    {"krok-retarget --onto hero.model motions --out-dir hero_motions",
                     "all motions in a folder"}};
-  spec.batch = {{".anim", ".bvh", ".amc"}, always(".anim")};
+  spec.batch = {io::motion_endings(), always(".anim")};
   return spec;
 }
 

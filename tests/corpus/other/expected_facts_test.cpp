@@ -140,8 +140,7 @@ TEST_F(OtherCorpus, JointsOfAnFbxInMotion) {
       {"Bone.006_end", {324.7167, 265.3157, -235.5146}},
       {"Bone.008_end", {-271.7800, 412.5853, -307.1354}}};
   for (const auto& [name, position] : expected) {
-    const auto node = std::find_if(scene->nodes.begin(), scene->nodes.end(),
-                                   [&](const nodes::Node& n) { return n.name == name; });
+    const auto node = std::ranges::find(scene->nodes, name, &nodes::Node::name);
     ASSERT_NE(node, scene->nodes.end()) << name;
     const auto index = static_cast<std::size_t>(node - scene->nodes.begin());
     EXPECT_LT((state.node_to_world[index].topRightCorner<3, 1>() - position).norm(), 2e-3) << name;

@@ -95,6 +95,19 @@ TEST_F(OpenFiles, AFormatThatIsAddedIsReadLikeAnyOther) {
     return {};
   }));
   EXPECT_EQ(frames, 3);
+  // krok-import reads it, too, and folders are searched for it.
+  const auto file = inputs.open_input(path("a.txt"));
+  ASSERT_TRUE(file);
+  EXPECT_TRUE(is_motion(*file));
+  frames = 0;
+  const Status imported =
+      use_capture(*file, inputs, {}, false, [&](const OpenedCapture& opened) -> Status {
+        frames = opened.frames.frame_count;
+        return {};
+      });
+  ASSERT_TRUE(imported) << imported.error().message;
+  EXPECT_EQ(frames, 3);
+  EXPECT_THAT(motion_endings(), testing::ElementsAre(".anim", ".bvh", ".amc", ".dots"));
   // What is known goes before what a program added.
   EXPECT_GT(open_motion(capture(), inputs)->frame_count(), 3);
 }
