@@ -35,9 +35,10 @@ say "5. Down stairs"
 stairs=stairs:rise=-17cm,run=30cm,count=12,begin=20cm
 "$generators/make-walk" -q --steps 10 --rise -17cm --step-length 30cm -o down.bvh
 "$bin/krok-ragdoll" down.bvh --at 5.3s --push Spine2=10Ns,0,140Ns --duration 8s --ground $stairs \
-  --get-up front.anim --get-up back.anim --get-up side.anim -o stairs.anim --json=stairs.json
+  --get-up front.anim --get-up back.anim --get-up side.anim -o stairs_up.anim --json=stairs.json
+"$bin/krok-edit" -q stairs_up.anim --append on.anim --blend 0s --match-height -o stairs.anim
 "$bin/krok-plot" -q stairs.anim --ground $stairs --whole-ground --strip stairs.png --sides left \
-  --moments 5.3s,5.9s,6.4s,7s,9s,11s,12s,13s --size 200
+  --moments 5.3s,5.9s,6.4s,7s,9s,11s,13s,15s,17s --size 200
 
 say "6. A skinned walker, images and a page"
 "$bin/krok-body" -q fall.anim -o walker.model
