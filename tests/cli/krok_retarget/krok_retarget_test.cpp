@@ -40,7 +40,7 @@ class KrokRetarget : public MotionTest {
     return run_here("krok-retarget", std::move(arguments));
   }
 
-  // The actor of the walk under names that tell nothing, with so many things on its belt that its
+  // The actor of the walk under names that say nothing, with so many things on its belt that its
   // shape does not tell either.
   static Skeleton nameless(const Skeleton& from) {
     Skeleton skeleton = from;
