@@ -90,6 +90,9 @@ Result<FollowOptions> understand_follow(const FollowArguments& a) {
     return usage_of("--simulated and --hold exclude each other",
                     "with --simulated the root body is animated");
   }
+  if (a.seed != FollowArguments().seed && a.push_every.empty()) {
+    return usage_of("--seed is for --push-every", "give --push-every TIME, or leave --seed out");
+  }
   if (!a.until.empty()) {
     const auto until = parse_clip_time(a.until);
     if (!until || !(until->value > 0)) {
@@ -207,7 +210,7 @@ Status set_end(const FollowOptions& options, std::optional<double> duration, con
       return Error("ragdoll-time",
                    fmt::format("--until {} s is not between the begin, {} s, and the motion's end, "
                                "{} s",
-                               until, fall.at, motion.duration()));
+                               readable(until), readable(fall.at), readable(motion.duration())));
     }
     fall.duration = until - fall.at;
     fall.go_on = true;

@@ -8,6 +8,7 @@
 
 #include "core/index.h"
 #include "core/nearest_name.h"
+#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/gltf/gltf_writer.h"
@@ -65,8 +66,8 @@ Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& pl
   const Clip& clip = subject_.clip;
   plan.fall.at = at.seconds(clip.rate);
   if (plan.fall.at > clip.duration() + 1e-9) {
-    return Error("ragdoll-time",
-                 fmt::format("{} is after the motion's end, {} s", shown_time, clip.duration()))
+    return Error("ragdoll-time", fmt::format("{} is after the motion's end, {} s", shown_time,
+                                             readable(clip.duration())))
         .in_file(given().input);
   }
   const Status status =

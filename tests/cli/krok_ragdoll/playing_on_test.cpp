@@ -36,6 +36,12 @@ class PlayingOn : public MotionTest {
   Clip walk_;
 };
 
+TEST_F(PlayingOn, ASeedWithoutPushesIsRefused) {
+  const auto run = call({"walk.anim", "--powered", "0.5", "--seed", "3", "-o", "out.anim"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--push-every"));
+}
+
 // The one line of the manual: pushed at 2 s and 4 s, to opposite sides, visibly; walks on to the
 // motion's end, and there is no warning that he does not lie still.
 TEST_F(PlayingOn, AWalkerIsPushedAndWalksOn) {
