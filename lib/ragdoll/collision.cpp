@@ -33,6 +33,15 @@ btTransform placed(const Transform& t) {
                      to_bullet(t.position));
 }
 
+// Bullet sets memory aside for 4096 pairs, which takes longer than a short fall; what a character
+// has is some dozens, and more than that it would allocate.
+btDefaultCollisionConstructionInfo small_pools() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 128;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 128;
+  return info;
+}
+
 std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
   const auto number = [](double value) { return static_cast<btScalar>(value); };
   switch (shape.kind) {
@@ -62,7 +71,7 @@ struct Collision::Inside {
 
   bool level = false;
   double height = 0;
-  btDefaultCollisionConfiguration configuration;
+  btDefaultCollisionConfiguration configuration{small_pools()};
   btCollisionDispatcher dispatcher{&configuration};
   btDbvtBroadphase broadphase;
   btCollisionWorld world{&dispatcher, &broadphase, &configuration};

@@ -45,6 +45,7 @@ class FallMaker {
   bool step(int number);
   void measure_off();
   Pose pose() const;
+  bool is_finite() const;
   void copy_animated();
   void add_frames(double from, double to, const Pose& before, const Pose& after);
 
@@ -259,28 +260,37 @@ bool FallMaker::step(int number) {
   return false;
 }
 
+bool FallMaker::is_finite() const {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const BodyState state = world_.state(static_cast<int>(b));
+    if (!state.to_world.position.allFinite() || !state.to_world.orientation.coeffs().allFinite()) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Status FallMaker::run() {
   const double end = (frames_ - 1) / motion_.rate;
-  Pose before = pose();
   double time = options_.at;
   for (int number = 0; time < end + World::kStep; ++number) {
+    const double next = options_.at + (number + 1) * World::kStep;
+    // Steps are shorter than frames: most have none within them.
+    const bool has_frame = next_frame_ < frames_ && next_frame_ / motion_.rate < next - 1e-9;
+    const Pose before = has_frame ? pose() : Pose();
     apply_pushes(number);
     const bool moves = step(number);
-    const Pose after = pose();
-    for (const Transform& joint : after) {
-      if (!joint.position.allFinite() || !joint.orientation.coeffs().allFinite()) {
-        return Error("ragdoll-value", "the simulation left the finite numbers",
-                     "weaker pushes, shapes that do not overlap, or a begin where the motion does "
-                     "not jump (after a rest frame)");
-      }
+    if (!is_finite()) {
+      return Error("ragdoll-value", "the simulation left the finite numbers",
+                   "weaker pushes, shapes that do not overlap, or a begin where the motion does "
+                   "not jump (after a rest frame)");
     }
-    const double next = options_.at + (number + 1) * World::kStep;
-    add_frames(time, next, before, after);
-    before = after;
+    if (has_frame) add_frames(time, next, before, pose());
     time = next;
     if (!moves) break;
   }
-  for (; next_frame_ < frames_; ++next_frame_) fall_.clip.set_pose(next_frame_, before);
+  const Pose last = pose();
+  for (; next_frame_ < frames_; ++next_frame_) fall_.clip.set_pose(next_frame_, last);
   fall_.mean_off = std::sqrt(fall_.mean_off * World::kStep / fall_.simulated);
   if (!options_.go_on) return {};
   auto whole = go_on(fall_.clip, motion_, kBlend);
