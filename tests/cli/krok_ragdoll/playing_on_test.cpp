@@ -1,4 +1,4 @@
-// If these fail, the command that lets a walker be pushed and walk on lets him fall, stand still or
+// If these fail, the command that lets a walker be pushed and walk on lets them fall, stop or
 // end early; other joints move than were asked for; or wrong options pass.
 
 #include <gmock/gmock.h>
