@@ -37,12 +37,16 @@ class Posture {
     return (place(b) - place(a)).stableNormalized();
   }
 
-  double least_upright() const {
-    const Role top = actor_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
-    double least = bone(Role::hips, top).y();
+  Vec3 trunk() const {
+    return bone(Role::hips, actor_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck);
+  }
+
+  // The cosine of the largest angle of trunk, thighs and shanks with a direction.
+  double least_along(const Vec3& up) const {
+    double least = trunk().dot(up);
     for (const Side& side : kSides) {
-      least = std::min(
-          {least, -bone(side.upper_leg, side.lower_leg).y(), -bone(side.lower_leg, side.foot).y()});
+      least = std::min({least, -bone(side.upper_leg, side.lower_leg).dot(up),
+                        -bone(side.lower_leg, side.foot).dot(up)});
     }
     return least;
   }
@@ -50,8 +54,7 @@ class Posture {
   // Similarity of the pose to standing with arms to the sides, feet side by side.
   double likeness() const {
     const Vec3 left = bone(Role::right_upper_leg, Role::left_upper_leg);
-    const Role top = actor_.roles.joint(Role::head) >= 0 ? Role::head : Role::neck;
-    double sum = bone(Role::hips, top).y();
+    double sum = trunk().y();
     double outward = 1;
     for (const Side& side : kSides) {
       sum -= bone(side.upper_leg, side.lower_leg).y() + bone(side.lower_leg, side.foot).y();
@@ -140,7 +143,7 @@ class LegStraightener {
 }  // namespace
 
 bool stands(const Actor& actor) {
-  return Posture(actor).least_upright() > 0.5;
+  return Posture(actor).least_along(Vec3::UnitY()) > 0.5;
 }
 
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame) {
@@ -174,6 +177,17 @@ Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional
   }
   if (stance.frame) LegStraightener(clip, roles, step).straighten(stance.pose);
   return stance;
+}
+
+Skeleton neutral_skeleton(const Clip& clip, const RoleMap& roles) {
+  Skeleton neutral = clip.skeleton;
+  const Actor actor{clip.skeleton, roles, neutral.reference};
+  const Posture posture(actor);
+  if (!roles.humanoid || posture.least_along(posture.trunk()) > 0.5) return neutral;
+  if (auto stance = find_stance(clip, roles, std::nullopt)) {
+    neutral.reference = std::move(stance->pose);
+  }
+  return neutral;
 }
 
 }  // namespace krok::retarget

@@ -25,4 +25,10 @@ bool stands(const Actor& actor);
 // frame. Skeletons that are not humanoids keep their reference pose.
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame);
 
+// A clip's skeleton with a reference pose that angles of an anatomy can be measured from and bodies
+// built in: its own where trunk, thighs and shanks lie within 60 degrees of one line, whichever way
+// it lies; else that of find_stance(). Where no frame stands either, and for skeletons that are not
+// humanoids, its own.
+Skeleton neutral_skeleton(const Clip& clip, const RoleMap& roles);
+
 }  // namespace krok::retarget

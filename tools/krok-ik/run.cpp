@@ -13,6 +13,7 @@
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
 #include "ik/learn_limits.h"
+#include "retarget/stance.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
@@ -101,7 +102,7 @@ Status Run::read_limits() {
                    "krok-info -v lists the joints and their roles; --map assigns roles")
           .in_file(given().input);
     }
-    limits_ = krok::ik::anatomical_limits(clip_.skeleton, roles_);
+    limits_ = krok::ik::anatomical_limits(retarget::neutral_skeleton(clip_, roles_), roles_);
     return {};
   }
   const auto file = context_.open_input(given().limits);

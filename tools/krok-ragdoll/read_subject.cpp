@@ -11,6 +11,7 @@
 #include "formats/model/model_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/anatomical_limits.h"
+#include "retarget/stance.h"
 #include "tools/cli/file_name.h"
 #include "tools/krok-ragdoll/follow.h"
 #include "tools/shared/role_input.h"
@@ -41,6 +42,7 @@ class SubjectReader {
   const Options& options_;
   ToolContext& context_;
   Subject subject_;
+  Skeleton neutral_;  // the motion's, in a pose that angles can be measured from
 };
 
 Status SubjectReader::read_motion() {
@@ -56,13 +58,14 @@ Status SubjectReader::read_motion() {
   auto roles = (*find)(subject_.clip.skeleton);
   if (!roles) return roles.error();
   subject_.roles = std::move(*roles);
+  neutral_ = retarget::neutral_skeleton(subject_.clip, subject_.roles);
   return {};
 }
 
 Status SubjectReader::read_limits() {
   if (given().limits == "none") return {};
   if (given().limits == "auto") {
-    subject_.limits = krok::ik::anatomical_limits(subject_.clip.skeleton, subject_.roles);
+    subject_.limits = krok::ik::anatomical_limits(neutral_, subject_.roles);
     return {};
   }
   const auto file = context_.open_input(given().limits);
@@ -96,7 +99,7 @@ Status SubjectReader::read_bodies() {
     model = std::move(*read);
     how.model = &*model;
   }
-  auto bodies = krok::ragdoll::make_bodies(subject_.clip.skeleton, subject_.roles, how);
+  auto bodies = krok::ragdoll::make_bodies(neutral_, subject_.roles, how);
   if (!bodies) {
     const bool of_model = bodies.error().code == "ragdoll-model";
     return std::move(bodies).error().in_file(of_model ? given().model : given().input);

@@ -13,6 +13,7 @@
 #include "formats/bvh/bvh_reader.h"
 #include "ik/anatomical_limits.h"
 #include "ragdoll/simulate.h"
+#include "retarget/stance.h"
 
 namespace krok {
 namespace {
@@ -39,8 +40,9 @@ ragdoll::Fall fall_of(const Clip& clip, const RoleMap& roles,
   Vec3f low = clip.frame_positions(0)[0];
   for (const Vec3f& place : clip.frame_positions(clip.frame_count() / 2)) low = low.cwiseMin(place);
   options.surroundings.height = low.y() - 0.05;
-  auto fall = ragdoll::simulate_fall(clip, roles, bodies,
-                                     ik::anatomical_limits(clip.skeleton, roles), options);
+  auto fall = ragdoll::simulate_fall(
+      clip, roles, bodies, ik::anatomical_limits(retarget::neutral_skeleton(clip, roles), roles),
+      options);
   EXPECT_TRUE(fall.ok()) << (fall.ok() ? "" : fall.error().message);
   return fall.ok() ? std::move(*fall) : ragdoll::Fall();
 }

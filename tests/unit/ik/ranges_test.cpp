@@ -9,6 +9,7 @@
 #include "ik/anatomical_limits.h"
 #include "ik/learn_limits.h"
 #include "math/quaternion.h"
+#include "retarget/stance.h"
 #include "samples/generator/walk.h"
 #include "support/test_scenes.h"
 
@@ -110,6 +111,39 @@ TEST(AnatomicalLimits, HoldAWalk) {
           << clip.skeleton.names[at(j)] << " in frame " << f;
     }
   }
+}
+
+// Exporters whose bones all lie along one axis store a leg that points up beside the trunk. Without
+// a pose that stands the hip's twist of such a leg would be measured from half a turn away.
+TEST(AnatomicalLimits, HoldAWalkWhoseReferencePoseHasALegTurnedUp) {
+  Clip clip = walk();
+  const RoleMap roles = find_roles(clip.skeleton);
+  const std::vector<Transform> standing = clip.skeleton.reference;
+  const int thigh = roles.joint(Role::right_upper_leg);
+  const Transform at_hip = standing[at(thigh)];
+  const Quat turn = from_rotation_vector(Vec3(0.3, 0, 3.0));
+  std::vector<char> leg(standing.size(), 0);
+  for (int j = thigh; j < clip.joint_count(); ++j) {
+    leg[at(j)] = j == thigh || leg[at(clip.skeleton.parents[at(j)])] != 0 ? 1 : 0;
+    if (leg[at(j)] == 0) continue;
+    Transform& joint = clip.skeleton.reference[at(j)];
+    joint = {at_hip.position + turn * (joint.position - at_hip.position), turn * joint.orientation};
+  }
+  const Skeleton neutral = retarget::neutral_skeleton(clip, roles);
+  const Limits limits = anatomical_limits(neutral, roles);
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (int j = 1; j < clip.joint_count(); ++j) {
+      // The roll of arms is as in the frame that was chosen.
+      EXPECT_LE(excess_in(clip, limits, j, f), 5 * kRadiansPerDegree)
+          << clip.skeleton.names[at(j)] << " in frame " << f;
+    }
+  }
+  // A reference pose that only lies is as good as one that stands, and is kept.
+  const Transform lie{Vec3(1, 0, 0), from_rotation_vector(Vec3(-kPi / 2, 0, 0))};
+  clip.skeleton.reference = standing;
+  for (Transform& joint : clip.skeleton.reference) joint = lie * joint;
+  EXPECT_EQ(retarget::neutral_skeleton(clip, roles).reference[3].position,
+            clip.skeleton.reference[3].position);
 }
 
 // Turns of one joint of the reference pose about the body's axes, in degrees, and by how much they
