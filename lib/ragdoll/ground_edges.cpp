@@ -374,7 +374,9 @@ void touch_box(const Shape& shape, const Transform& pose, const GroundEdge& edge
   const double sign = down[face] < 0 ? -1 : 1;
   const Vec3 first = axes.transpose() * (edge.begin - pose.position);
   for (const double s : {low, high}) {
-    add(s, sign * (first[face] + s * along[face]) - shape.half[face]);
+    // The face is not quite along the edge: where it passes beside the box, it is no depth.
+    const double its = sign * (first[face] + s * along[face]) - shape.half[face];
+    add(s, gap > 0 ? std::max(gap, its) : its);
   }
 }
 
