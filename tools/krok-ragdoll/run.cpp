@@ -14,6 +14,7 @@
 #include "formats/gltf/gltf_writer.h"
 #include "formats/goals/goals.h"
 #include "formats/ragdoll/ragdoll_format.h"
+#include "ik/limits.h"
 #include "ragdoll/body_meshes.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
@@ -26,6 +27,8 @@
 namespace krok::cli::ragdoll {
 
 namespace {
+
+constexpr double kTooFarBeyond = 45 * kRadiansPerDegree;
 
 // A fall that is to be made, and where it is written.
 struct Plan {
@@ -46,6 +49,7 @@ class Run {
   Status plan_table();
   Result<std::string> output_of(const std::string& file_name) const;
   Status begin_at(const ClipTime& at, const std::string& shown_time, Plan& plan);
+  void check_ranges(std::span<const Transform> pose) const;
   Status add_push(const PushAt& push, Plan& plan) const;
   Status read_ground(Plan& plan);
   Status write(const Plan& plan, Provenance provenance, int jobs, Fallen& fallen,
@@ -82,8 +86,34 @@ Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& pl
         krok::ragdoll::make_joints(clip.skeleton, subject_.roles, subject_.bodies, subject_.limits,
                                    pose, plan.fall.joints),
         clip.skeleton, subject_.bodies, subject_.limits, pose);
+    check_ranges(pose);
   }
   return {};
+}
+
+// Ranges give way to the pose that a fall begins in. One that is far off is not a person's, or the
+// joint's role is another's.
+void Run::check_ranges(std::span<const Transform> pose) const {
+  const Skeleton& skeleton = subject_.clip.skeleton;
+  int worst = -1;
+  double most = kTooFarBeyond;
+  for (const krok::ragdoll::Body& body : subject_.bodies) {
+    const int joint = body.joint;
+    if (subject_.limits.empty() || skeleton.parents[at(joint)] < 0) continue;
+    const Quat& parent = pose[at(skeleton.parents[at(joint)])].orientation;
+    const double beyond = krok::ik::excess(subject_.limits[at(joint)],
+                                           parent.conjugate() * pose[at(joint)].orientation);
+    if (beyond <= most) continue;
+    most = beyond;
+    worst = joint;
+  }
+  if (worst < 0) return;
+  context_.warn(
+      "ragdoll-range",
+      fmt::format("where the fall begins, {} is {:.0f} degrees beyond its range, which is "
+                  "widened to that",
+                  shown(skeleton.names[at(worst)]), most / kRadiansPerDegree),
+      "another --at; --map if krok-info -v shows a wrong role; or --limits from a file");
 }
 
 Status Run::add_push(const PushAt& push, Plan& plan) const {

@@ -74,6 +74,23 @@ TEST_F(KrokRagdoll, WhatMissesATolerancePrintsAWarning) {
   EXPECT_THAT(torn["issues"].dump(), HasSubstr("ragdoll-limit"));
 }
 
+// Ranges are widened to the pose at the begin; where that is no pose of a person (or a role is
+// wrong) the body lies wrung at the end, and nothing else says so.
+TEST_F(KrokRagdoll, APoseFarBeyondItsRangesPrintsAWarning) {
+  Clip wrung = walk_;
+  const std::size_t neck = at(walk_.skeleton.find("Neck"));
+  for (int f = 0; f < wrung.frame_count(); ++f) {
+    auto orientations = wrung.frame_orientations(f);
+    orientations[neck] = Quatf(Eigen::AngleAxisf(2.2F, Vec3f::UnitY())) * orientations[neck];
+  }
+  write("wrung.anim", wrung);
+  const json fallen = report({"wrung.anim", "--at", "1s", "--duration", "3s"});
+  EXPECT_THAT(fallen["issues"].dump(), HasSubstr("ragdoll-range"));
+  EXPECT_THAT(fallen["issues"].dump(), HasSubstr("Neck"));
+  const json plain = report({"walk.anim", "--at", "1s", "--duration", "3s"});
+  EXPECT_THAT(plain["issues"].dump(), testing::Not(HasSubstr("ragdoll-range")));
+}
+
 // Captures often begin with a T-pose elsewhere; the speed from it to the first frame of the motion
 // would throw the body out of the world.
 TEST_F(KrokRagdoll, ABodyThatWasElsewhereAFrameBeforeFallsWithoutSpeed) {
