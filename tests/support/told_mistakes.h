@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <span>
 #include <string>
 
@@ -22,6 +23,17 @@ inline std::string replaced(std::string text, const std::string& from, const std
 inline std::string place_of(const Error& error) {
   return error.code + " " + std::to_string(error.where.line) + ":" +
          std::to_string(error.where.column);
+}
+
+// A text with up to three places damaged: characters are lost, or become others of JSON.
+inline std::string damaged(std::string text, std::mt19937& random) {
+  for (unsigned k = random() % 3 + 1; k > 0; --k) {
+    const std::size_t place = random() % text.size();
+    if (random() % 3 == 0) text.erase(place, random() % 4 + 1);
+    if (place < text.size())
+      text[place] = static_cast<char>("0123456789-.,[]{}\"e:"[random() % 20]);
+  }
+  return text;
 }
 
 struct Mistake {

@@ -8,6 +8,7 @@
 
 #include "core/numbers.h"
 #include "core/quantity.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-cam/options.h"
 
 namespace krok::cli::cam {
@@ -16,10 +17,6 @@ namespace {
 
 constexpr double kSensorHeight = 24;  // millimetres
 constexpr double kUsualElevation = 10 * kRadiansPerDegree;
-
-Error usage(std::string message, std::string hint = {}) {
-  return Error("usage", std::move(message), std::move(hint));
-}
 
 template <typename T>
 Result<T> named(Result<T> value, const char* option) {

@@ -7,6 +7,7 @@
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-edit/options.h"
 
 namespace krok::cli::edit {
@@ -16,10 +17,6 @@ namespace {
 Error named(Error error, const char* option) {
   error.message = fmt::format("{}: {}", option, error.message);
   return error;
-}
-
-Error usage(std::string message, std::string hint = {}) {
-  return Error("usage", std::move(message), std::move(hint));
 }
 
 // A time that is not negative.

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-ik/run.h"
 #include "tools/shared/orientation_option.h"
 #include "tools/shared/planting.h"
@@ -20,10 +21,6 @@
 namespace krok::cli::ik {
 
 namespace {
-
-Error usage(std::string message, std::string hint = {}) {
-  return {"usage", std::move(message), std::move(hint)};
-}
 
 void declare_goals(CommandOptions& command, Arguments& a) {
   command.group("Goals");

@@ -6,16 +6,13 @@
 
 #include "formats/io/formats.h"
 #include "tools/cli/one_of.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-keys/run.h"
 #include "tools/shared/role_input.h"
 
 namespace krok::cli::keys {
 
 namespace {
-
-Error usage(std::string message, std::string hint) {
-  return Error("usage", std::move(message), std::move(hint));
-}
 
 // The text before and after the last `mark`.
 struct Halves {

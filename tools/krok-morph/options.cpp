@@ -9,6 +9,7 @@
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-morph/run.h"
 
 namespace krok::cli::morph {
@@ -56,10 +57,6 @@ constexpr std::array kUses = {
     OptionUse{"--save-weights", kFrames},
     OptionUse{"--output", kPack | kBake | kFrames},
 };
-
-Error usage(std::string message, std::string hint = {}) {
-  return Error("usage", std::move(message), std::move(hint));
-}
 
 const ActionFacts& facts_of(Action action) {
   return kActions[static_cast<std::size_t>(action)];

@@ -13,6 +13,7 @@
 #include "formats/io/formats.h"
 #include "tools/cli/one_of.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-plot/run.h"
 #include "tools/shared/ground_option.h"
 #include "tools/shared/role_input.h"
@@ -30,10 +31,6 @@ constexpr std::array kCharts = {
     ChartName{"path", ChartKind::path}, ChartName{"feet", ChartKind::feet},
     ChartName{"angles", ChartKind::angles}, ChartName{"positions", ChartKind::positions},
     ChartName{"difference", ChartKind::difference}};
-
-Error usage(std::string message, std::string hint = {}) {
-  return Error("usage", std::move(message), std::move(hint));
-}
 
 CommandOption add_list(CommandOptions& command, const std::string& name,
                        std::vector<std::string>& values, const std::string& description) {

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-ragdoll/run.h"
 #include "tools/shared/orientation_option.h"
 #include "tools/shared/role_input.h"
@@ -16,10 +17,6 @@
 namespace krok::cli::ragdoll {
 
 namespace {
-
-Error usage(std::string message, std::string hint = {}) {
-  return {"usage", std::move(message), std::move(hint)};
-}
 
 void declare_fall(CommandOptions& command, Arguments& a) {
   command.group("Fall");

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cctype>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -13,6 +16,15 @@ inline std::string text_of_file(const std::string& path) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+// A file of the corpus as the name of a test.
+inline std::string name_of_file(const testing::TestParamInfo<const char*>& test_case) {
+  std::string name = test_case.param;
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  }
+  return name;
 }
 
 }  // namespace krok::test

@@ -7,19 +7,12 @@
 #include <string>
 
 #include "core/file.h"
+#include "corpus/bvh/corpus_files.h"
 #include "formats/bvh/bvh_reader.h"
 #include "support/planted_measures.h"
 
 namespace krok {
 namespace {
-
-std::string name_of_capture(const testing::TestParamInfo<const char*>& test_case) {
-  std::string name = test_case.param;
-  for (char& c : name) {
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  }
-  return name;
-}
 
 class PlantedCaptures : public testing::TestWithParam<const char*> {};
 
@@ -61,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(Walks, PlantedCaptures,
                                          "deep-motion-editing/xia_test_neutral_01_000.bvh",
                                          "deep-motion-editing/xia_test_old_13_000.bvh",
                                          "animated_drawings/fair1_zombie.bvh"),
-                         name_of_capture);
+                         test::name_of_file);
 
 }  // namespace
 }  // namespace krok

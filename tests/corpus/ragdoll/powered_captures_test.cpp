@@ -8,20 +8,13 @@
 #include <string>
 
 #include "core/file.h"
+#include "corpus/bvh/corpus_files.h"
 #include "formats/bvh/bvh_reader.h"
 #include "ik/anatomical_limits.h"
 #include "ragdoll/simulate.h"
 
 namespace krok::ragdoll {
 namespace {
-
-std::string name_of_played(const testing::TestParamInfo<const char*>& test_case) {
-  std::string name = test_case.param;
-  for (char& c : name) {
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  }
-  return name;
-}
 
 class PoweredCaptures : public testing::TestWithParam<const char*> {};
 
@@ -65,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(People, PoweredCaptures,
                                          "animated_drawings/rokoko_jesse_dance.bvh",
                                          "animated_drawings/fair1_zombie.bvh",
                                          "animated_drawings/cmu1_jumping_jacks.bvh"),
-                         name_of_played);
+                         test::name_of_file);
 
 }  // namespace
 }  // namespace krok::ragdoll

@@ -149,16 +149,7 @@ StepLibrary library_on(const FeetCase& given) {
   std::vector<parametric::Example> kept;
   for (const int i : parametric::thin_out(library, 0.2)) kept.push_back(library.examples[at(i)]);
   library.examples = std::move(kept);
-  std::vector<double> parameters;
-  for (const auto& example : library.examples) {
-    parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
-  }
-  const auto solver = rbf::WeightSolver::create(library.dimensions(), parameters);
-  EXPECT_TRUE(solver.ok());
-  const RoleMap roles = find_roles(library.skeleton);
-  auto made = StepLibrary::create("feet", std::move(library), solver->function(), roles);
-  EXPECT_TRUE(made.ok()) << made.error().message;
-  return *std::move(made);
+  return test::walking_library(std::move(library));
 }
 
 double heading_between(const Clip& clip, int frame, int left, int right) {

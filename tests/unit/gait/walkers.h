@@ -15,6 +15,20 @@
 
 namespace krok::gait::test {
 
+// Weights that meet all examples.
+inline StepLibrary walking_library(parametric::Library library) {
+  std::vector<double> parameters;
+  for (const auto& example : library.examples) {
+    parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
+  }
+  const auto solver = rbf::WeightSolver::create(library.dimensions(), parameters);
+  EXPECT_TRUE(solver.ok());
+  const RoleMap roles = find_roles(library.skeleton);
+  auto made = StepLibrary::create("walks", std::move(library), solver->function(), roles);
+  EXPECT_TRUE(made.ok()) << made.error().message;
+  return *std::move(made);
+}
+
 // Steps by length, height and turn of generated walks.
 inline StepLibrary walking_library(samples::Rig rig = samples::Rig::hips) {
   std::vector<parametric::test::KeyedWalk> walks = parametric::test::grid_walks(true);
@@ -28,16 +42,7 @@ inline StepLibrary walking_library(samples::Rig rig = samples::Rig::hips) {
   auto library = parametric::test::library_of(walks, {"step.length", "step.height", "step.turn"},
                                               {.mirror = false, .outlier = 0})
                      .library;
-  std::vector<double> parameters;
-  for (const auto& example : library.examples) {
-    parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
-  }
-  const auto solver = rbf::WeightSolver::create(library.dimensions(), parameters);
-  EXPECT_TRUE(solver.ok());
-  const RoleMap roles = find_roles(library.skeleton);
-  auto made = StepLibrary::create("walks", std::move(library), solver->function(), roles);
-  EXPECT_TRUE(made.ok()) << made.error().message;
-  return *std::move(made);
+  return walking_library(std::move(library));
 }
 
 // One library for all tests of a program.

@@ -126,18 +126,11 @@ TEST(Goals, MistakesAreToldWithTheirPlace) {
 
 TEST(Goals, DamagedTextsNeverGiveGoalsThatMeanNothing) {
   std::mt19937 random(4);
-  const std::string good = kGood;
   const Skeleton skeleton = test::turned_human();
   const Clip clip = test::swinging_clip(skeleton, 2, 50);
   int read_well = 0;
   for (int i = 0; i < 3000; ++i) {
-    std::string text = good;
-    for (unsigned k = random() % 3 + 1; k > 0; --k) {
-      const std::size_t place = random() % text.size();
-      if (random() % 3 == 0) text.erase(place, random() % 4 + 1);
-      if (place < text.size())
-        text[place] = static_cast<char>("0123456789-.,[]{}\"e:"[random() % 20]);
-    }
+    const std::string text = test::damaged(kGood, random);
     const auto file = read_for(text);
     if (!file.ok()) {
       EXPECT_GT(file.error().where.line, 0);

@@ -98,16 +98,9 @@ TEST(LimitsFormat, MistakesAreToldWithTheirPlace) {
 TEST(LimitsFormat, DamagedTextsNeverGiveLimitsThatMeanNothing) {
   const Skeleton skeleton = test::turned_human();
   std::mt19937 random(3);
-  const std::string good = kGood;
   int read_well = 0;
   for (int i = 0; i < 4000; ++i) {
-    std::string text = good;
-    for (unsigned k = random() % 3 + 1; k > 0; --k) {
-      const std::size_t place = random() % text.size();
-      if (random() % 3 == 0) text.erase(place, random() % 4 + 1);
-      if (place < text.size())
-        text[place] = static_cast<char>("0123456789-.,[]{}\"e:"[random() % 20]);
-    }
+    const std::string text = test::damaged(kGood, random);
     const auto limits = read(text, skeleton);
     if (limits.ok()) {
       ++read_well;
