@@ -118,12 +118,12 @@ class ConventionChooser {
       const bool rotation = hierarchy_.channels[c].kind == ChannelKind::rotation;
       traits.starts_unturned = !rotation || samples.row(0)[c] == 0.0;
     }
-    const auto exporter = recognise_exporter(names, traits);
-    if (!exporter) return;
-    capture_.exporter = {exporter->name, exporter->reason, exporter->confidence};
+    exporter_ = recognise_exporter(names, traits);
+    if (!exporter_) return;
+    capture_.exporter = {exporter_->name, exporter_->reason, exporter_->confidence};
     report(Severity::note, "bvh-exporter",
-           fmt::format("{} ({}): {}", exporter->name, confidence_name(exporter->confidence),
-                       exporter->reason));
+           fmt::format("{} ({}): {}", exporter_->name, confidence_name(exporter_->confidence),
+                       exporter_->reason));
   }
 
   void choose_angles(const SampleRows& samples) {
@@ -154,6 +154,7 @@ class ConventionChooser {
         for (const Transform& joint : pose) sample_positions.push_back(joint.position);
       }
       conventions = detect_conventions(skeleton, capture_.roles, sample_positions);
+      if (exporter_) apply_exporter(*exporter_, conventions);
     }
     apply_given(file_.options, conventions);
     return {};
@@ -172,6 +173,7 @@ class ConventionChooser {
   const IndexedFile& file_;
   Hierarchy& hierarchy_;
   Capture& capture_;
+  std::optional<Exporter> exporter_;
   ChosenConventions chosen_;
 };
 

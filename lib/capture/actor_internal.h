@@ -42,6 +42,9 @@ struct Landmarks {
 
   bool trunk_known() const { return hips >= 0 && head >= 0; }
   bool feet_known() const { return left_foot >= 0 && right_foot >= 0; }
+  bool sides_known() const {
+    return (left_leg >= 0 && right_leg >= 0) || (left_arm >= 0 && right_arm >= 0);
+  }
   bool upright_known() const { return trunk_known() && feet_known(); }
 
   // The start of body_axis(), for messages.

@@ -64,11 +64,12 @@ struct Conventions {
 // Up: the axis along which the head is above the feet in most samples, or in the reference pose if
 // there are no samples. A motion that is upside down does not override an upright reference pose,
 // nor does one that lies down in most samples but is upright in others. Forward: left x up in the
-// reference pose, checked against the toes; taken from the first usable sample if the reference
-// pose is not upright along the motion's up axis. Unit: the one that gives a body height, computed
-// from leg and spine lengths, closest to an adult's 1.72 m, with a penalty for rarer units.
-// Defaults: +Y up without hips and head; +Z forward without left and right limbs (-Y if up is along
-// z); without legs and arms the first of m, cm and mm that gives a size of at most 10 m, or mm.
+// reference pose, checked against the toes; the default if the reference pose is not upright along
+// the motion's up axis, so that all takes of a skeleton agree. Unit: the one that gives a body
+// height, computed from leg and spine lengths, closest to an adult's 1.72 m, with a penalty for
+// rarer units. Defaults: +Y up without hips and head; +Z forward without left and right limbs (-Y
+// if up is along z); without legs and arms the first of m, cm and mm that gives a size of at most
+// 10 m, or mm.
 Conventions detect_conventions(const Skeleton& skeleton, const RoleMap& roles,
                                std::span<const Vec3> sample_positions);
 

@@ -9,6 +9,8 @@ namespace krok::actor {
 
 namespace {
 
+constexpr double kUpright = 0.8;  // cosine: within 37 degrees
+
 // The default: perpendicular to `up`.
 Direction default_forward(Direction up) {
   return on_one_axis(up, Direction::plus_z) ? Direction::minus_y : Direction::plus_z;
@@ -20,7 +22,7 @@ bool detect_forward_in_reference(const Evidence& evidence, Conventions& found) {
   if (marks.hips < 0 || marks.head < 0) return false;
   const auto trunk =
       direction_between(at(evidence.reference, marks.hips), at(evidence.reference, marks.head));
-  if (!trunk || trunk->dot(direction_vector(found.up)) < 0.8) return false;
+  if (!trunk || trunk->dot(direction_vector(found.up)) < kUpright) return false;
   const auto forward = facing(evidence.reference, marks, found.up);
   if (!forward) return false;
   const NearestAxis axis = nearest_axis(*forward);
@@ -78,6 +80,21 @@ struct Pelvis {
   }
 };
 
+// Detects forward by the pelvis of a reference pose whose other parts are not upright.
+bool detect_forward_by_pelvis(const Evidence& evidence, Conventions& found) {
+  const Pelvis pelvis(evidence);
+  const auto frame = pelvis.known() ? pelvis.frame(evidence.reference) : std::nullopt;
+  const Vec3 vertical = direction_vector(found.up);
+  if (!frame || frame->col(1).dot(vertical) < kUpright) return false;
+  const NearestAxis axis = nearest_axis(frame->col(0).cross(vertical));
+  if (axis.cosine < kUpright) return false;
+  found.forward = axis.direction;
+  found.forward_confidence = Confidence::likely;
+  found.forward_reason =
+      fmt::format("the pelvis of the reference pose faces {}", signed_name(axis.direction));
+  return true;
+}
+
 // For a reference pose that is not upright (such as rigs with all bones along one axis): assumes
 // that its pelvis is oriented as in the motion on average.
 void detect_reference_axes_by_pelvis(const Evidence& evidence, Conventions& found) {
@@ -92,7 +109,6 @@ void detect_reference_axes_by_pelvis(const Evidence& evidence, Conventions& foun
     if (turned) up += *reference * (turned->transpose() * vertical);
   }
   const NearestAxis upright = nearest_axis(up);
-  constexpr double kUpright = 0.8;  // within 37 degrees
   if (upright.cosine < kUpright || !(up.norm() > 0.5 * static_cast<double>(evidence.sample_count)))
     return;
   const Vec3 left = reference->col(0);
@@ -107,20 +123,14 @@ void detect_reference_axes_by_pelvis(const Evidence& evidence, Conventions& foun
 void detect_forward(const Evidence& evidence, Conventions& found) {
   found.forward = default_forward(found.up);
   if (detect_forward_in_reference(evidence, found)) return;
-  for (std::size_t i = 0; i < evidence.sample_count; ++i) {
-    const auto forward = facing(evidence.sample(i), evidence.marks, found.up);
-    if (!forward) continue;
-    const NearestAxis axis = nearest_axis(*forward);
-    found.forward = axis.direction;
-    found.forward_confidence = axis.cosine > 0.9 ? Confidence::likely : Confidence::guess;
-    found.forward_reason = fmt::format(
-        "the facing of the reference pose is unclear; the character faces {} in the first usable "
-        "frame",
-        signed_name(axis.direction));
-    return;
-  }
-  found.forward_reason = fmt::format("no left and right side to derive it from; {} is the default",
-                                     signed_name(found.forward));
+  if (detect_forward_by_pelvis(evidence, found)) return;
+  // Where the character faces in a motion says nothing: takes of one session would be turned
+  // against each other.
+  found.forward_reason =
+      fmt::format("{}; {} is the default",
+                  evidence.marks.sides_known() ? "the facing of the reference pose is unclear"
+                                               : "no left and right side to derive it from",
+                  signed_name(found.forward));
 }
 
 // Detects the axes of a reference pose whose up axis differs from the motion's or that is not

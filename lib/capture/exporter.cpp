@@ -15,6 +15,7 @@ struct NameSet {
   std::string_view exporter;
   std::string_view joints;  // lower case, separated by spaces; all must be present
   Confidence confidence;
+  std::optional<Direction> up = {}, forward = {};
 };
 
 // The first match wins, so sets with more distinctive names come first.
@@ -56,8 +57,9 @@ constexpr std::array kNameSets = {
     NameSet{"Kinect for Windows",
             "hipcenter shouldercenter shoulderleft elbowleft hipleft kneeleft",
             Confidence::certain},
+    // Its reference pose does not stand; most of the data set's 3,076 takes begin facing z.
     NameSet{"Bandai Namco Research", "joint_root hips upperleg_l lowerleg_l toes_l upperarm_l",
-            Confidence::certain},
+            Confidence::certain, Direction::plus_y, Direction::plus_z},
     NameSet{"DeepMotion", "hips_jnt l_upleg_jnt l_leg_jnt l_arm_jnt l_forearm_jnt",
             Confidence::certain},
     NameSet{"Blender's Rigify names", "upper_arm.l forearm.l thigh.l shin.l", Confidence::likely},
@@ -118,6 +120,22 @@ Exporter motion_builder_names(const Skeleton& skeleton, const ExporterTraits& tr
 
 }  // namespace
 
+void apply_exporter(const Exporter& exporter, Conventions& conventions) {
+  if (!exporter.up || !exporter.forward || exporter.confidence != Confidence::certain) return;
+  const std::string reason = exporter.name + "'s files have it";
+  if (conventions.up != *exporter.up) {
+    if (conventions.up_confidence == Confidence::certain) return;
+    conventions.up = *exporter.up;
+    conventions.up_reason = reason;
+    conventions.forward_confidence = Confidence::guess;
+  }
+  conventions.up_confidence = Confidence::certain;
+  if (conventions.forward_confidence != Confidence::guess) return;
+  conventions.forward = *exporter.forward;
+  conventions.forward_confidence = Confidence::likely;
+  conventions.forward_reason = reason;
+}
+
 std::optional<Exporter> recognise_exporter(const Skeleton& skeleton, const ExporterTraits& traits) {
   Names names;
   for (const std::string& name : skeleton.names) names.insert(plain_name(name));
@@ -128,7 +146,8 @@ std::optional<Exporter> recognise_exporter(const Skeleton& skeleton, const Expor
     if (set.exporter.starts_with("iPi") && written_as_ipi_does(traits)) {
       reason += ", and rows and frame time are printed as by iPi";
     }
-    return Exporter{std::string(set.exporter), std::move(reason), set.confidence};
+    return Exporter{std::string(set.exporter), std::move(reason), set.confidence, set.up,
+                    set.forward};
   }
   if (matches(names, kMotionBuilderNames)) return motion_builder_names(skeleton, traits);
   return std::nullopt;

@@ -16,7 +16,13 @@ struct Exporter {
   std::string name;    // "iPi Mocap Studio, own names"
   std::string reason;  // a sentence without a full stop
   Confidence confidence = Confidence::guess;
+  // Axes of all its files, where they are known and their skeletons do not show them.
+  std::optional<Direction> up, forward;
 };
+
+// Axes of a recognised exporter's files, in place of what one take seems to show: those detected
+// with certainty, and from the reference pose, stay.
+void apply_exporter(const Exporter& exporter, Conventions& conventions);
 
 // Properties of a text file other than its skeleton.
 struct ExporterTraits {

@@ -137,6 +137,28 @@ TEST(DetectConventions, AReferencePoseThatDoesNotStandFacesWhereItsPelvisDoes) {
     EXPECT_EQ(found.up, Direction::plus_y);
     EXPECT_EQ(found.reference_up, Direction::plus_x) << heading;
     EXPECT_EQ(found.reference_forward, Direction::plus_y) << heading;
+    // Takes of one skeleton agree, wherever the actor faces in them.
+    EXPECT_EQ(found.forward, Direction::plus_z) << heading;
+    EXPECT_EQ(found.forward_confidence, Confidence::guess) << heading;
+  }
+}
+
+TEST(DetectConventions, APelvisThatStandsSaysWhereItFacesWhateverTheRestDoes) {
+  for (const Direction forward : {Direction::plus_x, Direction::minus_z}) {
+    Skeleton seated = person(1, Direction::plus_y, forward);
+    for (const char* name : {"Neck", "Head", "LeftLeg", "RightLeg", "LeftFoot", "RightFoot",
+                             "LeftToeBase", "RightToeBase"}) {
+      Vec3& p = seated.reference[static_cast<std::size_t>(seated.find(name))].position;
+      p += 0.6 * std::abs(p.y()) * direction_vector(forward);
+      if (p.y() > 0.1) p.y() *= 0.5;
+      if (p.y() < -0.1) p.y() = -0.1;
+    }
+    const Skeleton upright = person(1, Direction::plus_y, forward);
+    for (const double heading : {0.0, 70.0, 190.0}) {
+      const Conventions found =
+          detect(seated, sample_of(upright, axis_rotation(Axis::y, heading * kRadiansPerDegree)));
+      EXPECT_EQ(found.forward, forward) << heading << ": " << found.forward_reason;
+    }
   }
 }
 

@@ -85,6 +85,32 @@ TEST(Exporter, MoreTellingNamesComeBeforeMotionBuilders) {
             "Perception Neuron, or another with its names");
 }
 
+// Axes of an exporter replace guesses from a take (one that lies, say), never what a converted file
+// clearly shows.
+TEST(Exporter, ItsAxesReplaceGuesses) {
+  const Exporter known = *recognise_exporter(
+      with_joints("joint_Root Hips UpperLeg_L LowerLeg_L Toes_L UpperArm_L"), {});
+  ASSERT_TRUE(known.up && known.forward);
+  Conventions lying;
+  lying.up = Direction::plus_z;
+  lying.forward = Direction::minus_y;
+  lying.up_confidence = Confidence::likely;
+  Conventions converted = lying;
+  converted.up_confidence = converted.forward_confidence = Confidence::certain;
+  apply_exporter(known, lying);
+  EXPECT_EQ(lying.up, Direction::plus_y);
+  EXPECT_EQ(lying.forward, Direction::plus_z);
+  EXPECT_EQ(lying.forward_confidence, Confidence::likely);
+  apply_exporter(known, converted);
+  EXPECT_EQ(converted.up, Direction::plus_z);
+  EXPECT_EQ(converted.forward, Direction::minus_y);
+  Conventions facing_x;
+  facing_x.up_confidence = facing_x.forward_confidence = Confidence::likely;
+  facing_x.forward = Direction::plus_x;
+  apply_exporter(known, facing_x);
+  EXPECT_EQ(facing_x.forward, Direction::plus_x);
+}
+
 TEST(Exporter, UnknownNamesAreNobodys) {
   EXPECT_EQ(exporter_of(""), "");
   EXPECT_EQ(exporter_of("a b c"), "");
