@@ -38,6 +38,8 @@ void apply_given(const GivenConventions& given, Conventions& conventions) {
     conventions.forward_confidence = Confidence::certain;
     conventions.forward_reason = kGiven;
   }
+  if (given.reference_up) conventions.reference_up = *given.reference_up;
+  if (given.reference_forward) conventions.reference_forward = *given.reference_forward;
   if (given.up && given.forward) return;
   if (!parallel(conventions.up, conventions.forward) &&
       !parallel(conventions.reference_up, conventions.reference_forward)) {

@@ -25,6 +25,8 @@ struct GivenConventions {
   std::optional<Unit> unit;
   std::optional<Direction> up;
   std::optional<Direction> forward;
+  // Of the reference pose, where they differ; needs `up` and `forward`.
+  std::optional<Direction> reference_up, reference_forward;
   bool complete() const { return unit && up && forward; }
 };
 

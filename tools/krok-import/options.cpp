@@ -69,12 +69,19 @@ void declare_conventions(CommandOptions& command, Options& options) {
                   "Unit of length: auto, m, dm, cm, mm, in, ft, cmu (of the CMU database) or a "
                   "length such as 5.64cm")
       .default_str("auto");
-  command.add_option("--up AXIS", options.up, "Up axis: auto, x, y, z, -x, -y, -z")
-      .default_str("auto");
+  const CommandOption up =
+      command.add_option("--up AXIS", options.up, "Up axis: auto, x, y, z, -x, -y, -z");
+  up.default_str("auto");
+  const CommandOption forward =
+      command.add_option("--forward AXIS", options.forward,
+                         "Axis that the character faces in the reference pose: as --up");
+  forward.default_str("auto");
   command
-      .add_option("--forward AXIS", options.forward,
-                  "Axis that the character faces in the reference pose: as --up")
-      .default_str("auto");
+      .add_option("--axes-from IN", options.axes_from,
+                  "Axes as this capture has them, so that takes of one skeleton agree where those "
+                  "of a take that lies or crawls are in doubt")
+      .excludes(up)
+      .excludes(forward);
   add_choice<bvh::Positions>(
       command, "--positions", options.positions,
       {{"auto", bvh::Positions::automatic},

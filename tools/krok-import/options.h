@@ -27,6 +27,7 @@ struct Options {
   std::string unit = "auto";
   std::string up = "auto";
   std::string forward = "auto";
+  std::string axes_from;  // --axes-from, empty: from the file
   bvh::Positions positions = bvh::Positions::automatic;
   bvh::Angles angles = bvh::Angles::degrees;
   RestFrame rest_frame = RestFrame::keep;

@@ -90,10 +90,29 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
   return {};
 }
 
+// The axes of another capture become those given for this one.
+Status take_axes(const Options& options, io::CaptureReading& reading, ToolContext& context) {
+  if (options.axes_from.empty()) return {};
+  const auto file = context.open_input(options.axes_from);
+  if (!file) return file.error();
+  if (io::is_scene(registry::identify(file->path(), file->bytes()))) {
+    return Error("usage", "--axes-from takes a capture").in_file(options.axes_from);
+  }
+  return io::use_capture(*file, context, reading, false, [&](const io::OpenedCapture& opened) {
+    const Conventions& found = opened.capture->conventions;
+    reading.up = found.up;
+    reading.forward = found.forward;
+    reading.reference_up = found.reference_up;
+    reading.reference_forward = found.reference_forward;
+    return Status();
+  });
+}
+
 Result<int> import_capture(const InputFile& input, const Options& options, ToolContext& context) {
   if (Status status = check_capture_options(options, input.path()); !status) return status.error();
   auto reading = read_options(options);
   if (!reading) return reading.error();
+  if (Status status = take_axes(options, *reading, context); !status) return status.error();
   reading->jobs = context.jobs;
   reading->progress = context.progress;
   const bool whole = context.output.empty() || options.resample > 0;

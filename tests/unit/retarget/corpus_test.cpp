@@ -102,8 +102,7 @@ TEST_P(RetargetCorpus, LimbsPointAsTheSources) {
 TEST_P(RetargetCorpus, FeetThatStandStand) {
   const double scale = result_.report.scale;
   double excess = 0;
-  for (const auto& [foot, toes] : {std::pair(Role::left_foot, Role::left_toes),
-                                   std::pair(Role::right_foot, Role::right_toes)}) {
+  for (const Role foot : {Role::left_foot, Role::right_foot}) {
     // Where the source's ankle rests, the target's does: its speed beyond the source's own.
     for (int f = 0; f + 1 < source_.frame_count(); ++f) {
       const auto step = [&](const Clip& clip, const RoleMap& roles) {
