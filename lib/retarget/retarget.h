@@ -37,7 +37,7 @@ struct Options {
   std::optional<double> target_floor = std::nullopt;
 
   // Frames used as reference poses, for skeletons whose own is not an upright stance. By default
-  // the skeleton's own if it is upright, otherwise the frame nearest to a T-pose.
+  // the skeleton's own if it is upright, otherwise one built from it (retarget/stance.h).
   std::optional<int> source_frame = std::nullopt;
   std::optional<int> target_frame = std::nullopt;
 

@@ -19,16 +19,17 @@ struct Stance {
 // reference poses of exporters whose bones all lie along one axis it does not.
 bool stands(const Actor& actor);
 
-// The reference pose of a clip's skeleton. If that does not stand, the standing frame nearest to a
-// T-pose among up to 2,000 evenly spaced ones, if any, with its legs straightened and its feet
-// flat. `frame` selects a frame's pose directly; an Error (code retarget-frame) if there is no such
-// frame. Skeletons that are not humanoids keep their reference pose.
+// The reference pose of a clip's skeleton. If that does not stand, it is turned upright where
+// trunk, thighs and shanks lie within 60 degrees of one line; else a T-pose is built from the
+// skeleton, in which the turn about the limbs is that with which knees and elbows bend as they do
+// over the whole motion. All motions of a skeleton so have the same, to a few degrees. `frame`
+// selects a frame's pose directly; an Error (code retarget-frame) if there is no such frame.
+// Skeletons that are not humanoids keep their reference pose.
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame);
 
 // A clip's skeleton with a reference pose that angles of an anatomy can be measured from and bodies
 // built in: its own where trunk, thighs and shanks lie within 60 degrees of one line, whichever way
-// it lies; else that of find_stance(). Where no frame stands either, and for skeletons that are not
-// humanoids, its own.
+// it lies, and for skeletons that are not humanoids; else that of find_stance().
 Skeleton neutral_skeleton(const Clip& clip, const RoleMap& roles);
 
 }  // namespace krok::retarget

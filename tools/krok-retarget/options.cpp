@@ -68,8 +68,8 @@ void declare(CommandOptions& command, Options& options) {
   command
       .add_option("--reference-pose POSE", options.reference_pose,
                   "Pose of the input that matches the target's reference pose: a frame number, or "
-                  "auto: its own reference pose or, if that is not a standing pose, the frame "
-                  "nearest to a T-pose")
+                  "auto: its own reference pose or, if that is not a standing pose, a T-pose built "
+                  "from the skeleton")
       .default_str("auto");
   command
       .add_option("--onto-reference-pose POSE", options.onto_reference_pose,

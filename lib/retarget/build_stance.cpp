@@ -1,0 +1,246 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/index.h"
+#include "math/quaternion.h"
+#include "retarget/build_stance_internal.h"
+#include "retarget/pose_alignment.h"
+
+namespace krok::retarget {
+
+namespace {
+
+constexpr int kMaxFrames = 2000;
+// Share of the frames, in which a foot is flat on the ground.
+constexpr double kLowest = 0.05;
+// From the ankle to the ball of a foot on the ground, and by how much feet differ from it.
+constexpr double kUsualPitch = -0.5, kPitchRange = 0.6;
+// Sine of the mean bend of a limb that shows its hinge.
+constexpr double kBends = 0.02;
+
+struct Limb {
+  Role root, upper, lower, end;
+  Vec3 along, hinge;  // in a T-pose: of its bones; of (upper bone) x (lower bone) where it bends
+};
+
+const Vec3 kLeft = Vec3::UnitX(), kUpwards = Vec3::UnitY(), kForward = Vec3::UnitZ();
+
+class StanceBuilder {
+ public:
+  StanceBuilder(const Clip& clip, const RoleMap& roles)
+      : clip_(clip),
+        roles_(roles),
+        pose_(clip.skeleton.reference),
+        step_(1 + clip.frame_count() / kMaxFrames) {}
+
+  std::vector<Transform> build(bool limbs) {
+    stand_up();
+    if (!limbs) return std::move(pose_);
+    turn_chest();
+    straighten(Limb{Role::left_collar, Role::left_upper_arm, Role::left_lower_arm, Role::left_hand,
+                    kLeft, -kUpwards},
+               Limb{Role::right_collar, Role::right_upper_arm, Role::right_lower_arm,
+                    Role::right_hand, -kLeft, kUpwards});
+    straighten(Limb{Role::root, Role::left_upper_leg, Role::left_lower_leg, Role::left_foot,
+                    -kUpwards, kLeft},
+               Limb{Role::root, Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
+                    -kUpwards, kLeft});
+    flatten(Role::left_foot);
+    flatten(Role::right_foot);
+    return std::move(pose_);
+  }
+
+ private:
+  Vec3 place(int joint) const { return pose_[at(joint)].position; }
+  Vec3 between(Role from, Role to) const {
+    const int a = roles_.joint(from), b = roles_.joint(to);
+    return a < 0 || b < 0 ? Vec3(Vec3::Zero()) : Vec3(place(b) - place(a));
+  }
+
+  // Turns a joint and what is below it.
+  void turn(int joint, const Quat& turn) {
+    std::vector<char> inside(pose_.size(), 0);
+    const Vec3 pivot = place(joint);
+    for (int j = joint; j < clip_.joint_count(); ++j) {
+      const int parent = clip_.skeleton.parents[at(j)];
+      inside[at(j)] = j == joint || (parent >= 0 && inside[at(parent)] != 0) ? 1 : 0;
+      if (inside[at(j)] == 0) continue;
+      Transform& its = pose_[at(j)];
+      its = {pivot + turn * (its.position - pivot), (turn * its.orientation).normalized()};
+    }
+  }
+
+  // Turns a joint so that the direction to another is `along`; directions that are opposite by way
+  // of `axis`.
+  void point(int joint, const Vec3& bone, const Vec3& along, const Vec3& axis) {
+    if (joint < 0 || !(bone.norm() > 0)) return;
+    if (bone.normalized().dot(along) > -0.9) {
+      turn(joint, shortest_arc(bone, along));
+      return;
+    }
+    const Quat half = from_rotation_vector(kPi * axis);
+    turn(joint, shortest_arc(half * bone, along) * half);
+  }
+
+  // Turns a joint about an axis so that a direction comes as near as it can to another.
+  void roll(int joint, const Vec3& axis, const Vec3& from, const Vec3& to) {
+    const Vec3 now = from - from.dot(axis) * axis, wanted = to - to.dot(axis) * axis;
+    if (joint < 0 || !(now.norm() > 1e-6) || !(wanted.norm() > 1e-6)) return;
+    const double angle = std::atan2(now.cross(wanted).dot(axis), now.dot(wanted));
+    turn(joint, from_rotation_vector(angle * axis));
+  }
+
+  void stand_up() {
+    const int head =
+        roles_.joint(Role::head) >= 0 ? roles_.joint(Role::head) : roles_.joint(Role::neck);
+    const int hips = roles_.joint(Role::hips);
+    const Vec3 left = between(Role::right_upper_leg, Role::left_upper_leg);
+    if (head < 0 || hips < 0) return;
+    const Vec3 up = place(head) - place(hips);
+    const Vec3 ahead = left.cross(up);
+    if (!(ahead.norm() > 1e-6 * left.norm() * up.norm()) || !(ahead.norm() > 0)) return;
+    if (up.normalized().y() > 0.8) {  // within 37 degrees; people lean a little
+      roll(0, kUpwards, left, kLeft);
+      return;
+    }
+    Mat3 body;
+    body << up.cross(ahead).normalized(), up.normalized(), ahead.normalized();
+    turn(0, Quat(Mat3(body.transpose())).normalized());
+  }
+
+  // The trunk's joints may turn about it from one to the next.
+  void turn_chest() {
+    const int hips = roles_.joint(Role::hips);
+    int above = roles_.joint(Role::left_upper_arm);
+    while (above >= 0 && clip_.skeleton.parents[at(above)] != hips) {
+      above = clip_.skeleton.parents[at(above)];
+    }
+    roll(above, kUpwards, between(Role::right_upper_arm, Role::left_upper_arm), kLeft);
+  }
+
+  void straighten(const Limb& left, const Limb& right) {
+    const std::array limbs = {left, right};
+    if (std::ranges::all_of(limbs, [&](const Limb& limb) { return is_arm_of_a_stance(limb); }))
+      return;
+    for (const Limb& limb : limbs) straighten(limb);
+    const std::array hinges = {hinge_of(left), hinge_of(right)};
+    for (std::size_t i = 0; i < limbs.size(); ++i) {
+      const Limb& limb = limbs[i];
+      const int upper = roles_.joint(limb.upper);
+      Vec3 hinge = hinges[i];
+      if (hinge.norm() < kBends) hinge = likely_hinge(limb, hinges[1 - i]);
+      if (upper >= 0) roll(upper, limb.along, pose_[at(upper)].orientation * hinge, limb.hinge);
+    }
+  }
+
+  // Arms may hang or be held anywhere but folded or up, as long as the shoulders are aside.
+  bool is_arm_of_a_stance(const Limb& limb) const {
+    if (limb.root == Role::root) return false;
+    const auto bone = [&](Role from, Role to) {
+      return Vec3(between(from, to).stableNormalized());
+    };
+    const Vec3 root = bone(limb.root, limb.upper), upper = bone(limb.upper, limb.lower);
+    const Vec3 lower = bone(limb.lower, limb.end);
+    return (root.isZero() || root.dot(limb.along) > 0.7) && upper.y() < 0.7 &&
+           (lower.isZero() || upper.dot(lower) > 0.5);
+  }
+
+  void straighten(const Limb& limb) {
+    const Vec3 across = limb.along.cross(limb.hinge);
+    const int root = limb.root == Role::root ? -1 : roles_.joint(limb.root);
+    const int upper = roles_.joint(limb.upper), lower = roles_.joint(limb.lower);
+    point(root, between(limb.root, limb.upper), limb.along, across);
+    point(upper, between(limb.upper, lower >= 0 ? limb.lower : limb.end), limb.along, across);
+    point(lower, between(limb.lower, limb.end), limb.along, across);
+  }
+
+  // For a limb that never bends: the other side's, in the direction in which it is nearer to a
+  // T-pose's when the bone is turned there by the least. Rigs have both sides' axes alike or
+  // opposite.
+  Vec3 likely_hinge(const Limb& limb, const Vec3& others) const {
+    const int upper = roles_.joint(limb.upper);
+    const int next =
+        roles_.joint(limb.lower) >= 0 ? roles_.joint(limb.lower) : roles_.joint(limb.end);
+    if (others.norm() < kBends || upper < 0 || next < 0) return Vec3::Zero();
+    double alike = 0;
+    for (int f = 0; f < clip_.frame_count(); f += step_) {
+      const Quat trunk = trunk_turn(f);
+      const auto positions = clip_.frame_positions(f);
+      const Vec3 bone = (positions[at(next)] - positions[at(upper)]).cast<double>();
+      const Quat frame = clip_.frame_orientations(f)[at(upper)].cast<double>().normalized();
+      const Vec3 expected = shortest_arc(trunk * limb.along, bone) * (trunk * limb.hinge);
+      alike += expected.dot(frame * others);
+    }
+    return alike < 0 ? Vec3(-others) : others;
+  }
+
+  // From the pose that is built to a frame, of the hips.
+  Quat trunk_turn(int frame) const {
+    const int hips = roles_.joint(Role::hips);
+    return clip_.frame_orientations(frame)[at(hips)].cast<double>().normalized() *
+           pose_[at(hips)].orientation.conjugate();
+  }
+
+  // The mean of (upper bone) x (lower bone) over the motion, in the upper joint's frame.
+  Vec3 hinge_of(const Limb& limb) const {
+    const int upper = roles_.joint(limb.upper), lower = roles_.joint(limb.lower);
+    const int end = roles_.joint(limb.end);
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    if (upper < 0 || lower < 0 || end < 0) return sum;
+    for (int f = 0; f < clip_.frame_count(); f += step_, ++count) {
+      const auto positions = clip_.frame_positions(f);
+      const Vec3 first = (positions[at(lower)] - positions[at(upper)]).cast<double>();
+      const Vec3 second = (positions[at(end)] - positions[at(lower)]).cast<double>();
+      const Quat frame = clip_.frame_orientations(f)[at(upper)].cast<double>().normalized();
+      sum += frame.conjugate() * first.stableNormalized().cross(second.stableNormalized());
+    }
+    return count > 0 ? Vec3(sum / count) : sum;
+  }
+
+  // Turns a foot about the ankle's hinge to the pitch that it has where it is lowest.
+  void flatten(Role role) {
+    const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
+    if (foot < 0 || front < 0) return;
+    const Vec3 now = place(front) - place(foot);
+    const double own = std::asin(std::clamp(now.y() / std::max(now.norm(), 1e-9), -1.0, 1.0));
+    const bool known = std::abs(own - kUsualPitch) < kPitchRange;
+    if (clip_.frame_count() == 0 && known) return;
+    const double pitch = clip_.frame_count() == 0 ? kUsualPitch : pitch_on_ground(foot, front);
+    // What of it points aside stays.
+    const Vec3 wanted = std::cos(pitch) * kForward + std::sin(pitch) * kUpwards;
+    roll(foot, kLeft, now, wanted);
+  }
+
+  // Radians; upwards is positive. The ankle is lowest where the heel is on
+  // the ground, in walking and in standing.
+  double pitch_on_ground(int foot, int front) const {
+    std::vector<std::pair<float, double>> frames;  // the ankle's height, and the pitch
+    for (int f = 0; f < clip_.frame_count(); f += step_) {
+      const auto positions = clip_.frame_positions(f);
+      const Vec3 bone = (positions[at(front)] - positions[at(foot)]).cast<double>();
+      const double sine = bone.y() / std::max(bone.norm(), 1e-9);
+      frames.emplace_back(positions[at(foot)].y(), std::asin(std::clamp(sine, -1.0, 1.0)));
+    }
+    std::ranges::sort(frames);
+    frames.resize(1 + static_cast<std::size_t>(kLowest * static_cast<double>(frames.size() - 1)));
+    const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(frames.size() / 2);
+    std::ranges::nth_element(frames, middle, {}, &std::pair<float, double>::second);
+    return middle->second;
+  }
+
+  const Clip& clip_;
+  const RoleMap& roles_;
+  std::vector<Transform> pose_;
+  int step_;
+};
+
+}  // namespace
+
+std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs) {
+  return StanceBuilder(clip, roles).build(limbs);
+}
+
+}  // namespace krok::retarget
