@@ -129,12 +129,13 @@ struct Plan {
 
 Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
   const Skeleton& skeleton = clip.skeleton;
-  const auto actor = find_human(skeleton, find_roles(skeleton));
+  const RoleMap roles = find_roles(skeleton);
+  const auto actor = find_human(skeleton, roles);
   body.human = actor.has_value();
   Plan plan;
   if (options.pose == BodyPose::reference) plan.wanted = skeleton.reference;
   if (options.pose == BodyPose::frame) plan.wanted = clip_pose(clip, options.frame);
-  BuildPose pose = actor ? human_build_pose(clip, *actor) : general_build_pose(clip);
+  BuildPose pose = actor ? human_build_pose(clip, roles, *actor) : general_build_pose(clip);
   body.pose = options.pose == BodyPose::automatic   ? pose.name
               : options.pose == BodyPose::reference ? "reference"
                                                     : fmt::format("frame {}", options.frame);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "body/human_pose.h"
+#include "retarget/stance.h"
 
 namespace krok::body {
 
@@ -61,23 +62,19 @@ std::vector<Transform> clip_pose(const Clip& clip, int frame) {
   return pose;
 }
 
-BuildPose human_build_pose(const Clip& clip, const HumanActor& actor) {
+BuildPose human_build_pose(const Clip& clip, const RoleMap& roles, const HumanActor& actor) {
   const Skeleton& skeleton = clip.skeleton;
   StandingPose best = stand_upright(skeleton, actor, skeleton.reference);
   std::string name = best.turned > 0    ? "reference, limbs turned aside"
                      : best.heading > 0 ? "reference, turned upright"
                                         : "reference";
   if (best.turned > kTooMuch) {
-    const int frames = clip.frame_count();
-    const int step = std::max(1, frames / kSamples);
-    double least = 0.6 * best.turned;
-    for (int frame = 0; frame < frames; frame += step) {
-      StandingPose candidate = stand_upright(skeleton, actor, clip_pose(clip, frame));
-      if (candidate.turned >= least) continue;
-      least = candidate.turned;
-      best = std::move(candidate);
+    StandingPose built =
+        stand_upright(skeleton, actor, retarget::neutral_skeleton(clip, roles).reference);
+    if (built.turned < 0.6 * best.turned) {
+      best = std::move(built);
       bring_home(best.joint_to_world);
-      name = fmt::format("frame {}{}", frame, best.turned > 0 ? ", limbs turned aside" : "");
+      name = "T-pose built from the skeleton";
     }
   }
   return {std::move(best.joint_to_world), std::move(name)};

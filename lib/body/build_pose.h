@@ -18,10 +18,10 @@ struct BuildPose {
 // One frame of a clip, joint_to_world.
 std::vector<Transform> clip_pose(const Clip& clip, int frame);
 
-// The reference pose, standing upright with limbs apart (see human_pose.h); a frame of the clip
-// instead if the reference pose needs so much rotation that the twist of the limbs would be
-// arbitrary.
-BuildPose human_build_pose(const Clip& clip, const HumanActor& actor);
+// The reference pose, standing upright with limbs apart (see human_pose.h); a T-pose built from the
+// skeleton (retarget::neutral_skeleton) if the reference pose needs so much rotation that the twist
+// of the limbs would be arbitrary.
+BuildPose human_build_pose(const Clip& clip, const RoleMap& roles, const HumanActor& actor);
 
 // The reference pose or, if that folds bones onto each other, the frame of the clip with the
 // largest spread of bones.

@@ -9,7 +9,7 @@ namespace krok::actor {
 
 namespace {
 
-constexpr double kUpright = 0.8;  // cosine: within 37 degrees
+constexpr double kInLine = 0.8;  // cosine: within 37 degrees
 
 // The default: perpendicular to `up`.
 Direction default_forward(Direction up) {
@@ -22,7 +22,7 @@ bool detect_forward_in_reference(const Evidence& evidence, Conventions& found) {
   if (marks.hips < 0 || marks.head < 0) return false;
   const auto trunk =
       direction_between(at(evidence.reference, marks.hips), at(evidence.reference, marks.head));
-  if (!trunk || trunk->dot(direction_vector(found.up)) < kUpright) return false;
+  if (!trunk || trunk->dot(direction_vector(found.up)) < kInLine) return false;
   const auto forward = facing(evidence.reference, marks, found.up);
   if (!forward) return false;
   const NearestAxis axis = nearest_axis(*forward);
@@ -85,9 +85,9 @@ bool detect_forward_by_pelvis(const Evidence& evidence, Conventions& found) {
   const Pelvis pelvis(evidence);
   const auto frame = pelvis.known() ? pelvis.frame(evidence.reference) : std::nullopt;
   const Vec3 vertical = direction_vector(found.up);
-  if (!frame || frame->col(1).dot(vertical) < kUpright) return false;
+  if (!frame || frame->col(1).dot(vertical) < kInLine) return false;
   const NearestAxis axis = nearest_axis(frame->col(0).cross(vertical));
-  if (axis.cosine < kUpright) return false;
+  if (axis.cosine < kInLine) return false;
   found.forward = axis.direction;
   found.forward_confidence = Confidence::likely;
   found.forward_reason =
@@ -109,11 +109,11 @@ void detect_reference_axes_by_pelvis(const Evidence& evidence, Conventions& foun
     if (turned) up += *reference * (turned->transpose() * vertical);
   }
   const NearestAxis upright = nearest_axis(up);
-  if (upright.cosine < kUpright || !(up.norm() > 0.5 * static_cast<double>(evidence.sample_count)))
+  if (upright.cosine < kInLine || !(up.norm() > 0.5 * static_cast<double>(evidence.sample_count)))
     return;
   const Vec3 left = reference->col(0);
   const NearestAxis ahead = nearest_axis(left.cross(direction_vector(upright.direction)));
-  if (ahead.cosine < kUpright) return;
+  if (ahead.cosine < kInLine) return;
   found.reference_up = upright.direction;
   found.reference_forward = ahead.direction;
 }

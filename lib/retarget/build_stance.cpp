@@ -36,6 +36,7 @@ class StanceBuilder {
         step_(1 + clip.frame_count() / kMaxFrames) {}
 
   std::vector<Transform> build(bool limbs) {
+    take_bones();
     stand_up();
     if (!limbs) return std::move(pose_);
     turn_chest();
@@ -90,6 +91,25 @@ class StanceBuilder {
     if (joint < 0 || !(now.norm() > 1e-6) || !(wanted.norm() > 1e-6)) return;
     const double angle = std::atan2(now.cross(wanted).dot(axis), now.dot(wanted));
     turn(joint, from_rotation_vector(angle * axis));
+  }
+
+  // Bones as the motion has them on average: some exporters write their lengths alone into the
+  // reference pose.
+  void take_bones() {
+    std::vector<Vec3> sums(pose_.size(), Vec3::Zero());
+    int count = 0;
+    for (int f = 0; f < clip_.frame_count(); f += step_, ++count) {
+      const auto positions = clip_.frame_positions(f);
+      const auto orientations = clip_.frame_orientations(f);
+      for (int j = 1; j < clip_.joint_count(); ++j) {
+        const std::size_t parent = at(clip_.skeleton.parents[at(j)]);
+        sums[at(j)] += orientations[parent].cast<double>().normalized().conjugate() *
+                       (positions[at(j)] - positions[parent]).cast<double>();
+      }
+    }
+    for (int j = 1; count > 0 && j < clip_.joint_count(); ++j) {
+      pose_[at(j)].position = pose_[at(clip_.skeleton.parents[at(j)])] * Vec3(sums[at(j)] / count);
+    }
   }
 
   void stand_up() {

@@ -38,7 +38,7 @@ ALLOWED = {
     "lib/ragdoll": BASE | {"lib/roles", "lib/ik", "lib/motion", "lib/timeline"},
     "lib/retarget": BASE | {"lib/roles", "lib/ik", "lib/motion"},
     "lib/skin": BASE,
-    "lib/body": BASE | {"lib/roles"},
+    "lib/body": BASE | {"lib/roles", "lib/retarget"},
     "lib/compare": BASE,
     "lib/draw": BASE | {"lib/roles", "lib/contacts", "lib/motion", "lib/compare", "lib/retarget"},
     "lib/render": BASE,

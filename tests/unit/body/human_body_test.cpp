@@ -205,7 +205,7 @@ TEST(HumanBody, HangingArmsAreTurnedAsideAndNotBoundToTheTrunk) {
   }
 }
 
-TEST(HumanBody, AReferencePoseThatIsNoneGivesWayToAFrame) {
+TEST(HumanBody, AReferencePoseThatIsNoneGivesWayToATPose) {
   // All bones along +Y, as some exporters write them; the motion holds a T-pose.
   const Skeleton posed = human_skeleton();
   Clip clip;
@@ -223,7 +223,11 @@ TEST(HumanBody, AReferencePoseThatIsNoneGivesWayToAFrame) {
   ASSERT_TRUE(body.ok());
   EXPECT_TRUE(body->human);
   expect_valid_body(*body);
-  EXPECT_EQ(body->pose, "frame 0");
+  EXPECT_EQ(body->pose, "T-pose built from the skeleton");
+  for (std::size_t j = 0; j < posed.names.size(); ++j) {
+    const Vec3 place = body->model.skeleton.reference[j].position;
+    EXPECT_LT((place - posed.reference[j].position).norm(), 0.05) << posed.names[j];
+  }
 }
 
 TEST(HumanBody, AFootThatHangsOnAJointUnderTheAnkleStaysLevel) {
