@@ -97,8 +97,11 @@ class Transfer {
     if (!source_stance) return source_stance.error();
     auto target_stance = find_stance(target_clip_, target_roles_, options_.target_frame);
     if (!target_stance) return target_stance.error();
-    rest_ = std::move(source_stance->pose);
-    target_rest_ = std::move(target_stance->pose);
+    const auto chosen = [](const std::vector<Transform>& given, std::vector<Transform>& found) {
+      return given.empty() ? std::move(found) : given;
+    };
+    rest_ = chosen(options_.source_pose, source_stance->pose);
+    target_rest_ = chosen(options_.target_pose, target_stance->pose);
     report_.source_frame = source_stance->frame;
     report_.target_frame = target_stance->frame;
     if (by_roles) {
@@ -271,8 +274,15 @@ Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, con
                  fmt::format("a scale of {} is not positive and finite", *options.scale));
   }
   const auto same = same_skeleton(source.skeleton, target.skeleton);
-  if (same && !options.source_frame && !options.target_frame &&
-      (!options.scale || *options.scale == same->scale)) {
+  const auto fits = [](const std::vector<Transform>& pose, const Skeleton& skeleton) {
+    return pose.empty() || pose.size() == skeleton.names.size();
+  };
+  if (!fits(options.source_pose, source.skeleton) || !fits(options.target_pose, target.skeleton)) {
+    return Error("retarget-pose", "a reference pose has another number of joints");
+  }
+  const bool given = options.source_frame || options.target_frame || !options.source_pose.empty() ||
+                     !options.target_pose.empty();
+  if (same && !given && (!options.scale || *options.scale == same->scale)) {
     return copy_of(source, target.skeleton, *same, same->scale);
   }
   return Transfer(source, source_roles, target, target_roles, options).run();

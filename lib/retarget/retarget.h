@@ -40,6 +40,9 @@ struct Options {
   // the skeleton's own if it is upright, otherwise one built from it (retarget/stance.h).
   std::optional<int> source_frame = std::nullopt;
   std::optional<int> target_frame = std::nullopt;
+  // Poses used instead, from anywhere: joint_to_world, shape [joints]; empty: none.
+  std::vector<Transform> source_pose = {};
+  std::vector<Transform> target_pose = {};
 
   int jobs = 0;                  // threads; 0: one per processor
   Progress* progress = nullptr;  // reports frames done; may be null
@@ -95,7 +98,8 @@ struct Retargeted {
 // `jobs`.
 //
 // Errors: retarget-empty (no joints), retarget-roles (neither applies; the message names the
-// missing roles), retarget-scale (not positive and finite), retarget-frame (no such frame).
+// missing roles), retarget-scale (not positive and finite), retarget-frame (no such frame),
+// retarget-pose (a pose of another number of joints).
 Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, const Clip& target,
                             const RoleMap& target_roles, const Options& options);
 

@@ -18,17 +18,32 @@ namespace krok::cli::retarget {
 
 namespace {
 
-Result<std::optional<int>> parse_frame(const char* option, const std::string& text) {
-  if (text == "auto") return std::optional<int>();
+std::optional<int> frame_number(const std::string& text) {
   const auto frame = parse_integer(text);
-  if (!frame || *frame < 0 || *frame > 2'000'000'000) {
-    return Error("usage", fmt::format("{} {} is not auto or a frame number", option, text),
+  if (!frame || *frame < 0 || *frame > 2'000'000'000) return std::nullopt;
+  return static_cast<int>(*frame);
+}
+
+Result<std::optional<int>> parse_frame(const char* option, const std::string& text) {
+  if (text == "auto" || pose_of_file(text)) return std::optional<int>();
+  const auto frame = frame_number(text);
+  if (!frame) {
+    return Error("usage",
+                 fmt::format("{} {} is not auto, a frame number or FILE:FRAME", option, text),
                  "frames are numbered from 0");
   }
-  return std::optional<int>(static_cast<int>(*frame));
+  return frame;
 }
 
 }  // namespace
+
+std::optional<PoseOfFile> pose_of_file(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  const auto frame = frame_number(text.substr(colon + 1));
+  if (!frame) return std::nullopt;
+  return PoseOfFile{text.substr(0, colon), *frame};
+}
 
 Result<krok::retarget::Options> parse(const Options& options) {
   krok::retarget::Options parsed;
@@ -67,8 +82,9 @@ void declare(CommandOptions& command, Options& options) {
   add_map_option(command, options.onto_map, "--onto-map", "The same for the target's joints");
   command
       .add_option("--reference-pose POSE", options.reference_pose,
-                  "Pose of the input that matches the target's reference pose: a frame number, or "
-                  "auto: its own reference pose or, if that is not a standing pose, a T-pose built "
+                  "Pose of the input that matches the target's reference pose: a frame number, a "
+                  "frame of another motion of its skeleton (tpose.anim:0), or auto: its own "
+                  "reference pose or, if that is not a standing pose, a T-pose built "
                   "from the skeleton")
       .default_str("auto");
   command

@@ -58,6 +58,30 @@ Result<RoleMap> roles_of(const Skeleton& skeleton, const std::string& map_path,
   return (*roles)(skeleton);
 }
 
+// The pose that an option takes from another motion of the skeleton; none for other values.
+Status take_pose(const char* option, const std::string& text, const Skeleton& skeleton,
+                 std::vector<Transform>& pose, ToolContext& context) {
+  const auto given = pose_of_file(text);
+  if (!given) return {};
+  const auto clip = io::open_motion(given->path, context);
+  if (!clip) return clip.error();
+  const std::string difference = difference_in_structure(clip->skeleton, skeleton);
+  if (!difference.empty()) {
+    return Error("retarget-pose", fmt::format("{}: another skeleton: {}", option, difference))
+        .in_file(given->path);
+  }
+  if (given->frame >= clip->frame_count()) {
+    return Error("retarget-frame",
+                 fmt::format("{}: no frame {}; the motion has {} frames, numbered "
+                             "from 0",
+                             option, given->frame, clip->frame_count()))
+        .in_file(given->path);
+  }
+  pose.resize(skeleton.names.size());
+  clip->get_pose(given->frame, pose);
+  return {};
+}
+
 // A mesh bottom far above or below the feet is not their floor.
 std::optional<double> believable_floor(const Target& target, const RoleMap& roles) {
   if (!target.floor || !roles.humanoid) return std::nullopt;
@@ -171,6 +195,13 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!target_roles) return target_roles.error();
   if (!options.ground.empty()) how->feet = krok::retarget::Feet::free;
   how->target_floor = believable_floor(*target, *target_roles);
+  Status posed = take_pose("--reference-pose", options.reference_pose, source->skeleton,
+                           how->source_pose, context);
+  if (posed) {
+    posed = take_pose("--onto-reference-pose", options.onto_reference_pose, target->clip.skeleton,
+                      how->target_pose, context);
+  }
+  if (!posed) return posed.error();
 
   auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, *how);
   if (!result) return std::move(result).error().in_file(options.input);

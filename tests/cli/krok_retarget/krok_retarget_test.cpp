@@ -169,6 +169,32 @@ TEST_F(KrokRetarget, AFaultyMapIsToldWithItsPlace) {
   EXPECT_THAT(run.err, HasSubstr("did you mean \"LeftHand\"?"));
 }
 
+// A reference pose may come from another motion of the skeleton: frame 9 of the walk by its number
+// and out of a file that has it alone give the same bytes.
+TEST_F(KrokRetarget, TheReferencePoseMayComeFromAnotherMotion) {
+  Clip still = walk_;
+  std::vector<Transform> pose(walk_.skeleton.names.size());
+  walk_.get_pose(9, pose);
+  still.resize(1);
+  still.set_pose(0, pose);
+  write("still.anim", still);
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  for (const auto& [how, out] : {std::pair("9", "a.anim"), std::pair("still.anim:0", "b.anim")}) {
+    const auto run =
+        retarget({"walk.anim", "--onto", "hero.model", "--reference-pose", how, "-o", out});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  const Clip a = read("a.anim"), b = read("b.anim");
+  EXPECT_EQ(a.positions, b.positions);
+  for (const char* wrong : {"still.anim:1", "none.anim:0", "still.anim:x"}) {
+    EXPECT_EQ(
+        retarget({"walk.anim", "--onto", "hero.model", "--reference-pose", wrong, "-o", "c.anim"})
+            .exit_code,
+        2)
+        << wrong;
+  }
+}
+
 TEST_F(KrokRetarget, WrongKindsOfFilesAreRefused) {
   put("text.bvh", "HIERARCHY\n");
   put("walk.cam", "KROKCAMR");
