@@ -17,7 +17,7 @@ struct Exporter {
   std::string reason;  // a sentence without a full stop
   Confidence confidence = Confidence::guess;
   // Axes of all its files, where they are known and their skeletons do not show them.
-  std::optional<Direction> up, forward;
+  std::optional<Direction> up = {}, forward = {};
 };
 
 // Axes of a recognised exporter's files, in place of what one take seems to show: those detected
