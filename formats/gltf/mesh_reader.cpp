@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include "formats/gltf/reader_words_internal.h"
+#include "formats/gltf/used_vertices_internal.h"
 
 namespace krok::gltf {
 
@@ -232,14 +236,11 @@ Status read_targets(const tinygltf::Primitive& source, const std::vector<std::st
   return {};
 }
 
-Result<Primitive> read_primitive(const ParsedJson& parsed, const tinygltf::Primitive& source,
-                                 const std::vector<std::string>& target_names, Accessors& accessors,
-                                 const std::string& name, Diagnostics& diagnostics) {
+// The vertices of a primitive, and what there is of each.
+Result<Primitive> read_vertices(const tinygltf::Primitive& source,
+                                const std::vector<std::string>& target_names, Accessors& accessors,
+                                const std::string& name, Diagnostics& diagnostics) {
   Primitive primitive;
-  if (source.material >= 0 &&
-      static_cast<std::size_t>(source.material) < parsed.material_names.size()) {
-    primitive.material = parsed.material_names[static_cast<std::size_t>(source.material)];
-  }
   const int position = attribute(source.attributes, "POSITION");
   if (position == -1) return bad_mesh(name, "has no POSITION");
   auto positions = accessors.vectors3(position);
@@ -250,12 +251,71 @@ Result<Primitive> read_primitive(const ParsedJson& parsed, const tinygltf::Primi
                              read_texture_coordinates(source, accessors, name, primitive),
                              read_tangents(source, accessors, name, primitive, diagnostics),
                              read_influences(source, accessors, name, primitive, diagnostics),
-                             read_triangles(source, accessors, name, primitive),
                              read_targets(source, target_names, accessors, name, primitive)}) {
     if (!read) return read.error();
   }
   return primitive;
 }
+
+// Reads the primitives of a mesh. Where several share their vertices (each draws a part of them),
+// the vertices are read once, and each gets those that its triangles use.
+class PrimitiveReader {
+ public:
+  PrimitiveReader(const ParsedJson& parsed, const tinygltf::Mesh& source,
+                  const std::vector<std::string>& target_names, Accessors& accessors,
+                  Diagnostics& diagnostics)
+      : parsed_(parsed),
+        source_(source),
+        target_names_(target_names),
+        accessors_(accessors),
+        diagnostics_(diagnostics) {
+    for (const tinygltf::Primitive& primitive : source.primitives) ++users_[key_of(primitive)];
+  }
+
+  Result<Primitive> read(std::size_t index, const std::string& name) {
+    const tinygltf::Primitive& source = source_.primitives[index];
+    const Key key = key_of(source);
+    auto known = whole_.find(key);
+    if (known == whole_.end()) {
+      auto vertices = read_vertices(source, target_names_, accessors_, name, diagnostics_);
+      if (!vertices) return vertices.error();
+      known = whole_.emplace(key, std::move(*vertices)).first;
+    }
+    const bool shared = users_[key] > 1;
+    Primitive triangles;
+    triangles.positions = known->second.positions;
+    if (Status read = read_triangles(source, accessors_, name, triangles); !read) {
+      return read.error();
+    }
+    Primitive primitive;
+    if (shared && !triangles.triangles.empty()) {
+      primitive = with_used_vertices(known->second, std::move(triangles.triangles));
+      if (Status room = accessors_.reserve(bytes_of(primitive)); !room) return room.error();
+    } else {
+      primitive = shared ? known->second : std::move(known->second);
+      primitive.triangles = std::move(triangles.triangles);
+    }
+    if (source.material >= 0 &&
+        static_cast<std::size_t>(source.material) < parsed_.material_names.size()) {
+      primitive.material = parsed_.material_names[static_cast<std::size_t>(source.material)];
+    }
+    return primitive;
+  }
+
+ private:
+  using Key = std::pair<std::map<std::string, int>, std::vector<std::map<std::string, int>>>;
+  static Key key_of(const tinygltf::Primitive& source) {
+    return {source.attributes, source.targets};
+  }
+
+  const ParsedJson& parsed_;
+  const tinygltf::Mesh& source_;
+  const std::vector<std::string>& target_names_;
+  Accessors& accessors_;
+  Diagnostics& diagnostics_;
+  std::map<Key, int> users_;
+  std::map<Key, Primitive> whole_;
+};
 
 }  // namespace
 
@@ -269,9 +329,9 @@ Result<Mesh> read_mesh(const ParsedJson& parsed, std::size_t index, Accessors& a
   const std::vector<std::string> no_names;
   const auto& target_names =
       index < parsed.target_names.size() ? parsed.target_names[index] : no_names;
+  PrimitiveReader reader(parsed, source, target_names, accessors, diagnostics);
   for (std::size_t p = 0; p < source.primitives.size(); ++p) {
-    auto primitive = read_primitive(parsed, source.primitives[p], target_names, accessors,
-                                    fmt::format("{}, primitive {}", name, p), diagnostics);
+    auto primitive = reader.read(p, fmt::format("{}, primitive {}", name, p));
     if (!primitive) return primitive.error();
     mesh.primitives.push_back(std::move(*primitive));
     if (mesh.primitives.back().targets.size() == mesh.target_count()) continue;

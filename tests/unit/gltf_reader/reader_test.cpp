@@ -29,6 +29,11 @@ Json& primitive_of(GlbBuilder& builder) {
   return builder.json["meshes"][0]["primitives"][0];
 }
 
+// By which each corner of the square moves: its number along X.
+std::vector<float> square_displacements() {
+  return {0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0};
+}
+
 TEST(GltfReader, ReadsARig) {
   const nodes::Scene asset = read_good(test::rig());
   ASSERT_EQ(asset.nodes.size(), 3u);
@@ -49,6 +54,39 @@ TEST(GltfReader, ReadsARig) {
   EXPECT_EQ(channel.node, 2);
   EXPECT_EQ(channel.path, nodes::Path::rotation);
   EXPECT_THAT(*channel.times, ElementsAre(0.0f, 0.5f, 1.0f));
+}
+
+// Parts of one mesh that share their vertices, as this project and others write them: each gets its
+// own, with its influences and targets, or a character of many parts grows out of all proportion.
+TEST(GltfReader, PartsThatShareVerticesGetThoseThatTheyUse) {
+  GlbBuilder builder = test::rig();
+  Json& primitives = builder.json["meshes"][0]["primitives"];
+  primitives[0]["targets"] = {{{"POSITION", builder.add(square_displacements(), "VEC3")}}};
+  primitives[0]["indices"] = builder.add(std::vector<std::uint16_t>{0, 1, 2}, "SCALAR");
+  Json second = primitives[0];
+  second["indices"] = builder.add(std::vector<std::uint16_t>{3, 0, 2}, "SCALAR");
+  primitives.push_back(second);
+  Json points = primitives[0];
+  points["mode"] = 0;
+  points["attributes"].erase("NORMAL");  // other attributes: vertices of its own
+  primitives.push_back(points);
+  const nodes::Scene asset = read_good(builder);
+  const auto& parts = asset.meshes.at(0).primitives;
+  ASSERT_EQ(parts.size(), 3U);
+  const nodes::Primitive& part = parts[1];
+  ASSERT_EQ(part.vertex_count(), 3U);
+  EXPECT_EQ((*part.positions)[0], Vec3f(0, 0, 0));
+  EXPECT_EQ((*part.positions)[1], Vec3f(1, 1, 0));
+  EXPECT_EQ((*part.positions)[2], Vec3f(0, 1, 0));
+  EXPECT_EQ(part.triangles.at(0), (std::array<std::uint32_t, 3>{2, 0, 1}));
+  EXPECT_EQ(part.influences_per_vertex, 4);
+  EXPECT_EQ(part.influence_joints[0], 0);
+  EXPECT_EQ(part.influence_joints[4], 1);
+  EXPECT_EQ(part.influence_weights.size(), 12U);
+  EXPECT_EQ((*part.normals).size(), 3U);
+  EXPECT_EQ((*part.targets.at(0).positions)[2], Vec3f(3, 0, 0));
+  EXPECT_EQ(parts[0].vertex_count(), 3U);
+  EXPECT_EQ(parts[2].vertex_count(), 4U);
 }
 
 TEST(GltfReader, ReadsMorphTargetsWithTheirNames) {
