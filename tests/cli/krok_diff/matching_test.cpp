@@ -83,6 +83,14 @@ test::GlbBuilder baked(int lifted_vertex = -1, int lifted_frame = -1) {
   return builder;
 }
 
+// An option that would have no effect is refused: the same materials would be claimed unseen.
+TEST_F(KrokDiffMatching, NearestPointsAndMaterialsExcludeEachOther) {
+  write("golden.glb", baked());
+  const auto done = diff({"golden.glb", "golden.glb", "--match", "nearest", "--materials"});
+  EXPECT_EQ(done.exit_code, 2);
+  EXPECT_THAT(done.err, HasSubstr("--match nearest"));
+}
+
 TEST_F(KrokDiffMatching, AVertexMovedByATenthOfAMillimetreInFrame37Of600IsFoundAndNamed) {
   write("golden.glb", baked());
   write("changed.glb", baked(3, 37));
