@@ -233,7 +233,7 @@ def main():
         if library is None:
             print(report, file=sys.stderr)
             return 2
-        parameters = [entry["name"] for entry in report["parameters"]]
+        parameters = [f"{entry['name']} [{entry['unit']}]" for entry in report["parameters"]]
         steps = Examples(library)
         truth = (Frames(steps.skeleton, steps.feet), steps, parameters)
         for first in range(options.folds):
