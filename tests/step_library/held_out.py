@@ -49,8 +49,9 @@ class Examples:
 
     def __init__(self, path):
         container = read_krok_files.Container(pathlib.Path(path).read_bytes())
-        _, joints, keytimes, parameters, examples, _, _ = struct.unpack(
-            "<dIIIIII", container.section("INFO", 32))
+        _, joints, keytimes, parameters, examples, _, ground = struct.unpack(
+            "<dIIIIIf", container.section("INFO", 32))
+        self.ground = ground  # made motions lie this much above those of the file
         self.names = container.texts("EXNAMES", examples)
         self.keytimes = np.array(container.numbers("KEYTIMES", "d", keytimes, examples))
         self.points = np.array(container.numbers("MEASURED", "d", parameters, examples))
@@ -201,7 +202,9 @@ def run_fold(tools, folder, truth, held_out, ways):
         if library is None:
             continue
         made = tools.synthesise(folder, library, parameters, points[asked], True)
+        ground = Examples(library).ground
         for row, (motion, times) in made.items():
+            motion.positions[..., 1] -= ground
             errors[way][asked[row]] = error_of(frames.of(motion, times), wanted[asked[row]])
     return errors, reports
 
