@@ -39,7 +39,7 @@ WAYS = {  # options of krok-fit, and the spacing of the description (None: the d
        for kernel in ("cubic", "linear", "gaussian", "bspline", "wendland")},
     **{f"{kernel} {smoothing}": (("--kernel", kernel, "--smooth", smoothing, "--refine", "0"), None)
        for kernel in ("cubic", "linear") for smoothing in ("0.01", "0.1", "1", "10")},
-    "default, unrefined": (("--refine", "0"), None),
+    "unrefined": (("--refine", "0"), None),
     "default": ((), None),
 }
 
@@ -262,7 +262,7 @@ def print_results(options, captures, ways, folds):
               f"{table[way]['mean']:7.1f} {table[way]['refused']:9d}   "
               + " ".join(f"{value:6.1f}" for value in by_fold))
     for errors, reports in folds:
-        report = reports.get("default") or reports.get("default, unrefined") or {}
+        report = reports.get("default") or reports.get("unrefined") or {}
         if isinstance(report, dict):
             print(f"  chosen: {report.get('kernel')}, smoothing {report.get('smoothing')}, "
                   f"{len(report.get('examples', []))} examples, {report.get('inserted')} inserted")
@@ -273,7 +273,7 @@ def print_results(options, captures, ways, folds):
                                             "parameters": options.parameters, "steps": steps,
                                             "ways": table}, indent=1))
     simple = [table[way]["hips"] for way in SIMPLE if way in table and not table[way]["refused"]]
-    own = table.get("default", table.get("default, unrefined"))
+    own = table.get("default", table.get("unrefined"))
     if simple and own:
         ratio = own["hips"] / min(simple)
         print(f"default: {ratio:.3f} of the best simple one")
