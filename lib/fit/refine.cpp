@@ -51,6 +51,7 @@ class Refiner {
         held_out_(solver_.function(), measure, options) {}
 
   Status begin();
+  Status find_lowest_at_first();
   Status run(Progress& progress);
   Refined take() && { return std::move(state_); }
 
@@ -81,7 +82,8 @@ class Refiner {
   std::size_t d_, n_;
   detail::HeldOut held_out_;
   RefineMetrics now_;
-  double lowest_ = 0;  // weight at held-out points
+  double lowest_ = 0;           // weight at held-out points
+  double lowest_at_first_ = 0;  // the same before the first round
 };
 
 // Call after each change of the functions.
@@ -93,8 +95,27 @@ Status Refiner::update() {
   return {};
 }
 
+// From the function without the points of earlier rounds, so that continuing changes nothing. The
+// least weight in the metrics will not do: it is taken at fewer points, and with four parameters
+// often misses the lowest ones, so that every insertion seemed to lower the weights.
+Status Refiner::find_lowest_at_first() {
+  int inserted = 0;
+  for (const RefineRound& round : state_.rounds) inserted += round.inserted;
+  if (inserted == 0) {
+    lowest_at_first_ = lowest_;
+    return {};
+  }
+  WeightSolver start = solver_;
+  start.remove_last(inserted);
+  const auto evaluator = WeightEvaluator::create(start.function());
+  if (!evaluator) return evaluator.error();
+  lowest_at_first_ = held_out_.lowest(start.function(), *evaluator);
+  return {};
+}
+
 Status Refiner::begin() {
   if (Status status = update(); !status) return status;
+  if (Status status = find_lowest_at_first(); !status) return status;
   std::vector<double> places(n_ * d_);
   for (std::size_t k = 0; k < n_; ++k) {
     solver_.function().scale(solver_.function().centre(static_cast<int>(k)),
@@ -243,7 +264,7 @@ bool Refiner::has_grown(const RefineMetrics& now) const {
 // slightly below their initial values.
 double Refiner::lowest_allowed(double before) const {
   if (before >= options_.lowest) return options_.lowest;
-  return std::min(state_.before.least_weight, options_.lowest) - kLowerOnTheWay;
+  return std::min({state_.before.least_weight, lowest_at_first_, options_.lowest}) - kLowerOnTheWay;
 }
 
 void Refiner::refuse(const Found& found, RefineRound& round) {

@@ -9,7 +9,7 @@
 
 namespace krok::parametric {
 
-std::vector<int> thin_out(const Library& library, double spacing) {
+std::vector<int> thin_out(const Library& library, double spacing, std::size_t most) {
   const auto n = static_cast<Eigen::Index>(library.examples.size());
   std::vector<int> kept(library.examples.size());
   std::iota(kept.begin(), kept.end(), 0);
@@ -26,7 +26,7 @@ std::vector<int> thin_out(const Library& library, double spacing) {
     kept.push_back(static_cast<int>(next));
     const Eigen::VectorXd chosen = points.col(next);
     distances = distances.cwiseMin((points.colwise() - chosen).colwise().norm().transpose());
-  } while (distances.maxCoeff(&next) >= spacing);
+  } while (kept.size() < most && distances.maxCoeff(&next) >= spacing);
   std::ranges::sort(kept);
   return kept;
 }

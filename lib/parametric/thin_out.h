@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "parametric/library.h"
@@ -13,6 +15,8 @@ namespace krok::parametric {
 // refinement, and raised the lowest weight from -8 to -0.3.
 // Farthest-point sampling: the first is the example nearest to the mean of all, each further one
 // the farthest from those kept, so that extremes are kept. A spacing of 0 or less keeps all.
-std::vector<int> thin_out(const Library& library, double spacing);
+// `most`: how many are kept at most, at any spacing greater than 0; at least 1.
+std::vector<int> thin_out(const Library& library, double spacing,
+                          std::size_t most = std::numeric_limits<std::size_t>::max());
 
 }  // namespace krok::parametric

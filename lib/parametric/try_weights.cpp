@@ -1,6 +1,7 @@
 #include "parametric/try_weights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -29,7 +30,7 @@ struct Material {
 Library thinned(const Library& library, double spacing) {
   Library result = library;
   result.examples.clear();
-  for (const int i : thin_out(library, spacing)) {
+  for (const int i : thin_out(library, spacing, rbf::kMaxExamples)) {
     result.examples.push_back(library.examples[static_cast<std::size_t>(i)]);
   }
   return result;
@@ -126,10 +127,56 @@ class Part {
   std::vector<std::size_t> left_out_, asked_;  // indices of examples, ascending
 };
 
+bool usable(const WeightTrial& trial) {
+  return trial.failed == 0;
+}
+
+// The standard error of the mean difference between two candidates: examples of one capture differ
+// alike, so captures count, not examples.
+double uncertainty(const std::vector<std::vector<Prediction>>& parts, std::size_t candidate,
+                   std::size_t best) {
+  struct Sum {
+    double difference = 0;
+    int examples = 0;
+  };
+  std::map<int, Sum> sums;  // by capture
+  Sum all;
+  for (const auto& part : parts) {
+    for (const Prediction& one : part) {
+      const double difference = *one.by[candidate] - *one.by[best];
+      for (Sum* sum : {&sums[one.group], &all}) {
+        sum->difference += difference;
+        ++sum->examples;
+      }
+    }
+  }
+  if (sums.size() < 2) return 0;
+  const double mean = all.difference / all.examples;
+  double squares = 0;
+  for (const auto& [group, sum] : sums) {
+    squares += (sum.difference - mean * sum.examples) * (sum.difference - mean * sum.examples);
+  }
+  const auto count = static_cast<double>(sums.size());
+  return std::sqrt(squares * count / (count - 1)) / all.examples;
+}
+
+void find_best(const std::vector<std::vector<Prediction>>& parts, WeightTrials& trials) {
+  for (std::size_t c = 1; c < trials.tried.size(); ++c) {
+    const WeightTrial& trial = trials.tried[c];
+    const WeightTrial& best = trials.tried[trials.best];
+    if (usable(trial) && (!usable(best) || trial.distance < best.distance)) trials.best = c;
+  }
+  if (trials.tried.empty() || !usable(trials.tried[trials.best])) return;
+  for (std::size_t c = 0; c < trials.tried.size(); ++c) {
+    if (!usable(trials.tried[c])) continue;
+    trials.tried[c].uncertain = uncertainty(parts, c, trials.best);
+  }
+}
+
 WeightTrials means_of(const std::vector<std::vector<Prediction>>& parts,
                       std::span<const WeightCandidate> candidates) {
   WeightTrials trials;
-  for (const WeightCandidate& candidate : candidates) trials.tried.push_back({candidate, 0, 0});
+  for (const WeightCandidate& candidate : candidates) trials.tried.push_back({candidate});
   std::set<int> groups;
   for (const auto& part : parts) {
     for (const Prediction& one : part) {
@@ -153,6 +200,7 @@ WeightTrials means_of(const std::vector<std::vector<Prediction>>& parts,
   for (WeightTrial& trial : trials.tried) {
     trial.distance /= std::max(1, trials.examples - trial.failed);
   }
+  find_best(parts, trials);
   return trials;
 }
 
@@ -174,6 +222,22 @@ Result<WeightTrials> try_weights(const Library& library, std::span<const int> gr
     }
   });
   return means_of(predictions, candidates);
+}
+
+std::size_t trial_to_use(const WeightTrials& trials, double gain) {
+  const WeightTrial& first = trials.tried.front();
+  const WeightTrial& best = trials.tried[trials.best];
+  if (usable(first) && first.distance <= gain * best.distance) return 0;
+  std::size_t chosen = trials.best;
+  if (best.candidate.smoothing == 0) return chosen;
+  for (std::size_t c = 0; c < trials.tried.size(); ++c) {
+    const WeightTrial& trial = trials.tried[c];
+    if (!usable(trial) || trial.distance - best.distance > trial.uncertain) continue;
+    const WeightTrial& now = trials.tried[chosen];
+    const double more = trial.candidate.smoothing - now.candidate.smoothing;
+    if (more > 0 || (more == 0 && c < chosen)) chosen = c;
+  }
+  return chosen;
 }
 
 }  // namespace krok::parametric

@@ -151,9 +151,9 @@ class Tools:
             if run.returncode == 0:
                 break
             refused = re.search(r"row (\d+):", run.stderr)
-            if not refused:
+            if not refused and len(rows) > 1:
                 raise RuntimeError(run.stderr)
-            del rows[int(refused.group(1)) - 1]
+            del rows[int(refused.group(1)) - 1 if refused else 0]
         made = {}
         for number, row in enumerate(rows, 1):
             path = folder / (f"made_{number:0{len(str(len(rows)))}d}.anim")

@@ -12,8 +12,6 @@ namespace krok::cli::fit {
 namespace {
 
 using parametric::WeightCandidate;
-using parametric::WeightTrial;
-using parametric::WeightTrials;
 using rbf::Kernel;
 
 // From almost none to affine.
@@ -73,16 +71,6 @@ std::vector<WeightCandidate> candidates_for(const LibraryInput& input, const Opt
   return list;
 }
 
-const WeightTrial& best_of(const WeightTrials& trials) {
-  const auto usable = [](const WeightTrial& trial) { return trial.failed == 0; };
-  const auto* best = &trials.tried.front();
-  for (const WeightTrial& trial : trials.tried) {
-    if (usable(trial) && (!usable(*best) || trial.distance < best->distance)) best = &trial;
-  }
-  const WeightTrial& usual = trials.tried.front();
-  return usable(usual) && usual.distance <= kGain * best->distance ? usual : *best;
-}
-
 }  // namespace
 
 bool contradict_each_other(const parametric::LeftOutMeans& exact) {
@@ -103,10 +91,11 @@ WeightsChoice choose_weights(LibraryInput& input, const Options& options, ToolCo
   double spacing = input.exact_spacing;
   if (choice.trials.examples >= kMinInside && choice.trials.groups >= kMinCaptures) {
     choice.is_chosen = true;
-    const WeightCandidate best = best_of(choice.trials).candidate;
-    choice.kernel = best.kernel;
-    choice.smoothing = best.smoothing;
-    spacing = best.spacing;
+    const std::size_t used = parametric::trial_to_use(choice.trials, kGain);
+    const WeightCandidate& candidate = choice.trials.tried[used].candidate;
+    choice.kernel = candidate.kernel;
+    choice.smoothing = candidate.smoothing;
+    spacing = candidate.spacing;
   }
   if (choice.smoothing > 0) {
     take_examples(input, kSmoothedSpacing);

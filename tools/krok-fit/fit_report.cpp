@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 
 #include "core/numbers.h"
 #include "tools/krok-fit/choose_weights.h"
@@ -92,7 +93,8 @@ Json trials_json(const parametric::WeightTrials& trials) {
                     {"smoothing", trial.candidate.smoothing},
                     {"spacing", trial.candidate.spacing},
                     {"failed", trial.failed},
-                    {"error", trial.distance}});
+                    {"error", trial.distance},
+                    {"standard_error", trial.uncertain}});
   }
   Json result;
   result["examples"] = trials.examples;
@@ -100,6 +102,7 @@ Json trials_json(const parametric::WeightTrials& trials) {
   result["planes"] = trials.planes;
   result["nearest"] = trials.nearest;
   result["weights"] = std::move(list);
+  if (!trials.tried.empty()) result["best"] = trials.best;
   return result;
 }
 
@@ -166,6 +169,50 @@ void say_polish(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   context.log(fmt::format("  polished together; before that, errors were {}", text));
 }
 
+std::string_view reason_of(krok::fit::Refusal refusal) {
+  switch (refusal) {
+    case krok::fit::Refusal::weights:
+      return "needs too large or too low weights";
+    case krok::fit::Refusal::residual:
+      return "cannot be reached by any blend";
+    case krok::fit::Refusal::near:
+      return "too close to other points";
+    case krok::fit::Refusal::system:
+      return "makes the weights ill-conditioned";
+    case krok::fit::Refusal::growth:
+      break;
+  }
+  return "raises the error elsewhere";
+}
+
+// Refinement that ends with errors beyond the tolerances and no way to reduce them.
+void warn_of_stall(const LibraryInput& input, const FittedLibrary& fitted, ToolContext& context) {
+  if (fitted.refined.stop != krok::fit::Stop::stalled) return;
+  const RefineMetrics& after = last_metrics(fitted);
+  std::string errors;
+  for (std::size_t d = 0; d < fitted.tolerances.size(); ++d) {
+    if (after.within[d].largest <= fitted.tolerances[d]) continue;
+    const ShownUnit unit = unit_for_errors(input.library.parameters[d]);
+    errors +=
+        fmt::format("{}{} {}", errors.empty() ? "" : ", ", input.description.parameters[d].name,
+                    with_unit(after.within[d].largest, unit));
+  }
+  if (errors.empty()) return;
+  std::map<krok::fit::Refusal, int> counts;
+  for (const krok::fit::RefusedPoint& point : fitted.refined.refused) ++counts[point.reason];
+  std::string refused;
+  for (const auto& [reason, count] : counts) {
+    refused += fmt::format("{}{} ({})", refused.empty() ? "" : ", ", count, reason_of(reason));
+  }
+  context.warn("fit-stalled",
+               fmt::format("refinement ended with errors above the tolerance: {}; {} inserted, "
+                           "refused: {}",
+                           errors, counted(fitted.refined.function.inserted(), "point"),
+                           refused.empty() ? "none" : refused),
+               "add examples between those there are, allow more smoothing, or use krok-synth "
+               "--correct");
+}
+
 std::string trial_text(const parametric::WeightTrial& trial) {
   if (trial.failed > 0) return "none";
   return readable(1e3 * trial.distance, 3);
@@ -195,6 +242,13 @@ void say_trials(const FittedLibrary& fitted, ToolContext& context) {
                   rbf::kernel_name(fitted.choice.kernel), readable(fitted.choice.smoothing),
                   counted(trials.examples, "example"), counted(trials.groups, "clip"),
                   readable(1e3 * trials.planes, 3), readable(1e3 * trials.nearest, 3)));
+  if (fitted.choice.is_chosen && fitted.choice.smoothing > 0) {
+    const parametric::WeightTrial& best = trials.tried[trials.best];
+    context.log(
+        fmt::format("    best: {}, smoothing {}; used: the most smoothing that is at most "
+                    "one standard error worse",
+                    rbf::kernel_name(best.candidate.kernel), readable(best.candidate.smoothing)));
+  }
   if (!exact.empty()) context.log("    examples reproduced: " + exact);
   for (const auto& [kernel, text] : smoothed) {
     context.log(fmt::format("    {} with smoothing {}", rbf::kernel_name(kernel), text));
@@ -303,6 +357,7 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   }
   say_trials(fitted, context);
   say_smoothing(input, fitted, context);
+  warn_of_stall(input, fitted, context);
   say_polish(input, fitted, context);
   context.log(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "parametric/thin_out.h"
+#include "rbf/weight_function.h"
 
 namespace krok::cli::fit {
 
@@ -20,7 +21,7 @@ constexpr double kUsualTolerance = 0.1;  // relative to the usual tolerance: ref
 
 void thin_out(LibraryInput& input, double spacing) {
   std::vector<parametric::Example> chosen;
-  for (const int i : parametric::thin_out(input.library, spacing)) {
+  for (const int i : parametric::thin_out(input.library, spacing, rbf::kMaxExamples)) {
     chosen.push_back(std::move(input.library.examples[static_cast<std::size_t>(i)]));
   }
   input.library.examples = std::move(chosen);

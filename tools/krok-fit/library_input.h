@@ -38,7 +38,7 @@ Result<LibraryInput> read_library(const std::string& path, bool keep_going, Tool
 
 // Spacing of detected steps that weights interpolate, and of examples that they smooth.
 inline constexpr double kUsualSpacing = 0.15;
-inline constexpr double kSmoothedSpacing = 0.01;
+inline constexpr double kSmoothedSpacing = 1e-3;
 
 // Uses the examples with another spacing, unless the description gives one.
 void take_examples(LibraryInput& input, double spacing);
