@@ -26,9 +26,10 @@ inline constexpr double kGain = 1.03;
 bool contradict_each_other(const parametric::LeftOutMeans& exact);
 
 // Follows the options, and chooses what they leave open by try_weights(): all kernels without
-// smoothing, and the two that allow it with a series of smoothings. Too few captures: cubic, which
-// reproduces the examples. Smoothed weights use all examples. Those that interpolate use examples
-// that are apart: detected steps always, other motions if that predicts them clearly better.
+// smoothing, and the two that allow it with a series of smoothings up to an affine fit, by
+// trial_to_use(). Too few captures: cubic, which reproduces the examples. Smoothed weights use
+// nearly all examples, since each one left out makes the mean less certain. Those that interpolate
+// use examples that are apart: detected steps always, other motions if that predicts them clearly better.
 WeightsChoice choose_weights(LibraryInput& input, const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::fit

@@ -187,6 +187,57 @@ TEST(TryWeights, TellsContradictionFromAgreement) {
   EXPECT_GT(told->tried[0].distance, 1.2 * told->tried[2].distance);
 }
 
+WeightTrials trials_of(std::initializer_list<WeightTrial> tried, std::size_t best) {
+  WeightTrials trials;
+  trials.tried = tried;
+  trials.best = best;
+  return trials;
+}
+
+// If it fails, libraries of few captures follow their noise, or smooth examples that agree.
+TEST(TryWeights, UsesTheMostSmoothingThatIsNotClearlyWorse) {
+  const WeightTrial exact = {{rbf::Kernel::cubic, 0, 0}, 0.120, 0, 0.01};
+  const WeightTrial little = {{rbf::Kernel::cubic, 0.1, 0}, 0.100, 0, 0};
+  const WeightTrial more = {{rbf::Kernel::cubic, 1, 0}, 0.101, 0, 0.002};
+  const WeightTrial most = {{rbf::Kernel::cubic, 10, 0}, 0.110, 0, 0.003};
+  EXPECT_EQ(trial_to_use(trials_of({exact, little, more, most}, 1), 1.03), 2u);
+  // The first is good enough.
+  EXPECT_EQ(trial_to_use(trials_of({exact, little, more, most}, 1), 1.2), 0u);
+  // One that makes no motion for some example is not used.
+  WeightTrial broken = more;
+  broken.failed = 1;
+  EXPECT_EQ(trial_to_use(trials_of({exact, little, broken, most}, 1), 1.03), 1u);
+  // A best one that reproduces examples stays, whatever is near it.
+  const WeightTrial linear = {{rbf::Kernel::linear, 0, 0}, 0.099, 0, 0};
+  EXPECT_EQ(trial_to_use(trials_of({exact, linear, little, more}, 1), 1.03), 1u);
+}
+
+// If it fails, steps of one capture count as independent of each other: twice as many of them would
+// seem to tell more.
+TEST(TryWeights, UncertaintyIsThatOfCaptures) {
+  const Library noisy = contradicting();
+  std::vector<int> groups;
+  for (std::size_t i = 0; i < noisy.examples.size(); ++i) groups.push_back(static_cast<int>(i / 2));
+  const auto once = try_weights(noisy, groups, kTried);
+  ASSERT_TRUE(once.ok()) << once.error().message;
+  Library twice = noisy;
+  for (const Example& example : noisy.examples) {
+    twice.examples.push_back(example);
+    twice.examples.back().parameters[0] += 1e-5;
+  }
+  std::vector<int> both = groups;
+  both.insert(both.end(), groups.begin(), groups.end());
+  const auto again = try_weights(twice, both, kTried);
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(once->tried[once->best].uncertain, 0);
+  for (const WeightTrial& trial : once->tried) {
+    EXPECT_GE(trial.distance, once->tried[once->best].distance);
+  }
+  const double error = once->tried[3].uncertain;
+  EXPECT_GT(error, 0);
+  EXPECT_NEAR(again->tried[3].uncertain, error, 0.35 * error);
+}
+
 // The other steps of a capture tell too much of the one left out.
 TEST(TryWeights, LeavesOutWholeCaptures) {
   Library twice = length_and_height_library();

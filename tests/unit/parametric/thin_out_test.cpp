@@ -31,6 +31,8 @@ TEST(ThinOut, KeepsOneOfThoseThatMeasureAlike) {
   EXPECT_THAT(thin_out(library, 0), ElementsAre(0, 1, 2, 3, 4));
   EXPECT_THAT(thin_out(library, -1), ElementsAre(0, 1, 2, 3, 4));
   EXPECT_THAT(thin_out(library, 0.6), ElementsAre(2));
+  // Not more than asked for: the middle and the extremes.
+  EXPECT_THAT(thin_out(library, 0.1, 3), ElementsAre(0, 1, 2));
   EXPECT_THAT(thin_out(library_at({}), 0.1), IsEmpty());
   EXPECT_THAT(thin_out(library_at({{3}}), 0.1), ElementsAre(0));
   EXPECT_THAT(thin_out(library_at({{3}, {3}}), 0.1), ElementsAre(0));
