@@ -63,6 +63,7 @@ struct Scene {
   struct Animation {
     std::string name;
     std::vector<double> key_times;  // seconds, rising
+    bool straight = true;           // linear between keys, without steps or splines
   };
   std::vector<Animation> animations;
 

@@ -79,7 +79,8 @@ struct SceneDifference {
 
 // Compares each pair of animations (by name if all names of both are unique and the same set,
 // otherwise by index) at the key times of both, for as long as both last; times within the
-// tolerance are merged. Without animations, compares the static pose. A skinned scene can be
+// tolerance are merged. Where one has steps or splines between keys, also at quarters of the way
+// from time to time. Without animations, compares the static pose. A skinned scene can be
 // compared with one without joints; joints are then skipped. Normals or texture coordinates that
 // only one mesh has are a difference of structure; so are tangents if both materials have a normal
 // texture, otherwise they are a note. Deterministic for any number of jobs. Codes: compare-value if

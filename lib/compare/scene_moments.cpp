@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxMoments = 1'000'000;
 constexpr double kRounding = 1e-4;  // seconds
+constexpr int kParts = 4;           // from key to key, where an animation is not straight there
 
 using Times = std::vector<std::pair<double, double>>;  // of the first, of the second
 
@@ -52,6 +53,19 @@ Times common_times(const std::vector<double>& first, const std::vector<double>& 
   return times;
 }
 
+// Steps and splines may agree at all keys and differ between them: moments up to the next key.
+void add_between(SceneComparison& comparison, double first_time, double second_time) {
+  const Moment last = comparison.moments.back();
+  if (first_time - last.first_time < kParts * kRounding) return;
+  for (int part = 1; part < kParts; ++part) {
+    const double share = static_cast<double>(part) / kParts;
+    Moment moment = last;
+    moment.first_time += share * (first_time - last.first_time);
+    moment.second_time += share * (second_time - last.second_time);
+    comparison.moments.push_back(moment);
+  }
+}
+
 Status add_moments(SceneComparison& comparison, int first_animation, int second_animation) {
   const Scene::Animation& a =
       comparison.first.animations[static_cast<std::size_t>(first_animation)];
@@ -66,7 +80,8 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
     }
     return {};
   }
-  if (a.key_times.size() + b.key_times.size() + comparison.moments.size() > kMaxMoments) {
+  const std::size_t each = a.straight && b.straight ? 1 : kParts;
+  if (each * (a.key_times.size() + b.key_times.size()) + comparison.moments.size() > kMaxMoments) {
     return Error("compare-too-long", fmt::format("{} has more than a million key times", name));
   }
   if (std::abs(a.key_times.back() - b.key_times.back()) > same ||
@@ -78,8 +93,13 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
                     readable(b.key_times.front()), readable(b.key_times.back())));
   }
 
+  if (a.straight != b.straight) {
+    comparison.note(fmt::format("{}: only the {} has steps or splines between keys", name,
+                                a.straight ? "second" : "first"));
+  }
   int frame = 0;
   for (const auto& [first_time, second_time] : common_times(a.key_times, b.key_times, same)) {
+    if (frame > 0 && !(a.straight && b.straight)) add_between(comparison, first_time, second_time);
     comparison.moments.push_back(
         {first_animation, second_animation, frame, first_time, second_time});
     ValueLocation place{.animation = comparison.first.animations.size() > 1 ? first_animation : -1,

@@ -1,6 +1,7 @@
 #include "tools/krok-diff/gltf_scene.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "core/numbers.h"
 #include "nodes/evaluate.h"
@@ -110,7 +111,12 @@ Result<compare::Scene> scene_of(const nodes::Scene& asset) {
                                    player->scene_joints[i]));
   }
   for (std::size_t i = 0; i < asset.animations.size(); ++i) {
-    scene.animations.push_back({asset.animations[i].name, from.key_times(static_cast<int>(i))});
+    const bool straight =
+        std::ranges::all_of(asset.animations[i].channels, [](const nodes::Channel& channel) {
+          return channel.interpolation == nodes::Interpolation::linear || channel.times->size() < 2;
+        });
+    scene.animations.push_back(
+        {asset.animations[i].name, from.key_times(static_cast<int>(i)), straight});
   }
   scene.evaluate = [player](int animation, double time, compare::SceneState& state) {
     player->evaluate(animation, time, state);

@@ -83,7 +83,8 @@ ToolSpec make_spec() {
   spec.summary =
       "Measures the differences of two motions, models, cameras or glTF files. glTF "
       "files are compared as displayed: vertices and joints in world space at the key "
-      "times of both, whether skinned, morphed or moved by nodes";
+      "times of both (and between them where there are steps or splines), whether "
+      "skinned, morphed or moved by nodes";
   spec.inputs = "A B";
   spec.examples = {{"krok-diff walk.anim walk_again.anim --tolerance 0.1mm --angle 0.1deg",
                     "Max and RMS difference of joints, with joint and frame; exit code 1 if beyond "

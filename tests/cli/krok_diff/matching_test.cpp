@@ -83,6 +83,37 @@ test::GlbBuilder baked(int lifted_vertex = -1, int lifted_frame = -1) {
   return builder;
 }
 
+// Equal at all keys, and yet played otherwise: steps hold the last key, wild tangents leave the
+// way.
+TEST_F(KrokDiffMatching, WhatDiffersBetweenKeysIsFound) {
+  write("linear.glb", test::rig());
+  test::GlbBuilder steps = test::rig();
+  steps.json["animations"][0]["samplers"][0]["interpolation"] = "STEP";
+  write("steps.glb", steps);
+  test::GlbBuilder spline = test::rig();
+  const float eighth = 0.38268343F, eighth_cosine = 0.92387953F, quarter = 0.70710678F;
+  std::vector<float> keys;
+  for (const auto& [sine, cosine] :
+       {std::pair(0.0F, 1.0F), {eighth, eighth_cosine}, {quarter, quarter}}) {
+    for (const float value :
+         {0.0F, 0.0F, 4.0F, 0.0F, 0.0F, 0.0F, sine, cosine, 0.0F, 0.0F, 4.0F, 0.0F})
+      keys.push_back(value);
+  }
+  auto& sampler = spline.json["animations"][0]["samplers"][0];
+  sampler["output"] = spline.add(keys, "VEC4");
+  sampler["interpolation"] = "CUBICSPLINE";
+  write("spline.glb", spline);
+  for (const char* other : {"steps.glb", "spline.glb"}) {
+    const auto done = diff({"linear.glb", other});
+    EXPECT_EQ(done.exit_code, 1) << other << done.out;
+    EXPECT_THAT(done.out, HasSubstr("only the second has steps or splines between keys"));
+    EXPECT_EQ(diff({other, other}).exit_code, 0);
+  }
+  // From the last key to just before the next, 45 degrees on: at three quarters 2 sin(33.75 / 2).
+  const auto report = result_of({"linear.glb", "steps.glb"});
+  EXPECT_NEAR(report["measures"][0]["largest"].get<double>(), 2 * std::sin(0.375 * kPi / 4), 1e-3);
+}
+
 // An option that would have no effect is refused: the same materials would be claimed unseen.
 TEST_F(KrokDiffMatching, NearestPointsAndMaterialsExcludeEachOther) {
   write("golden.glb", baked());
