@@ -261,10 +261,16 @@ bool Refiner::has_grown(const RefineMetrics& now) const {
 }
 
 // Weights that satisfy `lowest` must keep doing so. If some do not yet, they may temporarily fall
-// slightly below their initial values.
+// slightly below their initial values: those in the metrics, or, if nothing could be inserted with
+// these in the first rounds, those at the held-out points.
 double Refiner::lowest_allowed(double before) const {
   if (before >= options_.lowest) return options_.lowest;
-  return std::min({state_.before.least_weight, lowest_at_first_, options_.lowest}) - kLowerOnTheWay;
+  const double allowed = std::min(state_.before.least_weight, options_.lowest) - kLowerOnTheWay;
+  const auto& rounds = state_.rounds;
+  const bool stuck = rounds.size() >= kPatience &&
+                     std::all_of(rounds.begin(), rounds.begin() + kPatience,
+                                 [](const RefineRound& round) { return round.inserted == 0; });
+  return stuck ? std::min(allowed, lowest_at_first_ - kLowerOnTheWay) : allowed;
 }
 
 void Refiner::refuse(const Found& found, RefineRound& round) {
