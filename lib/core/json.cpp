@@ -1,5 +1,9 @@
 #include "core/json_internal.h"
 
+#include <fmt/format.h>
+
+#include "core/text.h"
+
 namespace krok {
 
 nlohmann::json parse_json(std::string_view text) {
@@ -14,12 +18,41 @@ nlohmann::json parse_json_or_throw(std::string_view text) {
   return nlohmann::json::parse(text);
 }
 
+namespace {
+
+// What printable() replaces, as escape sequences. It occurs in strings alone; the control
+// characters below U+0020 are escaped already.
+std::string without_controls(const std::string& text) {
+  const std::string safe = printable(text, true);
+  if (safe.size() == text.size()) return text;
+  std::string result;
+  std::size_t i = 0;
+  for (const char c : safe) {
+    if (c == text[i]) {
+      result += c;
+      ++i;
+      continue;
+    }
+    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[i + k]); };
+    const unsigned code = byte(0) == 0xC2 ? byte(1)
+                          : byte(0) == 0x7F
+                              ? 0x7F
+                              : 0x2000U + ((byte(1) & 0x3FU) << 6) + (byte(2) & 0x3FU);
+    result += fmt::format("\\u{:04x}", code);
+    i += byte(0) == 0xC2 ? 2 : byte(0) == 0x7F ? 1 : 3;
+  }
+  return result;
+}
+
+}  // namespace
+
 std::string json_text(const nlohmann::json& value, int indent) {
-  return value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
+  return without_controls(value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 std::string json_text(const nlohmann::ordered_json& value, int indent) {
-  return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return without_controls(
+      value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 }  // namespace krok

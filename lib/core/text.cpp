@@ -108,6 +108,25 @@ std::string to_utf8(std::string_view text) {
   return utf8;
 }
 
+std::string printable(std::string_view text, bool lines) {
+  std::string result;
+  result.reserve(text.size());
+  const auto byte = [&](std::size_t i) {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool line = lines && (text[i] == '\n' || text[i] == '\t');
+    // U+202A to U+202E and U+2066 to U+2069.
+    const bool turns =
+        byte(i) == 0xE2 && ((byte(i + 1) == 0x80 && byte(i + 2) >= 0xAA && byte(i + 2) <= 0xAE) ||
+                            (byte(i + 1) == 0x81 && byte(i + 2) >= 0xA6 && byte(i + 2) <= 0xA9));
+    const bool two_bytes = byte(i) == 0xC2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xA0;
+    result += (byte(i) < 0x20 && !line) || byte(i) == 0x7F || two_bytes || turns ? '?' : text[i];
+    i += turns ? 2 : two_bytes ? 1 : 0;
+  }
+  return result;
+}
+
 std::string shown(std::string_view text) {
   constexpr std::size_t kMax = 40;
   std::size_t length = std::min(text.size(), kMax);
@@ -116,11 +135,7 @@ std::string shown(std::string_view text) {
          (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) {
     --length;
   }
-  std::string result = to_utf8(text.substr(0, length));
-  for (char& c : result) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x20 || code == 0x7F) c = '?';
-  }
+  const std::string result = printable(to_utf8(text.substr(0, length)));
   return length < text.size() ? result + "..." : result;
 }
 

@@ -13,11 +13,12 @@
 
 namespace krok::cli {
 
+// Everything a tool says goes through here or print(), and may quote what is in a file.
 void ToolContext::put_message(const std::string& text) {
   if (one_of_many != nullptr) {
-    one_of_many->messages += text;
+    one_of_many->messages += printable(text, true);
   } else {
-    write_message(console, text);
+    write_message(console, printable(text, true));
   }
 }
 
@@ -38,8 +39,9 @@ void ToolContext::log(const std::string& line) {
     put_message(line + "\n");
 }
 
-void ToolContext::print(const std::string& text) {
+void ToolContext::print(const std::string& given) {
   if (report_on_standard_output) return;
+  const std::string text = printable(given, true);
   // Failures are checked once, at the end.
   (void)std::fwrite(text.data(), 1, text.size(), stdout);
 }

@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/output_set.h"
-#include "tools/cli/printable.h"
 #include "tools/krok-diff/compare_files.h"
 #include "tools/krok-diff/folders.h"
 

@@ -6,8 +6,8 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "tools/cli/json_object.h"
-#include "tools/cli/printable.h"
 #include "tools/shared/role_report.h"
 
 namespace krok::cli::import {

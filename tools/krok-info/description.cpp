@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/numbers.h"
-#include "tools/cli/printable.h"
+#include "core/text.h"
 
 namespace krok::cli::info {
 

@@ -99,5 +99,23 @@ TEST(Locator, FindsEveryByteForwardsAndBackwards) {
   EXPECT_EQ(locate("", 0, name).column, 1);
 }
 
+// A name in a file that reaches a terminal could otherwise recolour it, move the cursor or make
+// "name" read as another one.
+TEST(Printable, HasNothingThatATerminalObeys) {
+  EXPECT_EQ(printable("a\x1b[31mb\x7f\r"), "a?[31mb??");
+  EXPECT_EQ(printable("a\xc2\x9b"
+                      "31m\xc2\x80"),
+            "a?31m?");
+  EXPECT_EQ(printable("a\xe2\x80\xae"
+                      "b\xe2\x81\xa6"),
+            "a?b?");
+  EXPECT_EQ(printable("\xc3\xa9 \xc2\xa0 \xe2\x80\x94 \xe9\xa0\xad"),
+            "\xc3\xa9 \xc2\xa0 \xe2\x80\x94 \xe9\xa0\xad");
+  EXPECT_EQ(printable("a\tb\n"), "a?b?");
+  EXPECT_EQ(printable("a\tb\n", true), "a\tb\n");
+  EXPECT_EQ(printable("\xc2"), "\xc2");
+  EXPECT_EQ(shown("x\xc2\x9by"), "x?y");
+}
+
 }  // namespace
 }  // namespace krok
