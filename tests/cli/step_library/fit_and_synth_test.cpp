@@ -285,6 +285,45 @@ TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
   }
 }
 
+// Steps alike in length and duration but not in width: weights that meet them all are so wild that
+// nothing can be inserted. Exit code 0 alone would tell the user that the tolerance is met.
+TEST_F(StepLibrary, SaysWhyRefinementCouldNotGoOn) {
+  for (int seed = 1; seed <= 8; ++seed) {
+    const ToolRun made = run({KROK_MAKE_WALK,
+                              "--steps",
+                              "6",
+                              "--step-length",
+                              std::to_string(50 + 4 * seed) + "cm",
+                              "--cadence",
+                              seed % 2 == 0 ? "90" : "115",
+                              "--step-width",
+                              std::to_string(6 + seed * 7 % 15) + "cm",
+                              "--rate",
+                              "30",
+                              "--noise-angle",
+                              "0.2deg",
+                              "--noise-position",
+                              "0.5mm",
+                              "--seed",
+                              std::to_string(seed),
+                              "-q",
+                              "-o",
+                              path("noisy_" + std::to_string(seed) + ".bvh")});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  write("library.json", R"({"schema": "krok.library/1", "steps": "auto", "spacing": 0,
+ "parameters": [{"measures": "step.length"}, {"measures": "duration"}],
+ "examples": [{"clip": "noisy_*.bvh"}]})");
+  const ToolRun wild = fit({"--kernel", "cubic", "--smooth", "0"});
+  ASSERT_EQ(wild.exit_code, 0) << wild.err;
+  EXPECT_TRUE(has_code(wild.err, "fit-stalled")) << wild.err;
+  EXPECT_THAT(wild.err, HasSubstr("weights"));
+  // Averaged they are not.
+  const ToolRun smooth = fit();
+  ASSERT_EQ(smooth.exit_code, 0) << smooth.err;
+  EXPECT_FALSE(has_code(smooth.err, "fit-stalled")) << smooth.err;
+}
+
 TEST_F(StepLibrary, AFileThatIsNoLibraryIsRefused) {
   write("out.steps", "HIERARCHY\n");
   const ToolRun run = synth({"--set", "length=1m"});
