@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "core/parallel.h"
 #include "parametric/left_out_internal.h"
@@ -27,10 +28,10 @@ struct Material {
       : library(std::move(examples)), packed(pack_examples(library)) {}
 };
 
-Library thinned(const Library& library, double spacing) {
+Library thinned(const Library& library, double spacing, std::size_t most) {
   Library result = library;
   result.examples.clear();
-  for (const int i : thin_out(library, spacing, rbf::kMaxExamples)) {
+  for (const int i : thin_out(library, spacing, most)) {
     result.examples.push_back(library.examples[static_cast<std::size_t>(i)]);
   }
   return result;
@@ -92,12 +93,15 @@ class Part {
   void try_all(const Material& all, const std::vector<std::size_t>& inside,
                const std::vector<std::vector<Vec3>>& wanted,
                std::vector<Prediction>& predictions) const {
-    std::map<double, Material> by_spacing;
+    std::map<std::pair<double, std::size_t>, Material> by_spacing;
     for (const WeightCandidate& candidate : candidates_) {
-      auto found = by_spacing.find(candidate.spacing);
+      const std::size_t most = candidate.smoothing > 0 ? kMaxSmoothed : rbf::kMaxExamples;
+      auto found = by_spacing.find({candidate.spacing, most});
       if (found == by_spacing.end()) {
-        found =
-            by_spacing.emplace(candidate.spacing, thinned(all.library, candidate.spacing)).first;
+        found = by_spacing
+                    .emplace(std::pair(candidate.spacing, most),
+                             Material(thinned(all.library, candidate.spacing, most)))
+                    .first;
       }
       const auto evaluator = evaluator_of(found->second.library, candidate);
       for (std::size_t p = 0; p < inside.size(); ++p) {

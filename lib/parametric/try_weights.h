@@ -20,6 +20,10 @@ struct WeightCandidate {
   bool operator==(const WeightCandidate&) const = default;
 };
 
+// Max examples of smoothed weights, left by thin_out(): the time grows with their third power, and
+// more make no difference that could be measured.
+inline constexpr std::size_t kMaxSmoothed = 500;
+
 struct WeightTrial {
   WeightCandidate candidate;
   double distance = 0;  // mean over the examples left out, metres

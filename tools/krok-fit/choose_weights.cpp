@@ -98,9 +98,9 @@ WeightsChoice choose_weights(LibraryInput& input, const Options& options, ToolCo
     spacing = candidate.spacing;
   }
   if (choice.smoothing > 0) {
-    take_examples(input, kSmoothedSpacing);
+    take_examples(input, kSmoothedSpacing, parametric::kMaxSmoothed);
   } else if (spacing > input.exact_spacing) {
-    take_examples(input, spacing);
+    take_examples(input, spacing, rbf::kMaxExamples);
   }
   return choice;
 }

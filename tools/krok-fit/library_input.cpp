@@ -19,9 +19,9 @@ using parametric::Library;
 
 constexpr double kUsualTolerance = 0.1;  // relative to the usual tolerance: refining is cheap
 
-void thin_out(LibraryInput& input, double spacing) {
+void thin_out(LibraryInput& input, double spacing, std::size_t most = rbf::kMaxExamples) {
   std::vector<parametric::Example> chosen;
-  for (const int i : parametric::thin_out(input.library, spacing, rbf::kMaxExamples)) {
+  for (const int i : parametric::thin_out(input.library, spacing, most)) {
     chosen.push_back(std::move(input.library.examples[static_cast<std::size_t>(i)]));
   }
   input.library.examples = std::move(chosen);
@@ -274,10 +274,10 @@ Result<LibraryInput> read_library(const std::string& path, bool keep_going, Tool
   return Reader(path, keep_going, context).read();
 }
 
-void take_examples(LibraryInput& input, double spacing) {
+void take_examples(LibraryInput& input, double spacing, std::size_t most) {
   if (input.all_examples.empty()) return;
   input.library.examples = input.all_examples;
-  thin_out(input, spacing);
+  thin_out(input, spacing, most);
   count_mirrored(input);
   // Cannot fail: thinning keeps the extremes of each parameter nearly as they are.
   (void)find_range(input).ok();

@@ -39,8 +39,10 @@ Result<LibraryInput> read_library(const std::string& path, bool keep_going, Tool
 // Spacing of detected steps that weights interpolate, and of examples that they smooth.
 inline constexpr double kUsualSpacing = 0.15;
 inline constexpr double kSmoothedSpacing = 1e-3;
+// That of libraries made before, which may be continued.
+inline constexpr double kFormerSmoothedSpacing = 0.01;
 
-// Uses the examples with another spacing, unless the description gives one.
-void take_examples(LibraryInput& input, double spacing);
+// Uses the examples with another spacing, at most so many, unless the description gives a spacing.
+void take_examples(LibraryInput& input, double spacing, std::size_t most);
 
 }  // namespace krok::cli::fit
