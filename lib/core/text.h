@@ -72,9 +72,9 @@ bool is_name(std::string_view text);
 // `text` itself if it is UTF-8, otherwise its bytes read as Latin-1.
 std::string to_utf8(std::string_view text);
 
-// For terminals: `text`, which is UTF-8, with '?' in place of control characters (names in files may
-// be escape sequences), U+0080 to U+009F among them, and of those that change the direction of text.
-// With `lines`, line ends and tabs stay.
+// For terminals: `text`, which is UTF-8, with '?' in place of control characters (names in files
+// may be escape sequences), U+0080 to U+009F among them, and of those that change the direction of
+// text. With `lines`, line ends and tabs stay.
 std::string printable(std::string_view text, bool lines = false);
 
 // For messages: UTF-8, printable, truncated after about 40 bytes.

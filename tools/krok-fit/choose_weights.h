@@ -29,7 +29,8 @@ bool contradict_each_other(const parametric::LeftOutMeans& exact);
 // smoothing, and the two that allow it with a series of smoothings up to an affine fit, by
 // trial_to_use(). Too few captures: cubic, which reproduces the examples. Smoothed weights use
 // nearly all examples, since each one left out makes the mean less certain. Those that interpolate
-// use examples that are apart: detected steps always, other motions if that predicts them clearly better.
+// use examples that are apart: detected steps always, other motions if that predicts them clearly
+// better.
 WeightsChoice choose_weights(LibraryInput& input, const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::fit

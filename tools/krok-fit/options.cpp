@@ -29,7 +29,8 @@ void declare_weights(CommandOptions& command, Options& options) {
           },
           "Smoothing. 0: examples are reproduced exactly. More: contradictory examples are "
           "averaged, from 0.001 (hardly) to 10 (almost affine). auto: 0, unless smoothing predicts "
-          "clips that are left out clearly better; then the most that is not clearly worse than the "
+          "clips that are left out clearly better; then the most that is not clearly worse than "
+          "the "
           "best")
       .default_str("auto")
       .check([](std::string& text) {
