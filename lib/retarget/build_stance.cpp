@@ -17,6 +17,8 @@ constexpr int kMaxFrames = 2000;
 constexpr double kLowest = 0.05;
 // From the ankle to the ball of a foot on the ground, and by how much feet differ from it.
 constexpr double kUsualPitch = -0.5, kPitchRange = 0.6;
+// Cosine of the angle by which bones may be off a T-pose's.
+constexpr double kStraight = 0.97;
 // Sine of the mean bend of a limb that shows its hinge.
 constexpr double kBends = 0.02;
 
@@ -36,8 +38,12 @@ class StanceBuilder {
         step_(1 + clip.frame_count() / kMaxFrames) {}
 
   std::vector<Transform> build(bool limbs) {
+    if (limbs && begins_in_a_stance()) {
+      clip_.get_pose(0, pose_);
+      return std::move(pose_);
+    }
     take_bones();
-    stand_up();
+    stand_up(limbs);
     if (!limbs) return std::move(pose_);
     turn_chest();
     straighten(Limb{Role::left_collar, Role::left_upper_arm, Role::left_lower_arm, Role::left_hand,
@@ -94,40 +100,131 @@ class StanceBuilder {
   }
 
   // Bones as the motion has them on average: some exporters write their lengths alone into the
-  // reference pose.
+  // reference pose. Joints that bones do not show (heads, feet) keep the reference pose's rotation,
+  // or that by quarter turns which is nearest to the motion's, where it is another rig's.
   void take_bones() {
-    std::vector<Vec3> sums(pose_.size(), Vec3::Zero());
+    const Skeleton& skeleton = clip_.skeleton;
+    std::vector<Vec3> offsets(pose_.size(), Vec3::Zero());
+    std::vector<Mat3> turns(pose_.size(), Mat3::Zero());
     int count = 0;
     for (int f = 0; f < clip_.frame_count(); f += step_, ++count) {
       const auto positions = clip_.frame_positions(f);
       const auto orientations = clip_.frame_orientations(f);
       for (int j = 1; j < clip_.joint_count(); ++j) {
-        const std::size_t parent = at(clip_.skeleton.parents[at(j)]);
-        sums[at(j)] += orientations[parent].cast<double>().normalized().conjugate() *
-                       (positions[at(j)] - positions[parent]).cast<double>();
+        const std::size_t parent = at(skeleton.parents[at(j)]);
+        const Quat back = orientations[parent].cast<double>().normalized().conjugate();
+        offsets[at(j)] += back * (positions[at(j)] - positions[parent]).cast<double>();
+        if (!shown_by_motion(j)) continue;
+        const Quat local = back * orientations[at(j)].cast<double>().normalized();
+        turns[at(j)] +=
+            (skeleton.reference_local(j).orientation.conjugate() * local).toRotationMatrix();
       }
     }
     for (int j = 1; count > 0 && j < clip_.joint_count(); ++j) {
-      pose_[at(j)].position = pose_[at(clip_.skeleton.parents[at(j)])] * Vec3(sums[at(j)] / count);
+      const Quat local = skeleton.reference_local(j).orientation * quarter_turns(turns[at(j)]);
+      pose_[at(j)] = pose_[at(skeleton.parents[at(j)])] * Transform{offsets[at(j)] / count, local};
     }
   }
 
-  void stand_up() {
-    const int head =
-        roles_.joint(Role::head) >= 0 ? roles_.joint(Role::head) : roles_.joint(Role::neck);
-    const int hips = roles_.joint(Role::hips);
+  bool shown_by_motion(int joint) const {
+    switch (roles_.roles[at(joint)]) {
+      case Role::spine:
+      case Role::chest:
+      case Role::neck:
+      case Role::head:
+      case Role::left_collar:
+      case Role::right_collar:
+      case Role::left_hand:
+      case Role::right_hand:
+      case Role::left_foot:
+      case Role::right_foot:
+      case Role::left_toes:
+      case Role::right_toes:
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  // Of the 24 rotations by quarter turns the one nearest to the mean of some; none for their sum 0.
+  static Quat quarter_turns(const Mat3& sum) {
+    Mat3 best = Mat3::Identity();
+    double most = best.cwiseProduct(sum).sum();
+    std::array<int, 3> axes = {0, 1, 2};
+    do {
+      for (int signs = 0; signs < 8; ++signs) {
+        Mat3 turn = Mat3::Zero();
+        for (int k = 0; k < 3; ++k) turn(axes[at(k)], k) = ((signs >> k) & 1) != 0 ? -1 : 1;
+        const double alike = turn.cwiseProduct(sum).sum();
+        if (turn.determinant() < 0 || alike <= most) continue;
+        most = alike;
+        best = turn;
+      }
+    } while (std::ranges::next_permutation(axes).found);
+    return Quat(best).normalized();
+  }
+
+  // Some exporters put a T-pose before the motion: it shows more than bones do.
+  bool begins_in_a_stance() const {
+    if (clip_.frame_count() == 0) return false;
+    const auto positions = clip_.frame_positions(0);
+    const auto bone = [&](Role from, Role to) {
+      const int a = roles_.joint(from), b = roles_.joint(to);
+      if (a < 0 || b < 0) return Vec3(Vec3::Zero());
+      return Vec3((positions[at(b)] - positions[at(a)]).cast<double>().stableNormalized());
+    };
+    const Vec3 left = bone(Role::right_upper_leg, Role::left_upper_leg);
+    double least = 1;
+    const auto limb = [&](Role upper, Role lower, Role end, const Vec3& along) {
+      least = std::min({least, bone(upper, lower).dot(along), bone(lower, end).dot(along)});
+    };
+    limb(Role::left_upper_leg, Role::left_lower_leg, Role::left_foot, -kUpwards);
+    limb(Role::right_upper_leg, Role::right_lower_leg, Role::right_foot, -kUpwards);
+    limb(Role::left_upper_arm, Role::left_lower_arm, Role::left_hand, left);
+    limb(Role::right_upper_arm, Role::right_lower_arm, Role::right_hand, -left);
+    return least > kStraight;
+  }
+
+  // From the hips to the head or neck; empty if there is no such way.
+  std::vector<int> trunk() const {
+    const int hips = roles_.joint(Role::hips), head = roles_.joint(Role::head);
+    std::vector<int> path;
+    for (int j = head >= 0 ? head : roles_.joint(Role::neck); j >= 0;
+         j = clip_.skeleton.parents[at(j)]) {
+      path.push_back(j);
+      if (j == hips) {
+        std::ranges::reverse(path);
+        return path;
+      }
+    }
+    return {};
+  }
+
+  // The pelvis upright if the trunk is to be straightened, else the trunk as a whole.
+  void stand_up(bool straighten) {
+    const std::vector<int> path = trunk();
+    if (path.size() < 2) return;
     const Vec3 left = between(Role::right_upper_leg, Role::left_upper_leg);
-    if (head < 0 || hips < 0) return;
-    const Vec3 up = place(head) - place(hips);
+    Vec3 up = place(path.back()) - place(path.front());
+    for (std::size_t i = 1; straighten && i < path.size(); ++i) {
+      const Vec3 bone = place(path[i]) - place(path.front());
+      if (bone.norm() < 0.2 * left.norm()) continue;
+      up = bone;
+      break;
+    }
     const Vec3 ahead = left.cross(up);
     if (!(ahead.norm() > 1e-6 * left.norm() * up.norm()) || !(ahead.norm() > 0)) return;
     if (up.normalized().y() > 0.8) {  // within 37 degrees; people lean a little
       roll(0, kUpwards, left, kLeft);
-      return;
+    } else {
+      Mat3 body;
+      body << left.normalized(), ahead.cross(left).normalized(), ahead.normalized();
+      turn(0, Quat(Mat3(body.transpose())).normalized());
     }
-    Mat3 body;
-    body << up.cross(ahead).normalized(), up.normalized(), ahead.normalized();
-    turn(0, Quat(Mat3(body.transpose())).normalized());
+    for (std::size_t i = 1; straighten && i + 1 < path.size(); ++i) {
+      const Vec3 bone = place(path[i + 1]) - place(path[i]);
+      if (bone.normalized().y() < 0.8) point(path[i], bone, kUpwards, kForward);
+    }
   }
 
   // The trunk's joints may turn about it from one to the next.

@@ -382,6 +382,7 @@ TEST(Retarget, AReferencePoseThatDoesNotStandIsReplacedByATPose) {
   for (const char* name : {"LeftUpLeg", "RightUpLeg"}) {
     heap = posed(heap, name, from_rotation_vector(Vec3(3, 0, 0)));
   }
+  heap = posed(heap, "Spine1", from_rotation_vector(Vec3(0, 0, -1.5)));  // the trunk lies aside
   Clip same_motion = clip;
   same_motion.skeleton = heap;
   const auto result =
