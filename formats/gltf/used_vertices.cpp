@@ -38,8 +38,7 @@ Primitive with_used_vertices(const Primitive& whole,
   std::vector<std::uint32_t> used;
   for (const auto& triangle : triangles) used.insert(used.end(), triangle.begin(), triangle.end());
   std::ranges::sort(used);
-  const auto rest = std::ranges::unique(used);
-  used.erase(rest.begin(), rest.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
   const auto each = static_cast<std::size_t>(whole.influences_per_vertex);
   Primitive part;
   part.positions = picked(whole.positions, used);

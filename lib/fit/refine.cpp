@@ -23,7 +23,6 @@ namespace krok::fit {
 namespace {
 
 using rbf::WeightEvaluator;
-using rbf::WeightFunction;
 using rbf::WeightSolver;
 
 constexpr int kPointsPerParameter = 40;  // per parameter

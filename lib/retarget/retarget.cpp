@@ -97,11 +97,8 @@ class Transfer {
     if (!source_stance) return source_stance.error();
     auto target_stance = find_stance(target_clip_, target_roles_, options_.target_frame);
     if (!target_stance) return target_stance.error();
-    const auto chosen = [](const std::vector<Transform>& given, std::vector<Transform>& found) {
-      return given.empty() ? std::move(found) : given;
-    };
-    rest_ = chosen(options_.source_pose, source_stance->pose);
-    target_rest_ = chosen(options_.target_pose, target_stance->pose);
+    rest_ = options_.source_pose.empty() ? source_stance->pose : options_.source_pose;
+    target_rest_ = options_.target_pose.empty() ? target_stance->pose : options_.target_pose;
     report_.source_frame = source_stance->frame;
     report_.target_frame = target_stance->frame;
     if (by_roles) {

@@ -13,7 +13,6 @@ class StepLibraryOfRig : public StepLibrary, public testing::WithParamInterface<
  protected:
   // Nine walks of three step lengths on three slopes.
   void SetUp() override {
-    CliTest::SetUp();
     for (const char* length : {"50", "65", "80"}) {
       for (const char* rise : {"-12", "0", "12"}) {
         const std::string name = std::string("walk_") + length + "_" + rise + ".bvh";

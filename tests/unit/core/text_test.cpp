@@ -43,7 +43,7 @@ TEST(Shown, IsShortAndFitForATerminal) {
     const std::string text =
         shown(std::string(before, 'x') + "\xf0\x9f\xa6\xb4\xe8\x85\xb0yyyyyyyyy");
     EXPECT_TRUE(is_utf8(text)) << before;
-    EXPECT_EQ(text.find("\xc3"), std::string::npos) << before;  // nothing was read as Latin-1
+    EXPECT_EQ(text.find('\xc3'), std::string::npos) << before;  // nothing was read as Latin-1
   }
 }
 

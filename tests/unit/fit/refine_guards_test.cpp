@@ -141,7 +141,7 @@ TEST(RefineGuards, InsertsWhereWeightsAreLowBetweenThePointsOfTheMetrics) {
   std::uniform_real_distribution<double> between(0, 1);
   int lower = 0;
   for (int set = 0; set < 6; ++set) {
-    Values parameters(4 * 16);
+    Values parameters(64);  // 16 of four
     for (double& value : parameters) value = between(random);
     const rbf::Measure bent = straight(4, parameters, [](std::span<const double> w) {
       double sum = 0;

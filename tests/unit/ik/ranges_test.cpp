@@ -120,7 +120,7 @@ TEST(AnatomicalLimits, HoldAWalkWhoseReferencePoseHasALegTurnedUp) {
   const RoleMap roles = find_roles(clip.skeleton);
   const std::vector<Transform> standing = clip.skeleton.reference;
   const int thigh = roles.joint(Role::right_upper_leg);
-  const Transform at_hip = standing[at(thigh)];
+  const Transform& at_hip = standing[at(thigh)];
   const Quat turn = from_rotation_vector(Vec3(0.3, 0, 3.0));
   std::vector<char> leg(standing.size(), 0);
   for (int j = thigh; j < clip.joint_count(); ++j) {
