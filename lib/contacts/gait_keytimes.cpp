@@ -26,6 +26,8 @@ constexpr double kFrame = 1.0 / 60;  // seconds
 constexpr double kWhole = 0.75;      // of a stance
 constexpr double kJerk = 0.1;        // seconds
 constexpr double kLowRate = 45;      // frames per second; below it, frames are interpolated
+// GaitOptions::landed below kLowRate. By walks captured at 30 Hz and at 60 Hz, every other frame.
+constexpr double kLandedBlurred = 0.2;
 
 class KeytimeFinder {
  public:
@@ -248,9 +250,10 @@ class KeytimeFinder {
 
 namespace {
 
-Gait find_between_frames(const Clip& clip, const RoleMap& roles, const GaitOptions& options) {
+Gait find_between_frames(const Clip& clip, const RoleMap& roles, GaitOptions options) {
   const Clip dense = contacts::doubled_rate(clip);
   const auto found = find_contacts(dense, roles);
+  options.landed = std::min(options.landed, kLandedBlurred);
   return found ? KeytimeFinder(dense, roles, *found, options).find() : Gait();
 }
 

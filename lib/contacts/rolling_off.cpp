@@ -118,7 +118,7 @@ void WalkingFeet::to_landings(Foot& foot) const {
 
 bool WalkingFeet::rolls_off(const Foot& foot, double seed) const {
   if (runs(seed)) return false;
-  return forward_[frame_at(seed)] != 0 && stays_level(foot, seed) && is_pitched(foot, seed);
+  return forward_[frame_at(seed)] > 0 && stays_level(foot, seed) && is_pitched(foot, seed);
 }
 
 double WalkingFeet::toes_reach(const Foot& foot, int frame) const {

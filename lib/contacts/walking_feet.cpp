@@ -109,7 +109,8 @@ void WalkingFeet::take_directions() {
     const bool travels = speed > kTravelSpeed * leg_ / kUsualLeg;
     directions_.push_back(travels ? Vec3(v.x() / speed, 0, v.z() / speed) : facing);
     speeds_.push_back(speed);
-    forward_.push_back(directions_.back().dot(facing) > kForward ? 1 : 0);
+    const double ahead = directions_.back().dot(facing);
+    forward_.push_back(ahead > kForward ? 1 : ahead < -kForward ? -1 : 0);
   }
 }
 
@@ -305,9 +306,11 @@ double WalkingFeet::touch(std::size_t t, double from, double limit, bool first) 
   const double stiffness = jittery_ ? 0.3 : 0.1;
   const double found = break_near(raw_[t], f, window, first, stiffness);
   if (!first) return std::max(found / clip_.rate, from);
-  // Ball and tip go down evenly while the foot rolls over its heel, without a deceleration.
+  // Only the part that lands first is decelerated by the ground: the others go down evenly while
+  // the foot rolls over it.
   const bool heel = found_.tracks[t].point.part == FootPart::heel;
-  const double slowed = heel ? end_of_slowing(t, f, last, found) : found;
+  const bool backward = forward_[frame_at(from)] < 0;
+  const double slowed = heel != backward ? end_of_slowing(t, f, last, found) : found;
   return std::min(slowed / clip_.rate, from);
 }
 
@@ -322,12 +325,12 @@ double WalkingFeet::end_of_slowing(std::size_t t, int frame, int earliest, doubl
   for (int f = most; f <= std::min(last, frame + 1); ++f) {
     if (slowing(f) > slowing(most)) most = f;
   }
-  const double half = 0.5 * slowing(most);
+  const double slowed = options_.landed * slowing(most);
   int f = most + 1;
-  while (f <= last && slowing(f) > half) ++f;
-  if (!(half > 0) || f > last) return rest;
+  while (f <= last && slowing(f) > slowed) ++f;
+  if (!(slowed > 0) || f > last) return rest;
   // The deceleration between two frames is that at the time half-way.
-  const double end = f - 0.5 + (slowing(f - 1) - half) / (slowing(f - 1) - slowing(f));
+  const double end = f - 0.5 + (slowing(f - 1) - slowed) / (slowing(f - 1) - slowing(f));
   const auto speed_at = [&](double time) {
     const double at = std::clamp<double>(time, 0, last);
     const auto i = static_cast<std::size_t>(at);
@@ -340,7 +343,7 @@ double WalkingFeet::end_of_slowing(std::size_t t, int frame, int earliest, doubl
   // At low frame rates speeds are unfiltered, so they cannot show that.
   const bool coarse = clip_.rate < 2.5 * kSpeedCutoff;
   const bool goes_on =
-      coarse || speed_at(end) - speed_at(rest) + jitter >= 0.5 * half * (rest - end);
+      coarse || speed_at(end) - speed_at(rest) + jitter >= 0.5 * slowed * (rest - end);
   // A heel that is still up lands after the ball, as when descending stairs.
   const double height = found_.tracks[t].height[static_cast<std::size_t>(std::max(0.0, end))];
   const bool is_up = height > kHeelUp * leg_ / kUsualLeg;

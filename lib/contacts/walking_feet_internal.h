@@ -99,7 +99,8 @@ class WalkingFeet {
   std::vector<Vec3> pelvis_, directions_;
   std::vector<double> speeds_;  // of travel, metres per second
   Carriage carriage_ = Carriage::flat;
-  std::vector<std::uint8_t> forward_;  // [frames], 1 if it travels where it faces
+  std::vector<int>
+      forward_;  // [frames] 1: the pelvis travels to where the character faces, -1: backwards
   std::vector<std::vector<Vec3>> raw_, tracks_;
   std::vector<double> jitters_;  // metres, of raw_
   std::array<Foot, 2> feet_;
