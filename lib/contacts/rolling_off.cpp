@@ -18,7 +18,8 @@ constexpr double kFlat = 0.003;       // leg lengths, rise of the pelvis over a 
 constexpr double kFlatBefore = 0.35;  // cycles, from flat foot to toe-off
 constexpr double kPitched = 0.06;     // leg lengths, heel above toes
 // In a run the foot lands and leaves while its slowest point is at this fraction of its max speed,
-// at most this long from where its contacts begin or end.
+// at most this long from where its contacts begin or end. Backwards a foot leaves so, dragged off
+// its heel.
 constexpr double kLanding = 0.12;
 constexpr double kLandingWithin = 0.08;  // seconds
 constexpr double kJog = 0.15;            // Froude number, 1.1 m/s: jumps on the spot are no run
@@ -84,7 +85,9 @@ void WalkingFeet::to_landings(Foot& foot) const {
     Stance& stance = foot.stances[i];
     const double middle = 0.5 * (stance.start + stance.end);
     const double speed = speeds_[frame_at(middle)];
-    if (stance.slides || !runs(middle) || speed * speed < kJog * kGravity * leg_) continue;
+    const bool backward = forward_[frame_at(middle)] < 0;
+    const bool run = runs(middle) && speed * speed >= kJog * kGravity * leg_;
+    if (stance.slides || (!run && !backward)) continue;
     double fastest = 0;
     const int cycle = static_cast<int>(foot.cycle * clip_.rate);
     const int around = static_cast<int>(frame_at(middle));
@@ -92,7 +95,7 @@ void WalkingFeet::to_landings(Foot& foot) const {
       fastest = std::max(fastest, slowest(f));
     }
     const double slow = kLanding * fastest;
-    if (!stance.open_start) {
+    if (!stance.open_start && run) {
       const int last = static_cast<int>(stance.start * clip_.rate) - reach;
       int f = static_cast<int>(std::ceil(stance.start * clip_.rate));
       while (f > std::max(0, last) && slowest(f - 1) <= slow) --f;
