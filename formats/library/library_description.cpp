@@ -172,10 +172,16 @@ class Reader {
     const auto found = members_.find(root, "the file", "steps", Kind::string);
     if (!found) return found.error();
     if (*found == nullptr) return {};
-    constexpr std::pair<std::string_view, StepKind> kKinds[] = {{"runs", StepKind::runs},
-                                                                {"starts", StepKind::starts},
-                                                                {"stops", StepKind::stops},
-                                                                {"stands", StepKind::stands}};
+    constexpr std::pair<std::string_view, StepKind> kKinds[] = {
+        {"runs", StepKind::runs},
+        {"starts", StepKind::starts},
+        {"stops", StepKind::stops},
+        {"stands", StepKind::stands},
+        {"backward", StepKind::backward},
+        {"side", StepKind::side},
+        {"side_closing", StepKind::side_closing},
+        {"turns", StepKind::turns},
+        {"turns_closing", StepKind::turns_closing}};
     for (const auto& [name, kind] : kKinds) {
       if ((*found)->text == name) library_.kind = kind;
     }
@@ -191,9 +197,11 @@ class Reader {
     automatic = (*found)->text == "auto";
     if (automatic || (*found)->text == "one") return {};
     return members_.wrong(
-        **found, fmt::format("\"steps\" of {} is '{}', expected {}", what, shown((*found)->text),
-                             what == "the file" ? "auto, runs, starts, stops, stands or one"
-                                                : "auto or one"));
+        **found,
+        fmt::format("\"steps\" of {} is '{}', expected {}", what, shown((*found)->text),
+                    what == "the file" ? "auto, runs, starts, stops, stands, backward, side, "
+                                         "side_closing, turns, turns_closing or one"
+                                       : "auto or one"));
   }
 
   Status read_keytimes(const Value& root) {

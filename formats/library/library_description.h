@@ -16,8 +16,20 @@ namespace krok::library {
 enum class Side : unsigned char { left, right };
 
 // What is detected in the examples: steps of walks or runs, first steps out of standing, last steps
-// into it, or standing.
-enum class StepKind : unsigned char { walks, runs, starts, stops, stands };
+// into it, or standing; steps backward; steps to the side and turns on the spot, of the foot that
+// leads or of the one that closes up.
+enum class StepKind : unsigned char {
+  walks,
+  runs,
+  starts,
+  stops,
+  stands,
+  backward,
+  side,
+  side_closing,
+  turns,
+  turns_closing
+};
 
 struct ParameterEntry {
   std::string name;                   // for users: "length"

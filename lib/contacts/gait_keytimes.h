@@ -70,7 +70,7 @@ struct Gait {
 // Below 45 frames per second events are found between frames, on a clip of twice the rate, and
 // decelerations, which such rates blur, are followed down to a fifth of their peak. In runs
 // contacts begin late and end early, since feet land and leave fast: the events are where the
-// slowest point of the foot passes 0.12 of its max speed; so are the offs of backward walks. Where an
+// slowest point of the foot passes 0.12 of its max speed; offs of backward walks, 0.06. Where an
 // event between two strikes or two toe-offs a cycle apart is missing, it is placed by the usual
 // lengths of stance and swing.
 //

@@ -18,9 +18,11 @@ constexpr double kFlat = 0.003;       // leg lengths, rise of the pelvis over a 
 constexpr double kFlatBefore = 0.35;  // cycles, from flat foot to toe-off
 constexpr double kPitched = 0.06;     // leg lengths, heel above toes
 // In a run the foot lands and leaves while its slowest point is at this fraction of its max speed,
-// at most this long from where its contacts begin or end. Backwards a foot leaves so, dragged off
-// its heel.
+// at most this long from where its contacts begin or end.
 constexpr double kLanding = 0.12;
+// Backwards a foot is dragged off its heel: it is off at this fraction. Between walks played in
+// reverse, which leave at once, and captures, which leave gradually.
+constexpr double kDragged = 0.06;
 constexpr double kLandingWithin = 0.08;  // seconds
 constexpr double kJog = 0.15;            // Froude number, 1.1 m/s: jumps on the spot are no run
 constexpr double kTurnsWithin = 0.15;    // seconds, of the toes around the foot's back seed
@@ -94,7 +96,7 @@ void WalkingFeet::to_landings(Foot& foot) const {
     for (int f = std::max(0, around - cycle); f < std::min(frames, around + cycle); ++f) {
       fastest = std::max(fastest, slowest(f));
     }
-    const double slow = kLanding * fastest;
+    const double slow = (run ? kLanding : kDragged) * fastest;
     if (!stance.open_start && run) {
       const int last = static_cast<int>(stance.start * clip_.rate) - reach;
       int f = static_cast<int>(std::ceil(stance.start * clip_.rate));

@@ -271,7 +271,9 @@ void WalkingFeet::to_touches(const Foot& foot, double before, double after, Stan
         start = std::min(start.value_or(stay.start), touch(t, stay.start, before, true));
       }
       const bool heel = foot.tracks.size() > 1 && t == foot.tracks.front();
-      if (!stance.open_end && !heel) end = std::max(end, touch(t, stay.end, after, false));
+      const bool backward = forward_[frame_at(stay.end)] < 0;
+      if (!stance.open_end && (!heel || backward))
+        end = std::max(end, touch(t, stay.end, after, false));
     }
     if (start) starts.push_back(*start);
   }

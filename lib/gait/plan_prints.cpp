@@ -199,12 +199,13 @@ Print PrintPlanner::print_at(double length, FootSide side) const {
   const double bend = std::abs(place.curvature);
   const double turn = std::min(bend * options_.step_length, options_.max_turn);
   width += options_.heel_to_toes * std::max(0.0, std::sin(turn) - std::sin(kGentleTurn));
-  const double out = (side == FootSide::left ? 0.5 : -0.5) * width;
+  const double out = ((side == FootSide::left) != options_.backward ? 0.5 : -0.5) * width;
   Print print;
   print.side = side;
   print.x = place.x + out * std::cos(place.heading);
   print.z = place.z - out * std::sin(place.heading);
-  print.heading = place.heading + options_.toe_out[static_cast<std::size_t>(side)];
+  print.heading = place.heading + (options_.backward ? kPi : 0) +
+                  options_.toe_out[static_cast<std::size_t>(side)];
   if (length > 0) print.time = place.time;
   return print;
 }

@@ -19,6 +19,7 @@ struct PlanOptions {
   double step_width = 0.2;          // metres from heel to heel across the path
   double max_turn = 0.45;           // radians a step, > 0: in curves steps are shorter
   double max_rise = 0.25;           // metres a step up or down
+  bool backward = false;            // the character faces where it comes from
   FootSide first = FootSide::left;  // the foot that steps first
   std::array<double, 2> toe_out{};  // [FootSide], radians added to the heading, positive to +X
   // The sole from heel to toes; edges of the ground are kept from under it.

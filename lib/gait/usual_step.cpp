@@ -1,5 +1,7 @@
 #include "gait/usual_step.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +14,7 @@ namespace {
 
 constexpr double kLevelStep = 0.05;    // metres: what rises less is a step on level ground
 constexpr double kStraightStep = 0.2;  // radians: what turns less goes straight on
+constexpr double kMinStep = 0.05;      // metres
 constexpr double kToesPerBall = 1.45;  // from heel to toes, of heel to ball
 constexpr double kUnknownSole = 0.16;  // metres from heel to ball, where the ball is not known
 constexpr double kMoreLength = 0.03;   // metres beyond the longest example
@@ -44,6 +47,20 @@ FoundStep mean_of_steps(const StepLibrary& steps) {
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
   const StepLibrary& main = main_library(libraries);
   PlanOptions options;
+  const FoundStep usual = mean_of_steps(main);
+  // Prints are planned along the way, which lies between the directions of the toes.
+  const double out = 0.5 * usual.turn;
+  options.step_length = usual.along * std::cos(out) + usual.across * std::sin(out);
+  if (std::abs(options.step_length) < kMinStep) {
+    return Error("walk-library",
+                 fmt::format("the steps of {} go neither forward nor backward, so that none can be "
+                             "planned along a path",
+                             main.name()),
+                 "give footprints, or a library of walks or of steps backward");
+  }
+  options.backward = options.step_length < 0;
+  options.step_length = std::abs(options.step_length);
+  const double ahead = options.backward ? -1 : 1;
   double longest = 0, max_turn = 0;
   for (const StepLibrary& one : libraries) {
     if (one.kind() != StepKind::walk) continue;
@@ -52,15 +69,12 @@ Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
       const auto quantity = library.parameters[d].quantity;
       for (const parametric::Example& example : library.examples) {
         const double value = example.parameters[d];
-        if (quantity == parametric::Quantity::step_length) longest = std::max(longest, value);
+        if (quantity == parametric::Quantity::step_length)
+          longest = std::max(longest, ahead * value);
         if (quantity == parametric::Quantity::step_turn) max_turn = std::max(max_turn, value);
       }
     }
   }
-  const FoundStep usual = mean_of_steps(main);
-  // Prints are planned along the way, which lies between the directions of the toes.
-  const double out = 0.5 * usual.turn;
-  options.step_length = usual.along * std::cos(out) + usual.across * std::sin(out);
   options.step_width = std::max(0.0, usual.across * std::cos(out) - usual.along * std::sin(out));
   const double toe_out = main.toe_out();
   options.toe_out = {toe_out, -toe_out};

@@ -14,6 +14,7 @@
 #include "motion/hips_root.h"
 #include "motion/mirror.h"
 #include "parametric/find_steps_internal.h"
+#include "parametric/step_direction_internal.h"
 
 namespace krok::parametric {
 
@@ -25,6 +26,7 @@ constexpr double kTouch = 0.05;   // seconds; shorter overlaps of a contact with
 // Min deviation of an outlier.
 constexpr double kFarLength = 0.1, kFarAngle = 15 * kRadiansPerDegree, kFarTime = 0.3;
 constexpr std::ptrdiff_t kMaxOutliers = 10;  // at most one in this many
+constexpr std::string_view kOutlier = "an outlier";
 constexpr double kNormal = 1.4826;  // standard deviation of a normal distribution over its MAD
 
 // Description of a jump of the pose between frames; empty if there is none.
@@ -147,7 +149,7 @@ class Cutter {
   Result<StepLibrary> finish() {
     if (result_.library.examples.empty()) {
       std::string why;
-      if (!result_.dropped.empty()) why = "; the first: " + result_.dropped.front().reason;
+      if (!result_.dropped.empty()) why = ": " + commonest_reasons(result_.dropped);
       return Error(
           "parametric-none",
           fmt::format("no usable step was found, {} dropped{}",
@@ -172,6 +174,9 @@ class Cutter {
     Library& library = result_.library;
     const Clip& clip = *walk.clip;
     const double start = step.times.front(), end = step.times.back();
+    const DirectedStep directed = direction_of(step, clip, carrying_joint(roles_), library.feet,
+                                               walk.found == nullptr ? 0 : walk.found->leg_length);
+    if (std::string fault = wrong_direction(directed, options_.gait); !fault.empty()) return fault;
     const int first = std::max(0, static_cast<int>(std::floor(start * clip.rate + 1e-6)));
     const int last =
         std::min(clip.frame_count() - 1, static_cast<int>(std::ceil(end * clip.rate - 1e-6)));
@@ -252,7 +257,7 @@ class Cutter {
       const std::string name =
           lasts ? "duration" : name_of(library.parameters[d], library.skeleton, library.keytimes);
       const double scale = unit == "rad" ? 1 / kRadiansPerDegree : 1;
-      faults[i] = fmt::format("an outlier: {} is {} {}, the median is {} {}", name,
+      faults[i] = fmt::format("{}: {} is {} {}, the median is {} {}", kOutlier, name,
                               readable(values[i] * scale, 3), unit == "rad" ? "degrees" : unit,
                               readable(middle * scale, 3), unit == "rad" ? "degrees" : unit);
     }
@@ -272,6 +277,24 @@ class Cutter {
 };
 
 }  // namespace
+
+std::string commonest_reasons(std::span<const DroppedStep> dropped) {
+  constexpr std::size_t kShown = 3;
+  std::vector<std::pair<int, std::string>> reasons;  // [reasons] minus how often
+  for (const DroppedStep& step : dropped) {
+    const bool outlier = step.reason.starts_with(kOutlier);
+    const std::string reason = outlier ? std::string(kOutlier) : step.reason;
+    auto known = std::ranges::find(reasons, reason, &std::pair<int, std::string>::second);
+    if (known == reasons.end()) known = reasons.insert(known, {0, reason});
+    --known->first;
+  }
+  std::ranges::sort(reasons);
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, reasons.size()); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", -reasons[i].first, reasons[i].second);
+  }
+  return text;
+}
 
 Result<StepLibrary> cut_steps(std::span<const Walk> walks, const RoleMap& roles,
                               std::span<const std::string> parameters, const CutOptions& options) {

@@ -28,7 +28,23 @@ struct Walk {
 // a last one ends where he has come to rest: stance_strike, swing_off, swing_strike, stand. An
 // actor stands while his hips go over the ground at less than 6 cm/s and no foot is lifted:
 // stand, stand_end.
-enum class StepGait : unsigned char { walk, run, start, stop, stand };
+//
+// Walks and runs go forward, or step on the spot. Steps backward, to the side and turns on the spot
+// are gaits of their own, with the keytimes of walks; blended with others, steps would be none of
+// them. To the side and in turns one foot leads and the other closes up: `side` and `turn` are the
+// steps of the foot that leads.
+enum class StepGait : unsigned char {
+  walk,
+  run,
+  start,
+  stop,
+  stand,
+  backward,
+  side,
+  side_closing,
+  turn,
+  turn_closing
+};
 
 // The names of a step's keytimes, without swing_pass.
 std::vector<std::string> keytimes_of(StepGait gait);
@@ -56,6 +72,10 @@ struct DroppedStep {
   std::string reason;         // for messages: "no left_off between the strikes"
 };
 
+// For messages: "9 it does not go backward, 2 an outlier"; the three commonest reasons, of outliers
+// without their numbers.
+std::string commonest_reasons(std::span<const DroppedStep> dropped);
+
 struct StepLibrary {
   Library library;
   std::vector<DroppedStep> dropped;
@@ -64,10 +84,10 @@ struct StepLibrary {
 // Builds the library of all steps. Skeleton and rate are those of the first walk, keytimes are
 // those of the gait. `parameters` are names for parse_parameter().
 //
-// Drops steps with no or several offs of that foot between the strikes; steps that are too
-// short or too long; steps with a jump in the pose (a joint rotates by more than 60 degrees or the
-// root moves by more than 0.3 m between frames, as after a rest pose before the capture); steps
-// with a parameter that cannot be measured; and outliers.
+// Drops steps of another direction than the gait's; steps with no or several offs of that foot
+// between the strikes; steps that are too short or too long; steps with a jump in the pose (a joint
+// rotates by more than 60 degrees or the root moves by more than 0.3 m between frames, as after a
+// rest pose before the capture); steps with a parameter that cannot be measured; and outliers.
 //
 // Codes: parametric-skeleton for a walk on another skeleton, with its name; parametric-feet,
 // parametric-parameter; parametric-none if no step is left.

@@ -161,6 +161,11 @@ std::vector<std::string> keytimes_of(StepGait gait) {
     case StepGait::stand:
       return {"stand", "stand_end"};
     case StepGait::walk:
+    case StepGait::backward:
+    case StepGait::side:
+    case StepGait::side_closing:
+    case StepGait::turn:
+    case StepGait::turn_closing:
       break;
   }
   return {"stance_strike", "swing_off", "swing_strike"};

@@ -57,6 +57,8 @@ void declare(CommandOptions& command, Arguments& arguments) {
       .group("Walk");
   command.add_flag("--from-standing", walk.from_standing, "Start and end standing, not in mid-walk")
       .group("Walk");
+  command.add_flag("--backward", walk.backward, "Walk backwards: the walk in reverse")
+      .group("Walk");
   command.add_option("--first", arguments.first, "The foot of the first step: left or right")
       .transform(one_of_words({"left", "right"}))
       .type_name("SIDE")

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "samples/generator/body_motion.h"
 #include "samples/generator/noise.h"
@@ -56,6 +57,53 @@ void record_contacts(const FootPlan& plan, const Actor& actor, Walk& walk) {
   }
 }
 
+void reverse(std::vector<Contact>& contacts, double last, int prints) {
+  for (Contact& contact : contacts) {
+    contact.from = std::exchange(contact.to, last - contact.from);
+    contact.from = std::max(0.0, last - contact.from);
+    std::swap(contact.open_start, contact.open_end);
+    contact.print = prints - 1 - contact.print;
+  }
+  std::ranges::reverse(contacts);
+}
+
+void reverse(Footprint& print, double last) {
+  const Footprint before = print;
+  print.strike = last - before.off;
+  print.flat = last - before.heel_rise;
+  print.ball_rise = last - before.flat;
+  print.heel_rise = print.off = last - before.strike;
+  print.strike_pitch = before.off_pitch;
+  print.off_pitch = before.strike_pitch;
+  std::swap(print.first_of_foot, print.last_of_foot);
+}
+
+void reverse(Walk& walk) {
+  const double last = walk.clip.duration();
+  const Clip forward = walk.clip;
+  std::vector<Transform> pose(forward.skeleton.names.size());
+  for (int frame = 0; frame < forward.frame_count(); ++frame) {
+    forward.get_pose(forward.frame_count() - 1 - frame, pose);
+    walk.clip.set_pose(frame, pose);
+  }
+  for (FootContacts& foot : walk.feet) {
+    reverse(foot.heel, last, static_cast<int>(walk.prints.size()));
+    reverse(foot.toe, last, static_cast<int>(walk.prints.size()));
+    std::swap(foot.strikes, foot.offs);
+    for (auto* times : {&foot.strikes, &foot.offs}) {
+      std::ranges::reverse(*times);
+      for (double& time : *times) time = last - time;
+    }
+  }
+  std::ranges::reverse(walk.prints);
+  // A step leads to a print from the one that it led to.
+  double step = 0;
+  for (Footprint& print : walk.prints) {
+    reverse(print, last);
+    step = -std::exchange(print.step_length, step);
+  }
+}
+
 }  // namespace
 
 Result<Walk> make_walk(const WalkOptions& options) {
@@ -83,6 +131,7 @@ Result<Walk> make_walk(const WalkOptions& options) {
     walk.clip.set_pose(frame, world);
   }
   record_contacts(plan, walk.actor, walk);
+  if (options.backward) reverse(walk);
   return walk;
 }
 

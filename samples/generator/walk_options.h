@@ -30,6 +30,10 @@ struct WalkOptions {
   // the last.
   bool from_standing = false;
   Side first_side = Side::left;  // the foot that makes the first step
+  // The walk played backwards in time, which is how people walk backwards but for small differences
+  // (Thorstensson, "How is the normal locomotor program modified to produce backward walking?",
+  // Exp. Brain Res. 61, 1986). Strikes are what were offs; a turn goes to the other side.
+  bool backward = false;
 
   double rate = 60;  // frames per second, 1 .. 1000
 

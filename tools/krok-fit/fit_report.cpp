@@ -335,7 +335,9 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   if (input.found > kept) {
     steps += fmt::format(", {} more thinned out", input.found - kept);
   }
-  if (dropped > 0) steps += fmt::format(", {} dropped", dropped);
+  if (dropped > 0) {
+    steps += fmt::format(", {} dropped: {}", dropped, parametric::commonest_reasons(input.dropped));
+  }
   context.log(fmt::format("{}: {}", context.output, steps));
   const RefineMetrics& before = fitted.refined.before;
   const RefineMetrics& after = last_metrics(fitted);

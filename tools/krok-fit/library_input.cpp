@@ -72,6 +72,16 @@ parametric::StepGait gait_of(library::StepKind kind) {
       return parametric::StepGait::stop;
     case library::StepKind::stands:
       return parametric::StepGait::stand;
+    case library::StepKind::backward:
+      return parametric::StepGait::backward;
+    case library::StepKind::side:
+      return parametric::StepGait::side;
+    case library::StepKind::side_closing:
+      return parametric::StepGait::side_closing;
+    case library::StepKind::turns:
+      return parametric::StepGait::turn;
+    case library::StepKind::turns_closing:
+      return parametric::StepGait::turn_closing;
     case library::StepKind::walks:
       break;
   }

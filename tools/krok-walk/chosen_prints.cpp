@@ -42,10 +42,11 @@ Result<std::vector<gait::PathPoint>> read_way(const Options& options, ToolContex
   return gait::way_of(*clip, joint);
 }
 
-Result<gait::Path> make_path(const Options& options, ToolContext& context) {
+Result<gait::Path> make_path(const Options& options, bool backward, ToolContext& context) {
   if (options.path.empty()) {
+    const double heading = options.heading + (backward ? kPi : 0);
     return gait::Path::create(
-        gait::way_to_goals(options.from.x(), options.from.y(), options.heading, options.goals));
+        gait::way_to_goals(options.from.x(), options.from.y(), heading, options.goals));
   }
   const auto way = read_way(options, context);
   if (!way) return way.error();
@@ -64,10 +65,10 @@ Result<std::vector<gait::Print>> choose_prints(const Options& options,
     if (!file) return file.error();
     return prints::read(file->text(), options.prints);
   }
-  const auto path = make_path(options, context);
-  if (!path) return path.error();
   auto usual = gait::usual_steps(libraries);
   if (!usual) return usual.error();
+  const auto path = make_path(options, usual->backward, context);
+  if (!path) return path.error();
   gait::PlanOptions& plan = *usual;
   plan.first = options.first;
   if (options.step_width) plan.step_width = *options.step_width;

@@ -115,7 +115,7 @@ TEST(WayToGoals, LeadsThereInArcs) {
 // Would fail if the sway of steps were taken for the way: hips sway 3 cm at one stride a second.
 TEST(WayOf, TakesOutTheSway) {
   Clip clip;
-  clip.skeleton = test::human_skeleton();
+  clip.skeleton = krok::test::human_skeleton();
   clip.rate = 60;
   clip.resize(300);
   for (int frame = 0; frame < 300; ++frame) {

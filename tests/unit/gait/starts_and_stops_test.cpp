@@ -34,16 +34,7 @@ StepLibrary cut_from(const std::vector<KeyedWalk>& walks, StepGait gait,
   std::vector<parametric::Example> kept;
   for (const int i : parametric::thin_out(library, 0.1)) kept.push_back(library.examples[at(i)]);
   library.examples = std::move(kept);
-  std::vector<double> values;
-  for (const auto& example : library.examples) {
-    values.insert(values.end(), example.parameters.begin(), example.parameters.end());
-  }
-  const auto solver = rbf::WeightSolver::create(library.dimensions(), values);
-  EXPECT_TRUE(solver.ok());
-  const RoleMap roles = find_roles(library.skeleton);
-  auto made = StepLibrary::create(std::move(name), std::move(library), solver->function(), roles);
-  EXPECT_TRUE(made.ok()) << made.error().message;
-  return *std::move(made);
+  return test::walking_library(std::move(library), std::move(name));
 }
 
 std::vector<KeyedWalk> standing_walks() {

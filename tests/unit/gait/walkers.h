@@ -16,7 +16,7 @@
 namespace krok::gait::test {
 
 // Weights that meet all examples.
-inline StepLibrary walking_library(parametric::Library library) {
+inline StepLibrary walking_library(parametric::Library library, std::string name = "walks") {
   std::vector<double> parameters;
   for (const auto& example : library.examples) {
     parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
@@ -24,7 +24,7 @@ inline StepLibrary walking_library(parametric::Library library) {
   const auto solver = rbf::WeightSolver::create(library.dimensions(), parameters);
   EXPECT_TRUE(solver.ok());
   const RoleMap roles = find_roles(library.skeleton);
-  auto made = StepLibrary::create("walks", std::move(library), solver->function(), roles);
+  auto made = StepLibrary::create(std::move(name), std::move(library), solver->function(), roles);
   EXPECT_TRUE(made.ok()) << made.error().message;
   return *std::move(made);
 }

@@ -137,6 +137,17 @@ TEST(LibraryDescription, RunsAreForTheWholeFile) {
   ASSERT_TRUE(runs.ok()) << runs.error().message;
   EXPECT_EQ(runs->kind, library::StepKind::runs);
   EXPECT_TRUE(runs->examples[0].automatic);
+  for (const auto& [word, kind] : {std::pair{"backward", library::StepKind::backward},
+                                   std::pair{"side", library::StepKind::side},
+                                   std::pair{"side_closing", library::StepKind::side_closing},
+                                   std::pair{"turns", library::StepKind::turns},
+                                   std::pair{"turns_closing", library::StepKind::turns_closing}}) {
+    const auto other =
+        library::read(head + "\"" + word + R"(", "examples": [{"clip": "a.bvh"}]})", "l.json");
+    ASSERT_TRUE(other.ok()) << word;
+    EXPECT_EQ(other->kind, kind) << word;
+    EXPECT_TRUE(other->examples[0].automatic) << word;
+  }
   const auto walks = library::read(head + R"("auto", "examples": [{"clip": "a.bvh"}]})", "l.json");
   ASSERT_TRUE(walks.ok());
   EXPECT_EQ(walks->kind, library::StepKind::walks);
@@ -165,7 +176,9 @@ TEST(LibraryDescription, EveryMistakeIsToldWithItsPlace) {
       {"\"stride\"", "\"turn\"", "library-value 8:5", "duplicate parameter"},
       {"\"measures\": \"step.turn\", ", "", "library-structure 8:5", "measures"},
       {"\"5ms\"", "\"5f\"", "library-value 9:43", "frames"},
-      {"\"auto\"", "\"all\"", "library-value 11:12", "auto, runs, starts, stops, stands or one"},
+      {"\"auto\"", "\"all\"", "library-value 11:12",
+       "auto, runs, starts, stops, stands, backward, side, side_closing, turns, turns_closing or "
+       "one"},
       {"\"clip\": \"walks/*.bvh\", ", "", "library-structure 13:5", "clip"},
       {"\"1.5s\"", "\"1.5m\"", "library-value 13:37", "'m'"},
       {"\"1.5s\"", "-1", "library-value 13:37", "before 0"},
