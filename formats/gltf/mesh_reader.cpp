@@ -290,7 +290,9 @@ class PrimitiveReader {
     Primitive primitive;
     if (shared && !triangles.triangles.empty()) {
       primitive = with_used_vertices(known->second, std::move(triangles.triangles));
-      if (Status room = accessors_.reserve(bytes_of(primitive)); !room) return room.error();
+      if (Status status = accessors_.reserve(bytes_of(primitive)); !status) {
+        return status.error();
+      }
     } else {
       primitive = shared ? known->second : std::move(known->second);
       primitive.triangles = std::move(triangles.triangles);

@@ -25,6 +25,7 @@ constexpr double kApart = 1e-5;      // seconds
 constexpr double kFrame = 1.0 / 60;  // seconds
 constexpr double kWhole = 0.75;      // of a stance
 constexpr double kJerk = 0.1;        // seconds
+constexpr int kFewSeeds = 2;         // events
 constexpr double kLowRate = 45;      // frames per second; below it, frames are interpolated
 // GaitOptions::landed below kLowRate. By walks captured at 30 Hz and at 60 Hz, every other frame.
 constexpr double kLandedBlurred = 0.2;
@@ -296,6 +297,11 @@ Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& foun
                      gait.keytimes.size()),
          "they are estimated from the foot's extremes relative to the pelvis; check them with "
          "--plot");
+    // The one or two events at a clip's ends, which have no contact to be matched, are usual.
+    if (gait.from_seeds <= kFewSeeds &&
+        8 * gait.from_seeds <= static_cast<int>(gait.keytimes.size())) {
+      gait.warnings.back().severity = Severity::note;
+    }
   }
   if (!found.contacts.empty()) {
     for (Diagnostic& implausible :

@@ -75,8 +75,8 @@ struct Gait {
 // lengths of stance and swing.
 //
 // Warnings: gait-none (no step), gait-implausible (see check_gait()), gait-seeds (strikes or
-// toe-offs without a contact), gait-in-place (steps without any contact: the character walks on a
-// moving ground).
+// toe-offs without a contact; a note if there are at most two, and an eighth of all), gait-in-place
+// (steps without any contact: the character walks on a moving ground).
 Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
                const GaitOptions& options = {});
 

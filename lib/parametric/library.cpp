@@ -119,6 +119,23 @@ FootShape mirrored_foot(const FootShape& foot, const std::vector<Quat>& axes, in
   return {partner, across(foot.heel), across(foot.forward), foot.length, -foot.toe_out};
 }
 
+// End sites off the feet that another skeleton has elsewhere, to where the library's are.
+void place_end_sites(const Skeleton& library, Clip& motion) {
+  constexpr float kElsewhere = 1e-4F;  // metres
+  const std::vector<int> feet = foot_joints(library, find_roles(library));
+  for (int j = 1; j < library.joint_count(); ++j) {
+    if (library.end_sites[at(j)] == 0 || std::ranges::binary_search(feet, j)) continue;
+    const Vec3f offset = library.reference_local(j).position.cast<float>();
+    const std::size_t parent = at(library.parents[at(j)]);
+    for (int f = 0; f < motion.frame_count(); ++f) {
+      Vec3f& place = motion.frame_positions(f)[at(j)];
+      const Vec3f ours =
+          motion.frame_positions(f)[parent] + motion.frame_orientations(f)[parent] * offset;
+      if ((ours - place).norm() > kElsewhere) place = ours;
+    }
+  }
+}
+
 }  // namespace
 
 int carrying_joint(const Library& library) {
@@ -148,12 +165,15 @@ Status same_skeleton(const Skeleton& library, const Skeleton& other) {
   if (!difference.empty()) {
     return Error("parametric-skeleton", "not the library's skeleton: " + difference, kRetarget);
   }
+  const std::vector<int> feet = foot_joints(library, find_roles(library));
   const double allowed = kSameOffset * std::max(reference_extent(library), reference_extent(other));
   for (int j = 1; j < library.joint_count(); ++j) {
     const Vec3 ours = library.reference_local(j).position;
     const Vec3 theirs = other.reference_local(j).position;
     if ((ours - theirs).norm() <= allowed) continue;
-    // The joints above the hips only place the character.
+    // The joints above the hips only place the character, and end sites off the feet only mark
+    // where the last bone ends.
+    if (library.end_sites[at(j)] != 0 && !std::ranges::binary_search(feet, j)) continue;
     if (subtree(library, j)[at(krok::carrying_joint(find_roles(library)))] != 0) continue;
     const std::string& name = library.names[static_cast<std::size_t>(j)];
     Error error("parametric-skeleton",
@@ -183,6 +203,7 @@ Result<Example> make_example(const Library& library, std::string name, const Cli
   example.motion = motion;
   example.motion.skeleton = library.skeleton;
   example.motion.provenance = {};
+  place_end_sites(library.skeleton, example.motion);
   move_clip(to_stance, example.motion);
   example.keytimes = std::move(keytimes);
   example.contacts = std::move(contacts);

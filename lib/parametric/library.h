@@ -59,8 +59,8 @@ std::vector<GivenRole> given_roles(const RoleMap& map);
 int carrying_joint(const Library& library);
 
 // Whether two skeletons can share a library: same names, order and parents; offsets of joints below
-// the hips in the reference poses equal to within a hundredth of the skeleton's extent. Code:
-// parametric-skeleton, naming the joint.
+// the hips in the reference poses equal to within a hundredth of the skeleton's extent, but for end
+// sites that are not of a foot. Code: parametric-skeleton, naming the joint.
 Status same_skeleton(const Skeleton& library, const Skeleton& other);
 
 // Makes an example of a motion with keytimes (seconds): moves it into the stance foot's frame and

@@ -331,8 +331,7 @@ class StanceBuilder {
     roll(foot, kLeft, now, wanted);
   }
 
-  // Radians; upwards is positive. The ankle is lowest where the heel is on
-  // the ground, in walking and in standing.
+  // Radians; upwards is positive. The ankle is lowest where the heel is on the ground.
   double pitch_on_ground(int foot, int front) const {
     std::vector<std::pair<float, double>> frames;  // the ankle's height, and the pitch
     for (int f = 0; f < clip_.frame_count(); f += step_) {

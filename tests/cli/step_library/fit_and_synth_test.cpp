@@ -286,7 +286,7 @@ TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
 }
 
 // Steps alike in length and duration but not in width: weights that meet them all are so wild that
-// nothing can be inserted. Exit code 0 alone would tell the user that the tolerance is met.
+// nothing can be inserted. Exit code 0 alone would mean that the tolerance is met.
 TEST_F(StepLibrary, SaysWhyRefinementCouldNotGoOn) {
   for (int seed = 1; seed <= 8; ++seed) {
     const ToolRun made = run({KROK_MAKE_WALK,
