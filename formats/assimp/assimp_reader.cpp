@@ -54,13 +54,15 @@ Error error_of(const ChildReport& report, const ChildLimits& limits) {
     case ChildEnd::out_of_time:
       return Error(
           "assimp-time",
-          fmt::format("Assimp was stopped after {:.4g} seconds, the time limit", limits.seconds),
+          fmt::format(
+              "Assimp was stopped after {:.4g} seconds, the time limit for a file of this size",
+              limits.seconds),
           hint);
     case ChildEnd::out_of_memory:
-      return Error(
-          "assimp-memory",
-          fmt::format("Assimp exceeded the memory limit of {} MB", limits.memory_bytes >> 20),
-          hint);
+      return Error("assimp-memory",
+                   fmt::format("Assimp exceeded {} MiB, the memory limit for a file of this size",
+                               limits.memory_bytes >> 20),
+                   hint);
     case ChildEnd::result_too_large:
       return Error("assimp-memory",
                    fmt::format("the file's content exceeds the memory limit of {} MB",
@@ -86,7 +88,8 @@ Result<nodes::Scene> read_in_child(const std::vector<MemoryFile>& files, Kind ki
   std::uint64_t size = 0;
   for (const MemoryFile& file : files) size += file.bytes.size();
   ChildLimits limits;
-  limits.seconds = options.most_seconds;
+  limits.seconds =
+      options.most_seconds + options.seconds_per_mebibyte * static_cast<double>(size) / (1 << 20);
   limits.memory_bytes =
       options.most_bytes +
       static_cast<std::uint64_t>(std::max(options.most_expansion, 0.0) * static_cast<double>(size));

@@ -23,9 +23,9 @@ namespace krok::assimp {
 struct ReadOptions {
   // For formats that do not store the frame rate (SMD); 30 is the default of studiomdl.
   double frames_per_second = 30;
-  double most_seconds = 120;
-  // Assimp's memory limit: most_bytes + most_expansion * size of the file.
-  std::uint64_t most_bytes = std::uint64_t{512} << 20;
+  // Assimp's limits: so much, and so much for each MiB or byte of the file and its companions.
+  double most_seconds = 15, seconds_per_mebibyte = 5;
+  std::uint64_t most_bytes = std::uint64_t{256} << 20;
   double most_expansion = 64;
   std::uint64_t most_file_bytes = std::uint64_t{1} << 31;  // Assimp counts bytes in 32 bits
   // Also read Scene::materials, as far as Assimp provides them: colours, alpha, textures. Images

@@ -7,6 +7,7 @@
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/names.h"
 #include "formats/bvh/text_cursor.h"
+#include "scene/frame_moment.h"
 
 namespace krok::bvh {
 
@@ -132,15 +133,15 @@ class HeaderParser {
     header_.frame_time_offset = cursor_.word_begin();
     has_time_ = true;
     if (Status status = read_frame_time(); !status) return status;
-    if (header_.frame_time > 1e-6 && header_.frame_time < 1e6) return skip_rest("Frame Time");
+    const double rate = 1 / header_.frame_time;
+    if (rate >= kMinRate && rate <= kMaxRate) return skip_rest("Frame Time");
     header_.frame_time = 0;
-    Error wrong =
-        error_at(header_.frame_time_offset, "bvh-frame-time",
-                 header_.frame_time_text.empty()
-                     ? "the Frame Time has no value"
-                     : fmt::format("the Frame Time '{}' is not a positive number of seconds",
-                                   shown(header_.frame_time_text)),
-                 kRateHint);
+    Error wrong = error_at(header_.frame_time_offset, "bvh-frame-time",
+                           header_.frame_time_text.empty()
+                               ? "the Frame Time has no value"
+                               : fmt::format("the Frame Time '{}' is not 0.00001 to 1000 seconds",
+                                             shown(header_.frame_time_text)),
+                           kRateHint);
     if (!options_.rate) return wrong;
     if (Status status = warn(std::move(wrong)); !status) return status;
     return skip_rest("Frame Time");

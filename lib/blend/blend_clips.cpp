@@ -15,6 +15,7 @@
 #include "motion/hips_root.h"
 #include "pose/blend_pose.h"
 #include "pose/sample_pose.h"
+#include "scene/frame_moment.h"
 
 namespace krok::blend {
 
@@ -313,10 +314,8 @@ Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& r
   if (!options.any_sum) {
     if (Status status = check_sum(inputs); !status) return status.error();
   }
-  const double rate = options.rate > 0 ? options.rate : inputs.front().clip->rate;
-  if (!std::isfinite(rate) || options.rate < 0) {
-    return Error("clip-rate", "the frame rate of a blend must be positive");
-  }
+  const double rate = options.rate != 0 ? options.rate : inputs.front().clip->rate;
+  if (Status status = check_frame_rate(rate, "clip-rate"); !status) return status.error();
   std::vector<TimeMap> maps;
   std::vector<WeightCurve> weights;
   for (std::size_t m = 0; m < inputs.size(); ++m) {

@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "math/quaternion.h"
 #include "math/squad.h"
+#include "scene/frame_moment.h"
 
 namespace krok {
 
@@ -179,10 +180,7 @@ std::vector<Quat> directions_over_time(const KeyedCamera& camera, std::span<cons
 
 // The times of the frames; the last is not before `end`, within a millionth of a frame.
 Result<std::vector<double>> frame_times(double end, double rate) {
-  if (!std::isfinite(rate) || !(rate > 0)) {
-    return Error("camera-rate",
-                 fmt::format("the frame rate is {}, expected a positive number", readable(rate)));
-  }
+  if (Status status = check_frame_rate(rate, "camera-rate"); !status) return status.error();
   const double last = std::ceil(end * rate - 1e-6);
   if (!(last < kMaxFrames)) {
     return Error("camera-too-long",

@@ -1,4 +1,5 @@
 #include "capture/capture.h"
+#include "scene/frame_moment.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +12,7 @@ Result<RoleMap> roles_of(const Skeleton& skeleton, const CaptureOptions& options
 }
 
 Status check_rate(const std::optional<double>& rate, const std::string& code) {
-  if (!rate || (*rate > 0 && std::isfinite(*rate))) return {};
-  return Error(code, fmt::format("a frame rate of {} fps is not positive and finite", *rate));
+  return rate ? check_frame_rate(*rate, code) : Status();
 }
 
 }  // namespace krok

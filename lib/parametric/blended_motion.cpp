@@ -10,6 +10,7 @@
 #include "math/hermite.h"
 #include "pose/local_to_model.h"
 #include "pose/sample_pose.h"
+#include "scene/frame_moment.h"
 
 namespace krok::parametric {
 
@@ -144,9 +145,7 @@ float BlendedMotion::pose(double time, std::span<PoseBlock> pose, Scratch& scrat
 Result<BlendedMotion::Made> BlendedMotion::make(double rate, LastFrame last) const {
   const bool any_rate = rate == 0;
   if (any_rate) rate = library_.rate;
-  if (!(rate > 0) || !std::isfinite(rate)) {
-    return Error("clip-rate", "the rate of a motion must be a positive number");
-  }
+  if (Status status = check_frame_rate(rate, "clip-rate"); !status) return status.error();
   const double frames = duration() * rate;
   const auto joints = packed_.skeleton.names.size();
   if (!(frames * static_cast<double>(joints) <= kMaxTransforms)) {

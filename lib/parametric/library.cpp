@@ -12,6 +12,7 @@
 #include "motion/place.h"
 #include "parametric/measure.h"
 #include "pose/sample_pose.h"
+#include "scene/frame_moment.h"
 
 namespace krok::parametric {
 
@@ -254,9 +255,7 @@ Status check(const Library& library) {
   if (!std::isfinite(library.ground)) {
     return Error("parametric-example", "the height of the ground is not a number");
   }
-  if (!(library.rate > 0) || !std::isfinite(library.rate)) {
-    return Error("clip-rate", "the rate of a library must be a positive number");
-  }
+  if (Status status = check_frame_rate(library.rate, "clip-rate"); !status) return status;
   if (Status status = check(library.parameters, library.skeleton, library.keytimes); !status) {
     return status;
   }

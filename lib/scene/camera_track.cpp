@@ -1,4 +1,5 @@
 #include "scene/camera_track.h"
+#include "scene/frame_moment.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +12,7 @@ Status check(const CameraTrack& camera) {
   if (camera.orientations.size() != count || camera.fields_of_view.size() != count) {
     return Error("camera-shape", "positions, orientations and fields of view differ in length");
   }
-  if (!std::isfinite(camera.rate) || camera.rate <= 0) {
-    return Error("camera-rate",
-                 fmt::format("the frame rate is {}, expected a positive number", camera.rate));
-  }
+  if (Status status = check_frame_rate(camera.rate, "camera-rate"); !status) return status;
   for (std::size_t i = 0; i < count; ++i) {
     const float view = camera.fields_of_view[i];
     if (!camera.positions[i].allFinite() || !camera.orientations[i].coeffs().allFinite() ||

@@ -6,8 +6,16 @@
 
 #include "core/rows.h"
 #include "math/quaternion.h"
+#include "scene/frame_moment.h"
 
 namespace krok {
+
+namespace {
+
+// Metres along an axis: floats are 64 m apart there, and sums of squares stay finite.
+constexpr float kMaxDistance = 1e9F;
+
+}  // namespace
 
 void Clip::resize(int frames) {
   const std::size_t count = static_cast<std::size_t>(frames) * skeleton.names.size();
@@ -53,18 +61,17 @@ Status check(const Clip& clip) {
                  fmt::format("{} positions and {} orientations are not whole frames of {} joints",
                              clip.positions.size(), clip.orientations.size(), clip.joint_count()));
   }
-  if (!std::isfinite(clip.rate) || clip.rate <= 0) {
-    return Error("clip-rate",
-                 fmt::format("the frame rate is {}, expected a positive number", clip.rate));
-  }
+  if (Status status = check_frame_rate(clip.rate, "clip-rate"); !status) return status;
   for (std::size_t i = 0; i < clip.positions.size(); ++i) {
-    if (clip.positions[i].allFinite() && clip.orientations[i].coeffs().allFinite() &&
+    if (clip.positions[i].allFinite() && clip.positions[i].cwiseAbs().maxCoeff() <= kMaxDistance &&
+        clip.orientations[i].coeffs().allFinite() &&
         std::abs(clip.orientations[i].norm() - 1.0f) <= 1e-3f) {
       continue;
     }
     const std::size_t joints = clip.skeleton.names.size();
-    Error error("clip-value", fmt::format("joint {} in frame {} is not finite or not a rotation",
-                                          clip.skeleton.names[i % joints], i / joints));
+    Error error("clip-value",
+                fmt::format("joint {} in frame {} is not finite, beyond {:g} m, or not a rotation",
+                            clip.skeleton.names[i % joints], i / joints, kMaxDistance));
     error.joint = clip.skeleton.names[i % joints];
     error.frame = static_cast<std::int64_t>(i / joints);
     return error;

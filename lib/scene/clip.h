@@ -17,7 +17,7 @@ namespace krok {
 // frame, shape [frames x joints]. Orientations are unit quaternions of either sign.
 struct Clip {
   Skeleton skeleton;
-  double rate = 30.0;  // frames per second, > 0
+  double rate = 30.0;  // frames per second, see check_frame_rate()
   std::vector<Vec3f> positions;
   std::vector<Quatf> orientations;
   Provenance provenance;
@@ -46,7 +46,8 @@ struct Clip {
 };
 
 // Checks everything documented above: check(skeleton), equal lengths, a whole number of frames, a
-// positive finite rate, finite values, unit orientations (within 1e-3). A clip may have no frames.
+// rate of 0.001 to 100,000, finite values of at most 1e9 m, unit orientations (within 1e-3). A clip
+// may have no frames.
 // Codes: those of check(Skeleton), clip-shape, clip-rate, clip-value.
 Status check(const Clip& clip);
 

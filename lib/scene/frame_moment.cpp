@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "core/numbers.h"
 
 namespace krok {
 
@@ -21,10 +24,15 @@ FrameMoment frame_moment(double time, double rate, int frames) {
   return {before, fraction};
 }
 
+Status check_frame_rate(double rate, std::string code) {
+  if (rate >= kMinRate && rate <= kMaxRate) return {};
+  return Error(std::move(code),
+               fmt::format("the frame rate is {}, expected {} to {} frames per second",
+                           readable(rate), readable(kMinRate), readable(kMaxRate)));
+}
+
 Result<int> frames_within(double duration, double rate, int joints) {
-  if (!std::isfinite(rate) || rate <= 0) {
-    return Error("clip-rate", fmt::format("a rate of {} fps is not positive", rate));
-  }
+  if (Status status = check_frame_rate(rate, "clip-rate"); !status) return status.error();
   const double frames = std::floor(duration * rate + 1e-3) + 1;
   if (!(frames * std::max(joints, 1) <= 1e8)) {
     return Error("clip-too-long", fmt::format("{} fps over {} s gives {} frames, too many to hold",

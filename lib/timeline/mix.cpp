@@ -135,9 +135,7 @@ Result<Mixed> mix_rooted(const Timeline& timeline, std::span<const Source> sourc
     const auto first = static_cast<std::size_t>(timeline.base.front().play.source);
     rate = sources[first < sources.size() ? first : 0].clip->rate;
   }
-  if (!(rate > 0) || !std::isfinite(rate)) {
-    return Error("clip-rate", "the frame rate of a timeline must be positive");
-  }
+  if (Status status = check_frame_rate(rate, "clip-rate"); !status) return status.error();
   auto items = schedule(timeline, sources, rate);
   if (!items) return items.error();
   const double end = items->back().end;

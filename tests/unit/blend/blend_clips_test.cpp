@@ -211,7 +211,7 @@ TEST(Blend, RefusesWhatDoesNotBelongTogether) {
   EXPECT_EQ(code({}), "blend-empty");
   EXPECT_EQ(code({input_of(walk, WeightCurve::constant(1))}), "blend-keys");
   EXPECT_EQ(code({input_of(walk, half), input_of(walk, half)}, {.rate = -1}), "clip-rate");
-  EXPECT_EQ(code({input_of(walk, half), input_of(walk, half)}, {.rate = 1e9}), "clip-too-long");
+  EXPECT_EQ(code({input_of(walk, half), input_of(walk, half)}, {.rate = 1e9}), "clip-rate");
   KeyedWalk empty = walk;
   empty.clip.resize(0);
   empty.keys = {};

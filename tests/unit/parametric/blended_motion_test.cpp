@@ -198,24 +198,24 @@ TEST(BlendedMotion, RefusesRatesThatMakeNoClip) {
   EXPECT_EQ(code(-1), "clip-rate");
   EXPECT_EQ(code(std::nan("")), "clip-rate");
   EXPECT_EQ(code(HUGE_VAL), "clip-rate");
-  EXPECT_EQ(code(1e9), "clip-too-long");
+  EXPECT_EQ(code(1e9), "clip-rate");
   EXPECT_EQ(motion->make(0.1)->clip.frame_count(), 2);
 }
 
-// Two frames may be said to last for years.
+// Two frames may last for a quarter of an hour each.
 TEST(PackedExamples, TakesNoMemoryForTimeWithoutFrames) {
   Library slow = library();
   for (Example& example : slow.examples) {
-    example.motion.rate = 1e-6;
-    example.keytimes = {0, 3e6, example.motion.duration()};
+    example.motion.rate = 1e-3;
+    example.keytimes = {0, 3e3, example.motion.duration()};
   }
   ASSERT_TRUE(check(slow));
   const PackedExamples made = pack_examples(slow);
   EXPECT_LE(made.reference.frames, 5000);
   const auto motion = BlendedMotion::create(slow, made, equal_weights());
   ASSERT_TRUE(motion.ok());
-  EXPECT_GT(motion->duration(), 1e6);
-  EXPECT_EQ(motion->make().error().code, "clip-too-long");
+  EXPECT_GT(motion->duration(), 1e3);
+  EXPECT_EQ(motion->make(1e5).error().code, "clip-too-long");
 }
 
 TEST(PackedExamples, SpreadIsTheLargestAngleBetweenExamples) {

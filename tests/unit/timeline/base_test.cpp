@@ -292,7 +292,7 @@ TEST(Base, WhatCannotBePlayedIsRefusedWithItsPlace) {
          item(t).marks = {{"late", seconds(100), false}};
        }},
       {"clip-rate", [&](Timeline& t) { t.rate = -1; }},
-      {"clip-too-long", [&](Timeline& t) { t.rate = 1e8; }},
+      {"clip-rate", [&](Timeline& t) { t.rate = 1e8; }},
   };
   for (std::size_t i = 0; i < std::size(cases); ++i) {
     Timeline timeline{0, {played(0), played(0)}, {}};

@@ -1,0 +1,72 @@
+// If these fail, a file with a rate that no motion has makes tools loop over its seconds for ever,
+// take memory without end, or write `inf` into what they export.
+
+#include <cstring>
+
+#include "cli/motion_fixture.h"
+#include "golden/samples/samples.h"
+
+namespace krok::test {
+namespace {
+
+class AbsurdRates : public MotionTest {
+ protected:
+  // walk.anim with another rate, and its checksum made right again.
+  void put_with_rate(const std::string& name, double rate) const {
+    const auto file = InputFile::open(path("walk.anim"));
+    ASSERT_TRUE(file.ok());
+    std::vector<std::byte> bytes(file->bytes().begin(), file->bytes().end());
+    const double usual = 60;
+    std::size_t place = 0;
+    while (place + sizeof usual <= bytes.size() &&
+           std::memcmp(&bytes[place], &usual, sizeof usual) != 0) {
+      ++place;
+    }
+    ASSERT_LE(place + sizeof usual, bytes.size());
+    std::memcpy(&bytes[place], &rate, sizeof rate);
+    samples::repair_header(bytes);
+    put(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+};
+
+TEST_F(AbsurdRates, AreRefusedByEveryTool) {
+  write_walk(2);
+  for (const double rate : {1e300, 1e-17, 1e-158, 5e-324, 1.1e5, 0.0, -30.0}) {
+    put_with_rate("bad.anim", rate);
+    const std::vector<std::vector<std::string>> runs = {
+        {"krok-plot", "bad.anim", "-o", "bad.svg"},
+        {"krok-plot", "bad.anim", "--strip", "bad.png"},
+        {"krok-keys", "bad.anim"},
+        {"krok-blend", "bad.anim:0.5", "walk.anim:0.5", "-o", "out.anim"},
+        {"krok-export", "bad.anim", "-o", "out.bvh"},
+        {"krok-export", "bad.anim", "-o", "out.glb"},
+        {"krok-edit", "bad.anim", "-o", "out.anim", "--speed", "2"},
+        {"krok-info", "bad.anim", "--json"}};
+    for (const auto& words : runs) {
+      const ToolRun run = run_here(words[0], {words.begin() + 1, words.end()});
+      EXPECT_EQ(run.exit_code, 2) << words[0] << " " << rate << run.err;
+      EXPECT_NE(run.err.find("0.001 to 100000 frames per second"), std::string::npos)
+          << words[0] << " " << rate << run.err;
+      EXPECT_EQ(run.out.find("inf"), std::string::npos) << words[0];
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("out.bvh")));
+}
+
+// A capture says so at its frame time.
+TEST_F(AbsurdRates, OfCapturesAreRefused) {
+  for (const char* time : {"1e-300", "1e-9", "1e300", "5000"}) {
+    put("bad.bvh", std::string("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition "
+                               "Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 2\n"
+                               "Frame Time: ") +
+                       time + "\n0 0 0\n0 0 1\n");
+    const ToolRun run = run_here("krok-import", {"bad.bvh", "-o", "out.anim"});
+    EXPECT_EQ(run.exit_code, 2) << time << run.err;
+    EXPECT_FALSE(std::filesystem::exists(path("out.anim"))) << time;
+    const ToolRun keys = run_here("krok-keys", {"bad.bvh"});
+    EXPECT_EQ(keys.exit_code, 2) << time << keys.err;
+  }
+}
+
+}  // namespace
+}  // namespace krok::test
