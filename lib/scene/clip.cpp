@@ -10,13 +10,6 @@
 
 namespace krok {
 
-namespace {
-
-// Metres along an axis: floats are 64 m apart there, and sums of squares stay finite.
-constexpr float kMaxDistance = 1e9F;
-
-}  // namespace
-
 void Clip::resize(int frames) {
   const std::size_t count = static_cast<std::size_t>(frames) * skeleton.names.size();
   positions.resize(count, Vec3f::Zero());
@@ -63,15 +56,13 @@ Status check(const Clip& clip) {
   }
   if (Status status = check_frame_rate(clip.rate, "clip-rate"); !status) return status;
   for (std::size_t i = 0; i < clip.positions.size(); ++i) {
-    if (clip.positions[i].allFinite() && clip.positions[i].cwiseAbs().maxCoeff() <= kMaxDistance &&
-        clip.orientations[i].coeffs().allFinite() &&
+    if (clip.positions[i].allFinite() && clip.orientations[i].coeffs().allFinite() &&
         std::abs(clip.orientations[i].norm() - 1.0f) <= 1e-3f) {
       continue;
     }
     const std::size_t joints = clip.skeleton.names.size();
-    Error error("clip-value",
-                fmt::format("joint {} in frame {} is not finite, beyond {:g} m, or not a rotation",
-                            clip.skeleton.names[i % joints], i / joints, kMaxDistance));
+    Error error("clip-value", fmt::format("joint {} in frame {} is not finite or not a rotation",
+                                          clip.skeleton.names[i % joints], i / joints));
     error.joint = clip.skeleton.names[i % joints];
     error.frame = static_cast<std::int64_t>(i / joints);
     return error;

@@ -46,8 +46,8 @@ struct Clip {
 };
 
 // Checks everything documented above: check(skeleton), equal lengths, a whole number of frames, a
-// rate of 0.001 to 100,000, finite values of at most 1e9 m, unit orientations (within 1e-3). A clip
-// may have no frames.
+// rate of 0.001 to 100,000, finite values, unit orientations (within 1e-3). A clip may have no
+// frames.
 // Codes: those of check(Skeleton), clip-shape, clip-rate, clip-value.
 Status check(const Clip& clip);
 

@@ -233,7 +233,7 @@ TEST(KeyedCamera, RefusesWhatMakesNoCamera) {
             "camera-keys");
   EXPECT_EQ(code([](KeyedCamera&) {}, 0), "camera-rate");
   EXPECT_EQ(code([nan](KeyedCamera&) {}, nan), "camera-rate");
-  EXPECT_EQ(code([](KeyedCamera&) {}, 1e9), "camera-too-long");
+  EXPECT_EQ(code([](KeyedCamera&) {}, 1e9), "camera-rate");
   EXPECT_EQ(code([](KeyedCamera& c) { c.keys[3].position.x() = 1e300; }), "camera-keys");
 }
 

@@ -260,7 +260,7 @@ TEST(GltfWriter, RefusesWhatGltfCannotHold) {
   EXPECT_EQ(rig_error(model, other), "gltf-structure");
   Clip fast = clip;
   fast.rate = 1e300;
-  EXPECT_EQ(rig_error(model, fast), "gltf-times");
+  EXPECT_EQ(rig_error(model, fast), "clip-rate");
   Model latin = model;
   latin.parts[0].material = "b\xf6rn";
   EXPECT_EQ(rig_error(latin, clip), "gltf-name");

@@ -148,16 +148,16 @@ TEST(Resample, NoFramesAndOneFrame) {
 TEST(Resample, RefusesWhatMakesNoSense) {
   const Clip clip = swinging_arm(11, 10);
   for (const double rate : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
-                            std::numeric_limits<double>::infinity()}) {
+                            std::numeric_limits<double>::infinity(), 1e9, 1e300, 1e-9}) {
     const auto result = resample(clip, rate);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, "clip-rate");
   }
-  for (const double rate : {1e9, 1e300}) {
-    const auto result = resample(clip, rate);
-    ASSERT_FALSE(result.ok());
-    EXPECT_EQ(result.error().code, "clip-too-long");
-  }
+  Clip slow = clip;
+  slow.rate = 1e-3;  // hours
+  const auto result = resample(slow, 1e5);
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "clip-too-long");
 }
 
 }  // namespace

@@ -187,14 +187,11 @@ TEST(UniformClip, ScalesMoveWhatIsBelow) {
 }
 
 TEST(UniformClip, RefusesRatesAndLengthsThatMakeNoClip) {
-  for (const double rate : {0.0, -1.0, kNan}) {
+  for (const double rate : {0.0, -1.0, kNan, 1e9}) {
     const auto result = uniform_clip(arm(), rate);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, "clip-rate");
   }
-  const auto result = uniform_clip(arm(), 1e9);
-  ASSERT_FALSE(result.ok());
-  EXPECT_EQ(result.error().code, "clip-too-long");
   KeyedClip empty = arm();
   empty.joints[0] = {};
   ASSERT_TRUE(uniform_clip(empty, 30).ok());
