@@ -1,7 +1,9 @@
 // If these fail, a file with a rate that no motion has makes tools loop over its seconds for ever,
 // take memory without end, or write `inf` into what they export.
 
-#include <cstring>
+#include <algorithm>
+#include <array>
+#include <bit>
 
 #include "cli/motion_fixture.h"
 #include "golden/samples/samples.h"
@@ -16,14 +18,10 @@ class AbsurdRates : public MotionTest {
     const auto file = InputFile::open(path("walk.anim"));
     ASSERT_TRUE(file.ok());
     std::vector<std::byte> bytes(file->bytes().begin(), file->bytes().end());
-    const double usual = 60;
-    std::size_t place = 0;
-    while (place + sizeof usual <= bytes.size() &&
-           std::memcmp(&bytes[place], &usual, sizeof usual) != 0) {
-      ++place;
-    }
-    ASSERT_LE(place + sizeof usual, bytes.size());
-    std::memcpy(&bytes[place], &rate, sizeof rate);
+    using Double = std::array<std::byte, sizeof(double)>;
+    const auto found = std::ranges::search(bytes, std::bit_cast<Double>(60.0));
+    ASSERT_FALSE(found.empty());
+    std::ranges::copy(std::bit_cast<Double>(rate), found.begin());
     samples::repair_header(bytes);
     put(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
