@@ -19,9 +19,10 @@ class AbsurdRates : public MotionTest {
     ASSERT_TRUE(file.ok());
     std::vector<std::byte> bytes(file->bytes().begin(), file->bytes().end());
     using Double = std::array<std::byte, sizeof(double)>;
-    const auto found = std::ranges::search(bytes, std::bit_cast<Double>(60.0));
-    ASSERT_FALSE(found.empty());
-    std::ranges::copy(std::bit_cast<Double>(rate), found.begin());
+    const auto usual = std::bit_cast<Double>(60.0);
+    const auto found = std::search(bytes.begin(), bytes.end(), usual.begin(), usual.end());
+    ASSERT_NE(found, bytes.end());
+    std::ranges::copy(std::bit_cast<Double>(rate), found);
     samples::repair_header(bytes);
     put(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
