@@ -58,12 +58,13 @@ Mat4 put_together(const Vec3& translation, const Quat& rotation, const Vec3& sca
 void convert_nodes(Conversion& conversion);
 void convert_meshes(Conversion& conversion);   // after nodes
 void convert_cameras(Conversion& conversion);  // after nodes
+void mark_fixtures(Conversion& conversion);    // after nodes
 // After meshes. Animations of `source`: the conversion's scene, or one with the same nodes and
 // meshes.
 void convert_animations(Conversion& conversion, const aiScene& source);
 void convert_space(Conversion& conversion);
 void report_same_names(Conversion& conversion);
-void report_layers(Conversion& conversion);
+void report_takes(Conversion& conversion);
 void rename_collada_nodes(Conversion& conversion);    // last: other steps use Assimp's names
 void report_what_is_missing(Conversion& conversion);  // last
 

@@ -113,6 +113,22 @@ bool is_moved(const aiScene& scene, const aiString& node) {
 
 }  // namespace
 
+// Lights, cameras that are left out or in the world, and the targets that 3ds Max aims cameras at.
+void mark_fixtures(Conversion& to) {
+  const auto mark = [&](const std::string& name) {
+    const auto found = to.node_by_name.find(name);
+    if (found != to.node_by_name.end()) {
+      to.scene.nodes[static_cast<std::size_t>(found->second)].fixture = true;
+    }
+  };
+  for (unsigned k = 0; k < to.source.mNumLights; ++k) mark(to_text(to.source.mLights[k]->mName));
+  for (unsigned k = 0; k < to.source.mNumCameras; ++k) {
+    const std::string name = to_text(to.source.mCameras[k]->mName);
+    mark(name);
+    mark(name + ".Target");
+  }
+}
+
 void convert_cameras(Conversion& to) {
   // Assimp 5.2 interprets the lens of 3DS cameras as an angle and uses a wrong up vector for roll.
   std::map<std::string, Max3dsCamera> of_3ds;

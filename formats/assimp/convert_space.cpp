@@ -65,7 +65,9 @@ void convert_space(Conversion& to) {
   // Assimp applies <unit> and <up_axis> to the root node. By convention a character faces +Z in
   // Y-up files and -Y in Z-up files, which becomes +Z. The format does not specify it; the facing
   // is detected later.
-  if (to.kind == Kind::collada && collada_has_unit(to.text)) to.scene.space.metres = 1.0;
+  if (to.kind != Kind::collada) return;
+  if (collada_has_unit(to.text)) to.scene.space.metres = 1.0;
+  to.scene.space.up_is_y = to.text.find("<up_axis>") != std::string_view::npos;
 }
 
 }  // namespace krok::assimp

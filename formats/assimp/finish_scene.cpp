@@ -93,10 +93,15 @@ void rename_collada_nodes(Conversion& to) {
   }
 }
 
-void report_layers(Conversion& to) {
+void report_takes(Conversion& to) {
   if (to.kind != Kind::fbx) return;
   const std::size_t layers = fbx_object_count(to.text, "AnimationLayer");
   const std::size_t takes = fbx_object_count(to.text, "AnimationStack");
+  const std::size_t read = to.scene.animations.size();
+  if (read > 0 && read < takes) {
+    to.warn("assimp-takes",
+            fmt::format("{} of {} takes move nothing and are left out", takes - read, takes));
+  }
   if (layers <= takes) return;
   to.warn("assimp-layers",
           fmt::format("{} animation layers for {} takes; Assimp merges their curves and ignores "

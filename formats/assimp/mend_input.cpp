@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <locale>
 #include <span>
 
 #include "core/numbers.h"
@@ -142,20 +143,17 @@ std::string mend_ms3d(std::string_view text) {
 
 // ---- COLLADA ----
 
-// Assimp rejects a colour with a space before the first number.
+// Where a list of numbers begins with white space, Assimp 5.2 rejects it or reads one 0 more, which
+// shifts all indices and makes it crash.
 std::string mend_collada(std::string_view text) {
-  constexpr std::string_view kColour = "<color";
   std::string mended;
   std::size_t taken = 0;
-  for (std::size_t at = text.find(kColour); at != std::string_view::npos;
-       at = text.find(kColour, at + 1)) {
-    const std::size_t content = text.find('>', at);
-    if (content == std::string_view::npos) break;
-    std::size_t number = content + 1;
-    while (number < text.size() && is_space(text[number])) ++number;
-    if (number == content + 1) continue;
-    mended += text.substr(taken, content + 1 - taken);
-    taken = number;
+  for (std::size_t at = text.find('>'); at != std::string_view::npos; at = text.find('>', at + 1)) {
+    std::size_t content = at + 1;
+    while (content < text.size() && is_space(text[content])) ++content;
+    if (content == at + 1 || content == text.size() || text[content] == '<') continue;
+    mended += text.substr(taken, at + 1 - taken);
+    taken = content;
   }
   if (taken > 0) mended += text.substr(taken);
   return mended;
@@ -176,6 +174,25 @@ Result<std::string> mend_input(Kind kind, std::string_view text) {
     default:
       return std::string();
   }
+}
+
+std::string utf8_of(std::string_view text) {
+  const bool big = text.starts_with("\xFE\xFF");
+  if (!big && !text.starts_with("\xFF\xFE")) return {};
+  std::u16string units;
+  for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+    const auto low = static_cast<unsigned char>(text[i + (big ? 1 : 0)]);
+    const auto high = static_cast<unsigned char>(text[i + (big ? 0 : 1)]);
+    units += static_cast<char16_t>(low | high << 8);
+  }
+  using Converter = std::codecvt<char16_t, char8_t, std::mbstate_t>;
+  std::u8string out(3 * units.size(), u8'\0');
+  std::mbstate_t state{};
+  const char16_t* from = units.data();
+  char8_t* to = out.data();
+  std::use_facet<Converter>(std::locale::classic())
+      .out(state, from, from + units.size(), from, to, to + out.size(), to);
+  return {reinterpret_cast<const char*>(out.data()), reinterpret_cast<const char*>(to)};
 }
 
 std::string md5_joints(std::string_view text) {

@@ -35,7 +35,7 @@ void configure(Assimp::Importer& importer) {
   // merges them.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_LIGHTS, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_OPTIMIZE_EMPTY_ANIMATION_CURVES, false);
   // Keep joints without weights.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_REMOVE_EMPTY_BONES, false);
@@ -114,10 +114,11 @@ void convert_further_clips(Conversion& to, const std::vector<ColladaClip>& clips
 // Input for Assimp.
 struct Input {
   std::vector<MemoryFile> files;
-  std::vector<std::string> mended;  // replacements of some files
-  std::string name;                 // of the file to open
-  std::string_view text;            // the file to open, mended
-  bool bare_motion = false;         // an MD5 motion without its mesh
+  std::vector<std::string> converted;  // files that were UTF-16
+  std::vector<std::string> mended;     // replacements of some files
+  std::string name;                    // of the file to open
+  std::string_view text;               // the file to open, mended
+  bool bare_motion = false;            // an MD5 motion without its mesh
   std::vector<ColladaClip> clips;
 };
 
@@ -127,8 +128,14 @@ std::string_view text_of(const MemoryFile& file) {
 
 Result<Input> prepare(std::vector<MemoryFile> files, Kind kind) {
   Input input;
-  input.text = text_of(files[0]);
   input.mended.resize(files.size() + 1);
+  input.converted.resize(files.size());
+  for (std::size_t f = 0; f < files.size(); ++f) {
+    std::string& converted = input.converted[f];
+    converted = utf8_of(text_of(files[f]));
+    if (!converted.empty()) files[f].bytes = std::as_bytes(std::span(converted));
+  }
+  input.text = text_of(files[0]);
   if (kind == Kind::collada) {
     auto mend = mend_input(kind, input.text);
     if (!mend) return mend.error();
@@ -165,6 +172,7 @@ Status convert(Conversion& to, const Input& input) {
     convert_nodes(to);
     if (!input.bare_motion) convert_meshes(to);  // Assimp adds a dummy mesh to bare bones
     convert_cameras(to);
+    mark_fixtures(to);
     convert_animations(to, to.source);
     convert_further_clips(to, input.clips);
     convert_space(to);
@@ -208,7 +216,7 @@ Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
     to.note("assimp-normals",
             fmt::format("{} meshes have no normals; smooth ones were computed", without_normals));
   }
-  report_layers(to);
+  report_takes(to);
   report_what_is_missing(to);
   return std::move(to.scene);
 }

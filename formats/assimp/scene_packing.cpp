@@ -31,6 +31,7 @@ void put_node(ByteWriter& out, const Node& node) {
   out.write(static_cast<std::int32_t>(node.mesh));
   out.write(static_cast<std::int32_t>(node.skin));
   out.write(static_cast<std::int32_t>(node.camera));
+  out.write(static_cast<std::uint8_t>(node.fixture));
   put_array(out, node.weights);
 }
 
@@ -110,6 +111,7 @@ std::vector<std::byte> pack(const Scene& scene) {
   out.write(static_cast<std::uint8_t>(scene.space.file_to_krok.has_value()));
   const Quat turn = scene.space.file_to_krok.value_or(Quat::Identity());
   for (int k = 0; k < 4; ++k) out.write(turn.coeffs()[k]);
+  out.write(static_cast<std::uint8_t>(scene.space.up_is_y));
   put_list(out, scene.diagnostics, put_diagnostic);
   return std::move(out.buffer());
 }

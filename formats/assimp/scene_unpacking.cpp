@@ -26,6 +26,7 @@ Node take_node(Parser& in) {
   node.mesh = in.number<std::int32_t>();
   node.skin = in.number<std::int32_t>();
   node.camera = in.number<std::int32_t>();
+  node.fixture = in.number<std::uint8_t>() != 0;
   node.weights = in.array<double>();
   for (const double weight : node.weights)
     in.require(std::isfinite(weight), "a weight is not finite");
@@ -268,6 +269,7 @@ Result<Scene> unpack(std::span<const std::byte> bytes) {
   in.require(!has_metres || metres > 0, "a unit is not positive");
   if (has_metres) scene.space.metres = metres;
   if (has_turn) scene.space.file_to_krok = turn;
+  scene.space.up_is_y = in.number<std::uint8_t>() != 0;
   take_list(in, scene.diagnostics, take_diagnostic);
   in.require(in.at_end(), "there is data after the end");
   link_nodes(in, scene);

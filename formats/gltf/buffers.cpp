@@ -96,6 +96,10 @@ Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Cont
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const BufferEntry& entry = entries[i];
     std::span<const std::byte> bytes;
+    if (entry.fallback && !entry.has_uri) {
+      buffers.views.emplace_back();
+      continue;
+    }
     if (!entry.has_uri) {
       if (!container.binary || i != 0) {
         return Error("gltf-buffer", fmt::format("buffer {} has no data: no URI, and not the GLB's "

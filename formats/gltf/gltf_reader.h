@@ -9,11 +9,14 @@
 #include "nodes/scene.h"
 
 // Reads glTF 2.0, as JSON (.gltf) or binary (.glb). Safe for untrusted input: every offset, count
-// and index is checked before use, and memory is proportional to the input.
+// and index is checked before use, and memory is proportional to the input. Quantised data
+// (KHR_mesh_quantization) and compressed data (EXT_meshopt_compression, KHR_draco_mesh_compression)
+// are unpacked.
 //
 // Codes: gltf-container (GLB structure), gltf-json, gltf-version, gltf-extension (required but not
-// supported), gltf-buffer, gltf-accessor, gltf-value (not finite), gltf-node, gltf-mesh, gltf-skin,
-// gltf-animation, gltf-structure (wrong types or missing properties), gltf-too-large.
+// supported), gltf-buffer, gltf-compression, gltf-accessor, gltf-value (not finite), gltf-node,
+// gltf-mesh, gltf-skin, gltf-animation, gltf-structure (wrong types or missing properties),
+// gltf-too-large.
 
 namespace krok::gltf {
 

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <span>
+#include <tuple>
 
 #include "core/json_internal.h"
 
@@ -89,12 +92,15 @@ Status check_asset(const Json& json) {
   return {};
 }
 
-// Extensions that affect appearance but not geometry.
-bool is_harmless(std::string_view extension) {
-  constexpr std::array kPrefixes = {"KHR_materials_", "KHR_texture_", "EXT_texture_",
-                                    "MSFT_texture_",  "KHR_lights_",  "EXT_lights_",
-                                    "KHR_xmp",        "MSFT_lod"};
-  return extension == "KHR_mesh_quantization" ||
+constexpr std::string_view kMeshopt = "EXT_meshopt_compression";
+constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
+
+// Extensions that are read, or affect appearance but not geometry.
+bool is_supported(std::string_view extension) {
+  constexpr std::array kPrefixes = {"KHR_materials_", "KHR_texture_",         "EXT_texture_",
+                                    "MSFT_texture_",  "KHR_lights_",          "EXT_lights_",
+                                    "KHR_xmp",        "KHR_techniques_webgl", "MSFT_lod"};
+  return extension == "KHR_mesh_quantization" || extension == kMeshopt || extension == kDraco ||
          std::any_of(kPrefixes.begin(), kPrefixes.end(),
                      [&](const char* prefix) { return extension.starts_with(prefix); });
 }
@@ -104,13 +110,86 @@ Status check_extensions(const Json& json) {
   if (required == json.end() || !required->is_array()) return {};
   for (const Json& extension : *required) {
     const std::string name = extension.is_string() ? extension.get<std::string>() : "?";
-    if (is_harmless(name)) continue;
+    if (is_supported(name)) continue;
     return Error("gltf-extension",
                  fmt::format("the file requires the extension {}, which is not supported",
                              name.substr(0, 80)),
                  "export it without that extension (decompress compressed meshes first)");
   }
   return {};
+}
+
+// An extension of an object, if it has it.
+const Json* extension_of(const Json& object, std::string_view extension) {
+  const auto all = object.is_object() ? object.find("extensions") : object.end();
+  if (!object.is_object() || all == object.end() || !all->is_object()) return nullptr;
+  const auto found = all->find(extension);
+  return found == all->end() || !found->is_object() ? nullptr : &*found;
+}
+
+// The entries of a list of the file; none if it has no such list.
+std::span<const Json> entries_of(const Json& object, const char* list_name) {
+  const auto list = object.is_object() ? object.find(list_name) : object.end();
+  if (!object.is_object() || list == object.end() || !list->is_array()) return {};
+  return list->get_ref<const Json::array_t&>();
+}
+
+// An unsigned integer; `otherwise` if there is none, an error if it is something else.
+Result<std::uint64_t> unsigned_member(const Json& object, const char* name,
+                                      std::optional<std::uint64_t> otherwise = {}) {
+  const auto found = object.find(name);
+  if (found == object.end() && otherwise) return *otherwise;
+  if (found != object.end() && found->is_number_unsigned()) return found->get<std::uint64_t>();
+  return Error("gltf-structure",
+               fmt::format("a compressed buffer view or primitive has no valid '{}'", name));
+}
+
+Result<std::vector<PackedView>> read_packed_views(const Json& json) {
+  std::vector<PackedView> all;
+  const auto views = entries_of(json, "bufferViews");
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Json* source = extension_of(views[i], kMeshopt);
+    if (source == nullptr) continue;
+    PackedView& packed = all.emplace_back();
+    packed.view = i;
+    packed.mode = text_member(*source, "mode");
+    packed.filter = text_member(*source, "filter");
+    for (const auto& [name, value, otherwise] :
+         {std::tuple("buffer", &packed.buffer, std::optional<std::uint64_t>()),
+          {"byteOffset", &packed.offset, 0},
+          {"byteLength", &packed.length, {}},
+          {"byteStride", &packed.stride, {}},
+          {"count", &packed.count, {}}}) {
+      const auto read = unsigned_member(*source, name, otherwise);
+      if (!read) return read.error();
+      *value = *read;
+    }
+  }
+  return all;
+}
+
+Result<std::vector<PackedPrimitive>> read_packed_primitives(const Json& json) {
+  std::vector<PackedPrimitive> all;
+  const auto meshes = entries_of(json, "meshes");
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const auto primitives = entries_of(meshes[m], "primitives");
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      const Json* source = extension_of(primitives[p], kDraco);
+      if (source == nullptr) continue;
+      PackedPrimitive& packed = all.emplace_back();
+      packed.mesh = m;
+      packed.primitive = p;
+      const auto view = unsigned_member(*source, "bufferView");
+      if (!view) return view.error();
+      packed.view = *view;
+      const auto attributes = source->find("attributes");
+      if (attributes == source->end() || !attributes->is_object()) continue;
+      for (const auto& [name, id] : attributes->items()) {
+        if (id.is_number_unsigned()) packed.attributes[name] = id.get<std::uint64_t>();
+      }
+    }
+  }
+  return all;
 }
 
 Result<std::vector<BufferEntry>> read_buffers(const Json& json) {
@@ -125,8 +204,9 @@ Result<std::vector<BufferEntry>> read_buffers(const Json& json) {
                    fmt::format("buffer {} has no valid byteLength", buffers.size()));
     }
     const auto uri = entry.find("uri");
-    buffers.push_back(
-        {length->get<std::uint64_t>(), uri != entry.end(), text_member(entry, "uri")});
+    const Json* fallback = extension_of(entry, kMeshopt);
+    buffers.push_back({length->get<std::uint64_t>(), uri != entry.end(), text_member(entry, "uri"),
+                       fallback != nullptr && fallback->value("fallback", Json()) == true});
   }
   return buffers;
 }
@@ -282,10 +362,23 @@ Result<ParsedJson> parse_json(const Container& container) {
   auto buffers = read_buffers(json);
   if (!buffers) return buffers.error();
   result.buffers = std::move(*buffers);
+  for (const Json& node : entries_of(json, "nodes")) {
+    result.lights.push_back(extension_of(node, "KHR_lights_punctual") != nullptr);
+  }
+  auto views = read_packed_views(json);
+  if (!views) return views.error();
+  result.packed_views = std::move(*views);
+  auto primitives = read_packed_primitives(json);
+  if (!primitives) return primitives.error();
+  result.packed_primitives = std::move(*primitives);
   result.material_names = names_of(json, "materials");
   result.target_names = read_target_names(json);
   result.cameras = read_cameras(json);
 
+  // Those of packed primitives have no buffer view, which tinygltf refuses.
+  for (const PackedPrimitive& packed : result.packed_primitives) {
+    json["meshes"][packed.mesh]["primitives"][packed.primitive].erase("indices");
+  }
   result.look = take_parts(json, {"materials", "textures", "images", "samplers"});
   const Json used = used_parts(json);
   json = Json();

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,22 @@ struct BufferEntry {
   std::uint64_t byte_length = 0;
   bool has_uri = false;
   std::string uri;
+  bool fallback = false;  // EXT_meshopt_compression: without data where all its views are packed
+};
+
+// A buffer view in EXT_meshopt_compression. Its values are not checked.
+struct PackedView {
+  std::size_t view = 0;
+  std::uint64_t buffer = 0, offset = 0, length = 0;  // the packed bytes
+  std::uint64_t stride = 0, count = 0;               // of what they unpack to
+  std::string mode, filter;
+};
+
+// A primitive in KHR_draco_mesh_compression. Its values are not checked.
+struct PackedPrimitive {
+  std::size_t mesh = 0, primitive = 0;
+  std::uint64_t view = 0;                           // buffer view of the packed bytes
+  std::map<std::string, std::uint64_t> attributes;  // identifiers in the packed mesh
 };
 
 struct CameraEntry {
@@ -42,6 +59,9 @@ struct ParsedJson {
   nlohmann::json look;  // an object: the file's materials, textures, images and samplers
   std::vector<CameraEntry> cameras;
   std::vector<std::vector<std::string>> target_names;  // [meshes], may be empty
+  std::vector<bool> lights;  // [nodes], whether they carry a light (KHR_lights_punctual)
+  std::vector<PackedView> packed_views;
+  std::vector<PackedPrimitive> packed_primitives;
 };
 
 // A string member; empty if there is none.

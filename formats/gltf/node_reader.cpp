@@ -41,7 +41,8 @@ Status read_transform(const tinygltf::Node& source, std::size_t index, Node& nod
   return {};
 }
 
-Status take_nodes(const tinygltf::Model& model, Scene& scene) {
+Status take_nodes(const ParsedJson& parsed, Scene& scene) {
+  const tinygltf::Model& model = parsed.model;
   for (std::size_t i = 0; i < model.nodes.size(); ++i) {
     const tinygltf::Node& source = model.nodes[i];
     Node& node = scene.nodes.emplace_back();
@@ -51,6 +52,7 @@ Status take_nodes(const tinygltf::Model& model, Scene& scene) {
     node.skin = source.skin;
     node.camera = source.camera;
     node.weights = source.weights;
+    node.fixture = i < parsed.lights.size() && parsed.lights[i];
     const std::string name = label("node", i, node.name);
     if (node.mesh != -1 && !exists(node.mesh, model.meshes.size())) {
       return Error("gltf-node",
@@ -61,8 +63,10 @@ Status take_nodes(const tinygltf::Model& model, Scene& scene) {
                    fmt::format("{} has skin {}, which does not exist", name, node.skin));
     }
     if (node.camera != -1 && !exists(node.camera, scene.cameras.size())) {
-      return Error("gltf-node",
-                   fmt::format("{} has camera {}, which does not exist", name, node.camera));
+      warn(
+          scene.diagnostics, "gltf-camera",
+          fmt::format("{} has camera {}, which does not exist; it is left out", name, node.camera));
+      node.camera = -1;
     }
     if (auto read = read_transform(source, i, node); !read) return read;
   }
@@ -146,10 +150,10 @@ Status read_scene(const tinygltf::Model& model, Scene& scene) {
 
 }  // namespace
 
-Status read_nodes(const tinygltf::Model& model, Scene& scene) {
-  if (Status status = take_nodes(model, scene); !status) return status;
+Status read_nodes(const ParsedJson& parsed, Scene& scene) {
+  if (Status status = take_nodes(parsed, scene); !status) return status;
   if (Status status = link_nodes(scene.nodes); !status) return status;
-  return read_scene(model, scene);
+  return read_scene(parsed.model, scene);
 }
 
 }  // namespace krok::gltf

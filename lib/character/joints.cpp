@@ -46,9 +46,9 @@ class Groups {
 // What nodes and their descendants contain.
 struct Subtrees {
   std::vector<char> skinned;   // a mesh with a skin
-  std::vector<char> laden;     // a mesh or a camera
+  std::vector<char> laden;     // a mesh, a camera or a light
   std::vector<char> animated;  // a node that an animation moves
-  std::vector<char> useful;    // something other than cameras
+  std::vector<char> useful;    // something other than cameras and lights
 };
 
 std::vector<char> animated_nodes(const Scene& scene) {
@@ -74,8 +74,9 @@ Subtrees look_at_subtrees(const Scene& scene, const std::vector<int>& order) {
     char& laden = result.laden[at(*node)];
     char& useful = result.useful[at(*node)];
     skinned = one.mesh >= 0 && one.skin >= 0;
-    laden = one.mesh >= 0 || one.camera >= 0;
-    useful = one.camera < 0 && (one.children.empty() || one.mesh >= 0);
+    const bool equipment = one.camera >= 0 || one.fixture;
+    laden = one.mesh >= 0 || equipment;
+    useful = !equipment && (one.children.empty() || one.mesh >= 0);
     for (const int child : one.children) {
       skinned |= result.skinned[at(child)];
       laden |= result.laden[at(child)];

@@ -25,14 +25,14 @@ struct Joints {
 // Selects one tree with one root.
 //
 // With skins: their joints, the nodes between these up to the lowest common ancestor, and
-// descendants that are animated or carry no mesh or camera (ends of bones, sockets, props). Skins
-// belong to one skeleton if they share a joint, if the joints of one are below those of the other,
-// or if their common ancestor has no skinned mesh. Of several skeletons the one with the most
-// joints is selected, or the one of the skin given by `skin` (its name, or its number from 0);
+// descendants that are animated or carry no mesh, camera or light (ends of bones, sockets, props).
+// Skins belong to one skeleton if they share a joint, if the joints of one are below those of the
+// other, or if their common ancestor has no skinned mesh. Of several skeletons the one with the
+// most joints is selected, or the one of the skin given by `skin` (its name, or its number from 0);
 // either is reported in `diagnostics` (code scene-skeletons).
 //
-// Without skins: the animated nodes and their descendants without a mesh or camera; without
-// animations all nodes of the displayed scene except cameras.
+// Without skins: the animated nodes and their descendants without a mesh, camera or
+// light; without animations all nodes of the displayed scene except cameras and lights.
 //
 // Joints have the order of the skin, if it lists all of them with parents first, otherwise depth
 // first. Codes: scene-skeleton (there is none), scene-skin (no skin of that name), scene-joints

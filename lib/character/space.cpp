@@ -12,6 +12,8 @@ namespace krok::character {
 
 namespace {
 
+constexpr const char* kFromFile = "specified by the file format or header";
+
 Unit unit_of(double metres) {
   for (const char* name : {"m", "dm", "cm", "mm", "in", "ft"}) {
     const Unit unit = *parse_unit(name);
@@ -35,7 +37,7 @@ void take_axes(const nodes::Space& space, Conventions& found) {
   found.up = found.reference_up = nearest(back * Vec3::UnitY());
   found.forward = found.reference_forward = nearest(back * Vec3::UnitZ());
   found.up_confidence = found.forward_confidence = Confidence::certain;
-  found.up_reason = found.forward_reason = "specified by the file format or header";
+  found.up_reason = found.forward_reason = kFromFile;
 }
 
 }  // namespace
@@ -63,10 +65,14 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
   if (space.metres) {
     found.unit = unit_of(*space.metres);
     found.unit_confidence = Confidence::certain;
-    found.unit_reason = "specified by the file format or header";
+    found.unit_reason = kFromFile;
   }
   if (space.file_to_krok) take_axes(space, found);
-  apply_given(given, found);
+  GivenConventions known = given;
+  const bool up_from_file = space.up_is_y && !given.up && !space.file_to_krok;
+  if (up_from_file) known.up = Direction::plus_y;
+  apply_given(known, found);
+  if (up_from_file) found.up_reason = kFromFile;
   return found;
 }
 

@@ -195,7 +195,10 @@ void Evaluator::find_joints() {
     for (const int joint : one.joints) is_joint[static_cast<std::size_t>(joint)] = 1;
   }
   if (scene_->skins.empty() && instances_.empty()) {
-    for (std::size_t i = 0; i < nodes.size(); ++i) is_joint[i] = nodes[i].in_scene ? 1 : 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const Node& node = nodes[i];
+      is_joint[i] = node.in_scene && node.camera < 0 && !node.fixture ? 1 : 0;
+    }
   }
   // For each node the index in joints_ of itself or its nearest ancestor that is a joint.
   std::vector<int> nearest(nodes.size(), -1);

@@ -48,7 +48,7 @@ class Evaluator {
   const Primitive& primitive(const Instance& instance) const;
 
   // The nodes that are joints of a skin, or all nodes of the scene if it has neither skins nor
-  // meshes; parents before children.
+  // meshes, except cameras and lights; parents before children.
   const std::vector<int>& joints() const { return joints_; }
   // For each of joints() the index in it of the nearest ancestor that is a joint, or -1.
   const std::vector<int>& joint_parents() const { return joint_parents_; }

@@ -12,9 +12,9 @@
 #include "scene/material.h"
 
 // An imported scene: a tree of nodes with meshes, morph targets, skins, cameras and keyframe
-// animations. Its structure is that of glTF 2.0, to which other formats are mapped. Lights are
-// ignored. Indices are checked by the reader and always in range. Source: Khronos Group, glTF 2.0
-// Specification (ISO/IEC 12113).
+// animations. Its structure is that of glTF 2.0, to which other formats are mapped. Of lights
+// only their nodes are known. Indices are checked by the reader and always in range. Source:
+// Khronos Group, glTF 2.0 Specification (ISO/IEC 12113).
 
 namespace krok::nodes {
 
@@ -37,6 +37,7 @@ struct Node {
   int camera = -1;
   std::vector<double> weights;  // morph target weights; empty: those of the mesh
   bool in_scene = false;        // part of the displayed scene
+  bool fixture = false;         // a light, or what a camera is aimed by: never a joint
 };
 
 struct MorphTarget {
@@ -98,6 +99,7 @@ struct Camera {
 struct Space {
   std::optional<double> metres;      // per unit of length
   std::optional<Quat> file_to_krok;  // rotates to +Y up and the character facing +Z
+  bool up_is_y = false;              // +Y is up for certain, the facing is not specified
 };
 
 enum class Path : unsigned char { translation, rotation, scale, weights };

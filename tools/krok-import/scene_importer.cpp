@@ -110,6 +110,7 @@ Status SceneImporter::find_space() {
   conversions_ = describe_conversions(conventions_, how_);
   GivenConventions said = how_;  // from the user or the file
   if (scene_.space.metres) said.unit = conventions_.unit;
+  if (scene_.space.up_is_y) said.up = conventions_.up;
   if (scene_.space.file_to_krok) {
     said.up = conventions_.up;
     said.forward = conventions_.forward;

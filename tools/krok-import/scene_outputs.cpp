@@ -27,6 +27,10 @@ Status SceneImporter::add_actor() {
   if (!actor) return actor.error();
   report_all(found);
   actor_ = std::move(*actor);
+  if (wants_character() && actor_.model.triangles.empty()) {
+    return missing(scene_.meshes.empty() ? "mesh" : "mesh with triangles", "--character",
+                   "use --model for the skeleton alone");
+  }
   if (Status status = add_model(); !status) return status;
   if (wants_character()) {
     if (Status status = add_whole_character(); !status) return status;
@@ -152,10 +156,9 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     });
     if (!status) return status;
     const FrameSource frames = frames_of(*clip);
-    const double height = height_of(*clip);
-    facts.update(facts_of(frames, height));
+    facts.update(facts_of(frames, roles_));
     facts["output"] = *path;
-    line_ = line_about(path_, frames, height);
+    line_ = line_about(path_, frames, roles_);
   }
   report_all(found);
   facts["source_rate"] = to_json(sampling->rate);

@@ -10,6 +10,7 @@
 
 #include "body/body.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
@@ -293,6 +294,12 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
       if (!scene) return scene.error();
       decode_base_colours(scene->materials, path, context, read.images);
       report_scene(*scene, context);
+      if (scene->animations.size() > 1) {
+        context.warn("figure-clips",
+                     fmt::format("{}: the first of {} animations is drawn, {}", base_name(path),
+                                 scene->animations.size(), shown(scene->animations[0].name)),
+                     "for another, import it with krok-import --clip");
+      }
       const auto source = SceneActor::create(std::move(*scene), bones, read.images);
       if (!source) return Error(source.error()).in_file(path);
       MovingActor actor;

@@ -190,5 +190,25 @@ TEST_F(CharacterImportTest, AActorWithoutMaterialsHasNone) {
   EXPECT_EQ(run_tool("krok-info", {path("hero.character")}).exit_code, 0);
 }
 
+// Cameras, lights or points alone are no character: a file without a vertex would look like one.
+TEST_F(CharacterImportTest, WithoutAMeshIsRefused) {
+  GlbBuilder builder = rig();
+  builder.json["meshes"][0]["primitives"][0]["mode"] = 0;  // points
+  put_glb(builder);
+  const ToolRun points = import({"--character", path("a.character")});
+  EXPECT_EQ(points.exit_code, 2);
+  EXPECT_NE(points.err.find("no mesh with triangles: --character"), std::string::npos)
+      << points.err;
+  builder = rig();
+  builder.json.erase("meshes");
+  builder.json["nodes"][0].erase("mesh");
+  builder.json["nodes"][0].erase("skin");
+  put_glb(builder);
+  const ToolRun none = import({"--character", path("a.character")});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("no mesh: --character"), std::string::npos) << none.err;
+  EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -168,6 +168,84 @@ TEST(Collada, ClipsStayApart) {
   EXPECT_FLOAT_EQ(times[2], 0.4f);
 }
 
+// As some exporters write all their lists: a 0 too many shifts every index.
+TEST(Collada, WhiteSpaceBeforeNumbers) {
+  const MovingRig rig;
+  const Folder folder;
+  std::string text = collada(rig);
+  for (const char* element : {"p", "v", "vcount", "float_array", "Name_array", "matrix",
+                              "translate", "bind_shape_matrix"}) {
+    const std::string begin = std::string("<") + element;
+    for (std::size_t at = text.find(begin); at != std::string::npos;
+         at = text.find(begin, at + 1)) {
+      const char next = text[at + begin.size()];
+      if (next == '>' || next == ' ') text.insert(text.find('>', at) + 1, " \n\t");
+    }
+  }
+  const auto plain = read_or_fail(folder.add("plain.dae", collada(rig)));
+  const auto spaced = read_or_fail(folder.add("spaced.dae", text));
+  expect_weights(spaced, rig.names);
+  ASSERT_EQ(spaced.meshes.size(), 1U);
+  EXPECT_EQ(*spaced.meshes[0].primitives[0].positions, *plain.meshes[0].primitives[0].positions);
+  EXPECT_EQ(spaced.meshes[0].primitives[0].triangles, plain.meshes[0].primitives[0].triangles);
+  ASSERT_EQ(spaced.animations.size(), 1U);
+  for (const std::string& name : rig.names) {
+    expect_near(node_to_world(spaced, name, 0, 0.3), node_to_world(plain, name, 0, 0.3), 1e-6,
+                name);
+  }
+}
+
+TEST(Collada, TheUpAxisIsTheFiles) {
+  const Folder folder;
+  const std::string text = collada(MovingRig());
+  EXPECT_TRUE(read_or_fail(folder.add("with.dae", text)).space.up_is_y);
+  std::string without = text;
+  without.erase(without.find("<up_axis>"), std::string("<up_axis>Z_UP</up_axis>").size());
+  EXPECT_FALSE(read_or_fail(folder.add("without.dae", without)).space.up_is_y);
+}
+
+TEST(Collada, LightsAreNoJoints) {
+  const Folder folder;
+  std::string text = collada(MovingRig());
+  text.insert(text.find("<library_cameras>"),
+              "<library_lights><light id=\"sun-light\"><technique_common><point><color>1 1 1"
+              "</color></point></technique_common></light></library_lights>\n");
+  const std::string scene_begin = "<visual_scene ";
+  text.insert(text.find('>', text.find(scene_begin)) + 1,
+              "<node id=\"sun\" name=\"sun\"><instance_light url=\"#sun-light\"/></node>");
+  const auto scene = read_or_fail(folder.add("lit.dae", text));
+  EXPECT_TRUE(scene.nodes[static_cast<std::size_t>(node_named(scene, "sun"))].fixture);
+  EXPECT_FALSE(scene.nodes[static_cast<std::size_t>(node_named(scene, "Hips"))].fixture);
+}
+
+// A whole file in UTF-16, in both byte orders.
+std::string utf16(const std::string& text, bool big) {
+  std::string out = big ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char c : text) {
+    if (big) out += '\0';
+    out += c;
+    if (!big) out += '\0';
+  }
+  return out;
+}
+
+TEST(Utf16, IsReadAsTheTextThatItIs) {
+  const Folder folder;
+  const MovingRig rig;
+  const auto plain = read_or_fail(folder.add("plain.ase", ase()));
+  for (const bool big : {false, true}) {
+    const auto scene = read_or_fail(folder.add(big ? "big.ase" : "little.ase", utf16(ase(), big)));
+    ASSERT_EQ(scene.meshes.size(), 1U);
+    EXPECT_EQ(*scene.meshes[0].primitives[0].positions, *plain.meshes[0].primitives[0].positions);
+    ASSERT_EQ(scene.animations.size(), 1U);
+    EXPECT_EQ(scene.cameras.size(), 1U);
+    // Its unit and names are found in the text beside Assimp.
+    const auto skinned = read_or_fail(folder.add("body.dae", utf16(collada(rig), big)));
+    expect_weights(skinned, rig.names);
+    EXPECT_EQ(skinned.space.metres, 1.0);
+  }
+}
+
 TEST(Max3ds, ARolledCamera) {
   const Folder folder;
   const auto scene = read_or_fail(folder.add("rolled.3ds", max_3ds(90.0f)));
@@ -252,6 +330,28 @@ TEST(Fbx, LayersThatAreBlendedAreWarnedOf) {
               "AnimationLayer: 2002, \"AnimLayer::More\", \"\" {\n}\n");
   text.insert(text.find("Connections:  {\n") + 16, "C: \"OO\",2002,2000\n");
   EXPECT_TRUE(has_code(read_or_fail(folder.add("two.fbx", text)).diagnostics, "assimp-layers"));
+}
+
+// One take a stack: all are there by name, and one without curves is not lost silently.
+TEST(Fbx, SeveralTakes) {
+  std::string text = FbxSample().text();
+  text.insert(text.find("AnimationStack: 2000"),
+              "AnimationStack: 2100, \"AnimStack::Jump\", \"\" {\n}\n"
+              "AnimationLayer: 2101, \"AnimLayer::JumpBase\", \"\" {\n}\n"
+              "AnimationStack: 2200, \"AnimStack::Empty\", \"\" {\n}\n"
+              "AnimationCurveNode: 3900, \"AnimCurveNode::T\", \"\" {\n}\n"
+              "AnimationCurve: 3901, \"AnimCurve::\", \"\" {\nDefault: 0\nKeyVer: 4008\n"
+              "KeyTime: *2 {\na: 0,46186158000\n}\nKeyValueFloat: *2 {\na: 90,150\n}\n}\n");
+  text.insert(text.find("Connections:  {\n") + 16,
+              "C: \"OO\",2101,2100\nC: \"OO\",3900,2101\n"
+              "C: \"OP\",3900,1000, \"Lcl Translation\"\nC: \"OP\",3901,3900, \"d|Y\"\n");
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("takes.fbx", text));
+  ASSERT_EQ(scene.animations.size(), 2U);
+  std::vector<std::string> names = {scene.animations[0].name, scene.animations[1].name};
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"Jump", "Take 001"}));
+  EXPECT_TRUE(has_code(scene.diagnostics, "assimp-takes"));
 }
 
 TEST(Fbx, TargetsRestWhereTheFileSays) {

@@ -34,6 +34,26 @@ TEST(SceneConventions, GoByTheRolesThatAreKnown) {
   EXPECT_EQ(find_conventions({}, &rig, {}, {}, {}).forward_confidence, Confidence::guess);
 }
 
+// A file that says which axis is up is believed, whatever its skeleton looks like.
+TEST(SceneConventions, TheFilesUpAxisIsNotGuessed) {
+  Rig rig;
+  rig.skeleton = test::human_skeleton();
+  const RoleMap roles = find_roles(rig.skeleton);
+  for (Transform& joint : rig.skeleton.reference) {  // hanging by its feet
+    joint.position.y() *= -1;
+    joint.position.x() *= -1;
+  }
+  EXPECT_EQ(find_conventions({}, &rig, roles, {}, {}).up, Direction::minus_y);
+  nodes::Space space;
+  space.up_is_y = true;
+  const Conventions found = find_conventions(space, &rig, roles, {}, {});
+  EXPECT_EQ(found.up, Direction::plus_y);
+  EXPECT_EQ(found.up_confidence, Confidence::certain);
+  GivenConventions given;
+  given.up = Direction::plus_z;
+  EXPECT_EQ(find_conventions(space, &rig, roles, {}, given).up, Direction::plus_z);
+}
+
 TEST(SceneConventions, AnOddSizeOfAPersonIsTold) {
   const Skeleton skeleton = test::human_skeleton();
   const RoleMap roles = find_roles(skeleton);

@@ -41,6 +41,7 @@ TEST(Joints, WhatLiesBetweenAndBareBelowIsTaken) {
   nodes::Scene scene;
   const int root = add_node(scene, "Scene", -1);
   const int hips = add_node(scene, "Hips", root);
+  scene.nodes[static_cast<std::size_t>(add_node(scene, "Lamp", hips))].fixture = true;
   const int left = add_node(scene, "LeftLeg", hips);
   const int twist = add_node(scene, "LeftTwist", left);
   const int foot = add_node(scene, "LeftFoot", twist);

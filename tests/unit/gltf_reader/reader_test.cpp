@@ -123,10 +123,13 @@ TEST(GltfReader, ReadsCamerasAndTheSpaceThatGltfPrescribes) {
   ASSERT_TRUE(asset->space.file_to_krok);
   EXPECT_EQ(asset->space.file_to_krok->w(), 1.0);
 
+  // A node with a camera that does not exist is no reason to refuse the meshes.
   builder.json["nodes"][0]["camera"] = 4;
   asset = gltf::read(builder.glb());
-  ASSERT_FALSE(asset.ok());
-  EXPECT_EQ(asset.error().code, "gltf-node");
+  ASSERT_TRUE(asset.ok()) << asset.error().message;
+  EXPECT_EQ(asset->nodes[0].camera, -1);
+  ASSERT_EQ(asset->diagnostics.size(), 3U);
+  EXPECT_EQ(asset->diagnostics.back().code, "gltf-camera");
 }
 
 TEST(GltfReader, ReadsTangentsOfLengthOne) {
