@@ -101,6 +101,8 @@ class Transfer {
     target_rest_ = options_.target_pose.empty() ? target_stance->pose : options_.target_pose;
     report_.source_frame = source_stance->frame;
     report_.target_frame = target_stance->frame;
+    report_.source_pose = rest_;
+    report_.target_pose = target_rest_;
     if (by_roles) {
       prepare_roles();
     } else if (Status status = prepare_names(); !status) {
@@ -280,7 +282,10 @@ Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, con
   const bool given = options.source_frame || options.target_frame || !options.source_pose.empty() ||
                      !options.target_pose.empty();
   if (same && !given && (!options.scale || *options.scale == same->scale)) {
-    return copy_of(source, target.skeleton, *same, same->scale);
+    auto copied = copy_of(source, target.skeleton, *same, same->scale);
+    copied.report.source_pose = source.skeleton.reference;
+    copied.report.target_pose = target.skeleton.reference;
+    return copied;
   }
   return Transfer(source, source_roles, target, target_roles, options).run();
 }

@@ -76,6 +76,9 @@ struct Report {
   double floor = 0;                 // height of the floor in the result, metres
   std::optional<int> source_frame;  // used as reference pose, if any
   std::optional<int> target_frame;
+  // The poses in which both actors were taken to stand alike: joint_to_world, shape [joints]. As
+  // Options::source_pose and target_pose they give the same alignment for any motion.
+  std::vector<Transform> source_pose, target_pose;
   std::vector<MappedJoint> mapped;    // in the order of the target's joints
   std::vector<int> unused_source;     // joints whose motion is lost, without end sites
   std::vector<int> following_target;  // joints that only follow their parent, without end sites

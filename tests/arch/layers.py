@@ -55,6 +55,7 @@ ALLOWED = {
     "formats/library": {"lib/core", "formats/json"},
     "formats/keys": BASE | {"formats/json"},
     "formats/camera_keys": BASE | {"lib/camera", "formats/json"},
+    "formats/alignment": BASE | {"formats/json"},
     "formats/limits": BASE | {"lib/ik", "formats/json"},
     "formats/ragdoll": BASE | {"lib/ik", "lib/ragdoll", "formats/json"},
     "formats/goals": BASE | {"lib/roles", "lib/motion", "lib/timeline", "lib/ik", "formats/json"},

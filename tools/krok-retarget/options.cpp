@@ -80,17 +80,25 @@ void declare(CommandOptions& command, Options& options) {
   add_map_option(command, options.map, "--map",
                  "Role map (JSON) for input joints whose names do not identify them");
   add_map_option(command, options.onto_map, "--onto-map", "The same for the target's joints");
+  const CommandOption pose = command.add_option(
+      "--reference-pose POSE", options.reference_pose,
+      "Pose of the input that matches the target's reference pose: a frame number, a "
+      "frame of another motion of its skeleton (tpose.anim:0), or auto: its own "
+      "reference pose or, if that is not a standing pose, a T-pose built "
+      "from the skeleton");
+  pose.default_str("auto");
+  const CommandOption onto_pose =
+      command.add_option("--onto-reference-pose POSE", options.onto_reference_pose,
+                         "The same for a target that is a motion");
+  onto_pose.default_str("auto");
   command
-      .add_option("--reference-pose POSE", options.reference_pose,
-                  "Pose of the input that matches the target's reference pose: a frame number, a "
-                  "frame of another motion of its skeleton (tpose.anim:0), or auto: its own "
-                  "reference pose or, if that is not a standing pose, a T-pose built "
-                  "from the skeleton")
-      .default_str("auto");
-  command
-      .add_option("--onto-reference-pose POSE", options.onto_reference_pose,
-                  "The same for a target that is a motion")
-      .default_str("auto");
+      .add_option("--alignment IN.json", options.alignment,
+                  "Poses of both skeletons that match, as --save-alignment wrote them, so that all "
+                  "motions of a pair are retargeted alike")
+      .excludes(pose)
+      .excludes(onto_pose);
+  command.add_option("--save-alignment OUT.json", options.save_alignment,
+                     "Write the poses that were matched");
   command.group("Motion");
   add_choice<krok::retarget::Feet>(
       command, "--feet", options.feet,
@@ -137,6 +145,10 @@ ToolSpec make_spec() {
                    {"krok-retarget --onto child.model walk.anim --ground stairs:rise=17cm,run=29cm "
                     "-o child_walk.anim",
                     "a walk of krok-walk on another skeleton, on the same stairs"},
+                   {"krok-retarget --onto hero.model tpose.anim -o hero_tpose.anim "
+                    "--save-alignment pair.json && krok-retarget --onto hero.model take.anim "
+                    "--alignment pair.json -o hero_take.anim",
+                    "all takes of an actor aligned as in one of them"},
                    {"krok-retarget --onto hero.model motions --out-dir hero_motions",
                     "all motions in a folder"}};
   spec.batch = {io::motion_endings(), always(".anim")};

@@ -19,6 +19,8 @@ struct Options {
   std::string scale;                    // empty: ratio of leg lengths
   std::string reference_pose = "auto";  // auto, a frame, or FILE:FRAME
   std::string onto_reference_pose = "auto";
+  std::string alignment;          // of the two skeletons; empty: none
+  std::string save_alignment;     // empty: none
   std::string ground;             // what io::open_terrain() takes; empty: none
   std::string contacts = "auto";  // of the input's feet, for `ground`
   OrientationEncoding orientation = OrientationEncoding::xyz;

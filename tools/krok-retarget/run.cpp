@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/numbers.h"
+#include "formats/alignment/alignment_format.h"
 #include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
@@ -158,7 +159,7 @@ std::string ground_line(const FollowedFeet& feet) {
 
 // The motion and, on a ground, the contacts of its feet beside it.
 Status write_all(const Clip& clip, const FollowedFeet* followed, const anim::WriteOptions& writing,
-                 ToolContext& context) {
+                 const std::string& alignment_path, const Outcome& outcome, ToolContext& context) {
   OutputSet outputs(context);
   Status status = outputs.add(context.output,
                               [&](OutputFile& file) { return anim::write(clip, writing, file); });
@@ -171,8 +172,27 @@ Status write_all(const Clip& clip, const FollowedFeet* followed, const anim::Wri
       return file.write(keys::write(keys, clip.skeleton, clip.duration()));
     });
   }
+  if (status && !alignment_path.empty()) {
+    const alignment::AlignedPoses poses{outcome.report.source_pose, outcome.report.target_pose};
+    status = outputs.add(alignment_path, [&](OutputFile& file) {
+      return file.write(alignment::write(poses, outcome.source, outcome.target));
+    });
+  }
   if (!status) return status;
   return outputs.finish();
+}
+
+// Both poses from a file.
+Status take_alignment(const std::string& path, const Skeleton& source, const Skeleton& target,
+                      krok::retarget::Options& how, ToolContext& context) {
+  if (path.empty()) return {};
+  const auto file = context.open_input(path);
+  if (!file) return file.error();
+  auto poses = alignment::read(file->text(), source, target);
+  if (!poses) return std::move(poses).error().in_file(path);
+  how.source_pose = std::move(poses->source);
+  how.target_pose = std::move(poses->target);
+  return {};
 }
 
 }  // namespace
@@ -201,6 +221,10 @@ Result<int> run(const Options& options, ToolContext& context) {
     posed = take_pose("--onto-reference-pose", options.onto_reference_pose, target->clip.skeleton,
                       how->target_pose, context);
   }
+  if (posed) {
+    posed =
+        take_alignment(options.alignment, source->skeleton, target->clip.skeleton, *how, context);
+  }
   if (!posed) return posed.error();
 
   auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, *how);
@@ -225,7 +249,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   writing.orientation = options.orientation;
   writing.jobs = context.jobs;
   const FollowedFeet* feet = followed ? &*followed : nullptr;
-  if (Status status = write_all(clip, feet, writing, context); !status) return status.error();
+  if (Status status = write_all(clip, feet, writing, options.save_alignment, outcome, context);
+      !status)
+    return status.error();
 
   context.report.result = to_json(outcome);
   if (followed) context.report.result["ground"] = ground_json(*followed);

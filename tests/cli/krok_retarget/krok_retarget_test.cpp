@@ -108,6 +108,53 @@ TEST_F(KrokRetarget, TheReportHoldsTheSame) {
   EXPECT_TRUE(found);
 }
 
+// The alignment of one take for another whose own would be another: each joint keeps the same
+// offset from its source in both, and what was saved gives the same bytes for the take itself.
+TEST_F(KrokRetarget, ASavedAlignmentIsThatOfTheTake) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  const std::vector<std::string> first = {"walk.anim", "--onto",           "hero.model",  "--feet",
+                                          "free",      "--reference-pose", "walk.anim:7", "-o"};
+  auto arguments = first;
+  arguments.insert(arguments.end(), {"saved.anim", "--save-alignment", "pair.json"});
+  const auto saved = retarget(arguments);
+  ASSERT_EQ(saved.exit_code, 0) << saved.err;
+  const auto again = retarget({"walk.anim", "--onto", "hero.model", "--feet", "free", "--alignment",
+                               "pair.json", "-o", "again.anim"});
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  Clip other = walk_;
+  for (Quatf& q : other.orientations) q = Quatf(Eigen::AngleAxisf(0.7f, Vec3f::UnitY())) * q;
+  write("other.anim", other);
+  ASSERT_EQ(retarget({"other.anim", "--onto", "hero.model", "--feet", "free", "--alignment",
+                      "pair.json", "-o", "turned.anim"})
+                .exit_code,
+            0);
+  const Clip one = read("saved.anim"), two = read("again.anim"), turned = read("turned.anim");
+  ASSERT_EQ(one.positions.size(), two.positions.size());
+  for (std::size_t i = 0; i < one.positions.size(); ++i) {
+    ASSERT_EQ(one.positions[i], two.positions[i]);
+    ASSERT_EQ(one.orientations[i].coeffs(), two.orientations[i].coeffs());
+  }
+  const auto hand = static_cast<std::size_t>(one.skeleton.find("LeftHand"));
+  const Quatf offset = walk_.orientations[hand].conjugate() * one.orientations[hand];
+  const Quatf other_offset = other.orientations[hand].conjugate() * turned.orientations[hand];
+  EXPECT_LT(offset.angularDistance(other_offset), 1e-3f);
+  // Of other skeletons, or beside another pose, it is refused.
+  Clip stranger;
+  stranger.skeleton = test::human_skeleton();
+  stranger.skeleton.names[3] = "Thorax";
+  write("stranger.anim", stranger);
+  const auto wrong = retarget(
+      {"walk.anim", "--onto", "stranger.anim", "--alignment", "pair.json", "-o", "x.anim"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("[alignment-joint]"));
+  EXPECT_THAT(wrong.err, HasSubstr("pair.json:"));
+  EXPECT_EQ(retarget({"walk.anim", "--onto", "hero.model", "--alignment", "pair.json",
+                      "--reference-pose", "3", "-o", "x.anim"})
+                .exit_code,
+            2);
+  EXPECT_FALSE(std::filesystem::exists(path("x.anim")));
+}
+
 TEST_F(KrokRetarget, FeetCanBeLeftFree) {
   write("hero.model", test::tube_model(test::human_skeleton(1.2)));
   const auto run =
