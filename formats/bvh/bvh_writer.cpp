@@ -1,4 +1,5 @@
 #include "formats/bvh/bvh_writer.h"
+#include "formats/bvh/unit_mark.h"
 
 #include <fmt/format.h>
 
@@ -196,8 +197,8 @@ class Writer {
   }
 
   void write_motion_header() {
-    text_ +=
-        fmt::format("MOTION\nFrames: {}\nFrame Time: {}\n", clip_.frame_count(), frame_time_text());
+    text_ += fmt::format("MOTION\nFrames: {}\nFrame Time: {}{}\n", clip_.frame_count(),
+                         frame_time_text(), unit_mark(options_.unit_metres));
   }
 
   // Enough digits that 1 / frame time gives the same rate; at least ten, for readers that snap.

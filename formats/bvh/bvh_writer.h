@@ -14,7 +14,8 @@ struct WriteOptions {
   // characters; gimbal lock occurs at +-90 degrees of the middle angle, the rotation about x.
   EulerOrder order = {Axis::z, Axis::x, Axis::y};
 
-  // Length unit of the file. BVH does not store it; most readers expect centimetres.
+  // Length unit of the file; most readers expect centimetres. BVH does not store it, see
+  // unit_mark.h for how this project finds it again.
   double unit_metres = 0.01;
 
   // Decimals of angles (degrees) and of lengths in centimetres; other units get more or fewer for

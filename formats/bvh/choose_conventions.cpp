@@ -11,6 +11,7 @@
 #include "formats/bvh/angle_unit_internal.h"
 #include "formats/bvh/frame_rate.h"
 #include "formats/bvh/position_choice.h"
+#include "formats/bvh/unit_mark.h"
 
 namespace krok::bvh {
 
@@ -24,7 +25,7 @@ class ConventionChooser {
       : file_(file), hierarchy_(hierarchy), capture_(capture) {}
 
   Result<ChosenConventions> choose() {
-    choose_rate();
+    if (Status status = choose_rate(); !status) return status.error();
     const SampleRows samples = sample_rows();
     report_exporter(samples);
     choose_angles(samples);
@@ -68,24 +69,37 @@ class ConventionChooser {
     capture_.diagnostics.push_back(std::move(diagnostic));
   }
 
-  void choose_rate() {
+  Status choose_rate() {
     double& rate = capture_.clip.rate;
     if (file_.options.rate) {
       rate = *file_.options.rate;
       capture_.rate = {readable(rate), "as given", Confidence::certain};
-      return;
+      return {};
     }
-    const PrintedRate printed =
-        rate_of_frame_time(file_.header.frame_time_text, file_.header.frame_time);
+    PrintedRate printed = rate_of_frame_time(file_.header.frame_time_text, file_.header.frame_time);
     rate = printed.rate;
+    if (mark()) {  // krok-export prints all digits of any rate
+      printed.few_digits = printed.unusual = printed.also_ntsc = false;
+      printed.reason = "as krok-export wrote it";
+    }
     const bool doubtful = printed.few_digits || printed.unusual;
     capture_.rate = {readable(rate), printed.reason,
-                     doubtful ? Confidence::guess : Confidence::certain};
+                     doubtful            ? Confidence::guess
+                     : printed.also_ntsc ? Confidence::likely
+                                         : Confidence::certain};
+    if (printed.unusual && file_.options.strictness == Strictness::strict) {
+      Error error("bvh-rate",
+                  fmt::format("{} frames per second: {}", readable(rate), printed.reason),
+                  "set the rate with --fps N");
+      error.where = locate(file_.text, file_.header.frame_time_offset, file_.file_name);
+      return error;
+    }
     report(doubtful ? Severity::warning : Severity::note, "bvh-rate",
            fmt::format("{} frames per second: {}", readable(rate), printed.reason),
            doubtful ? "set the rate with --fps N if this is wrong" : "",
            doubtful ? locate(file_.text, file_.header.frame_time_offset, file_.file_name)
                     : Location());
+    return {};
   }
 
   // Up to kMaxSamples complete rows, evenly over the file.
@@ -138,6 +152,24 @@ class ConventionChooser {
            "use --angles radians if they are");
   }
 
+  // The unit, if this project wrote the file.
+  std::optional<Unit> mark() const {
+    const std::size_t end_of_number =
+        file_.header.frame_time_offset + file_.header.frame_time_text.size();
+    if (end_of_number > file_.text.size()) return std::nullopt;
+    const std::string_view after = std::string_view(file_.text).substr(end_of_number);
+    return marked_unit(after.substr(0, after.find('\n')));
+  }
+
+  // Axes are detected all the same: a reference pose that lies is turned up, whoever wrote it.
+  void take_mark(Conventions& conventions) const {
+    const auto unit = mark();
+    if (!unit) return;
+    conventions.unit = *unit;
+    conventions.unit_confidence = Confidence::certain;
+    conventions.unit_reason = "marked in the file by krok-export";
+  }
+
   // Unit and axes, from the options or else detected from the data.
   Status detect(const SampleRows& samples, Positions positions) {
     Conventions& conventions = capture_.conventions;
@@ -155,6 +187,7 @@ class ConventionChooser {
       }
       conventions = detect_conventions(skeleton, capture_.roles, sample_positions);
       if (exporter_) apply_exporter(*exporter_, conventions);
+      take_mark(conventions);
     }
     apply_given(file_.options, conventions);
     return {};

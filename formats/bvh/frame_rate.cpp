@@ -99,6 +99,7 @@ PrintedRate printed_rate(std::string_view text, double frame_time) {
       result.snapped
           ? fmt::format("the Frame Time {} s is 1 / {} to the printed digits", text, readable(best))
           : fmt::format("1 / {} s, the Frame Time", text);
+  result.also_ntsc = also_ntsc;
   if (also_ntsc) result.reason += fmt::format("; {} has the same digits", readable(ntsc));
   return result;
 }

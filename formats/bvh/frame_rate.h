@@ -11,6 +11,7 @@ struct PrintedRate {
   double rate = 0;          // frames per second
   bool snapped = false;     // not 1 / frame time as printed
   bool few_digits = false;  // the digits also fit rates half a percent or more away
+  bool also_ntsc = false;   // the digits also fit the NTSC rate beside it
   bool unusual = false;     // below 4 or above 1000 fps; see the reason
   std::string reason;
 };

@@ -55,6 +55,7 @@ class HierarchyParser {
       error.where = locate_(cursor_.word_begin());
       return error;
     }
+    const std::size_t reported = diagnostics_.size();
     join_roots(result_, name_places_, file_name_, diagnostics_);
     if (warnings_ > kMaxWarnings) {
       report_in_file(Severity::warning, "bvh-syntax",
@@ -62,6 +63,12 @@ class HierarchyParser {
                      diagnostics_);
     }
     name_joints(result_, name_places_, text_, file_name_, diagnostics_);
+    if (options_.strictness == Strictness::strict && diagnostics_.size() > reported) {
+      Error error(diagnostics_[reported]);
+      error.severity = Severity::error;
+      error.hint = "without --strict this is a warning";
+      return error;
+    }
     report_zero_bones(result_, file_name_, diagnostics_);
     return std::move(result_);
   }

@@ -15,6 +15,7 @@
 #include "body/surface_binding.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "roles/stature.h"
 
 namespace krok {
 
@@ -140,7 +141,7 @@ Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
               : options.pose == BodyPose::reference ? "reference"
                                                     : fmt::format("frame {}", options.frame);
   if (actor) {
-    body.stature = actor->stature;
+    body.stature = stature_of(skeleton, roles).value_or(Stature{}).metres;
     // Built with spread fingers, so that their surfaces do not merge.
     plan.built = spread_fingers(skeleton, *actor, pose.joint_to_world);
     if (plan.wanted.empty()) plan.wanted = std::move(pose.joint_to_world);

@@ -35,7 +35,7 @@ struct Body {
   Model model;
   bool human = false;       // shaped by human proportions; otherwise by bone lengths
   double volume = 0;        // enclosed by the mesh, cubic metres
-  double stature = 0;       // metres, estimated from the bones; 0 unless human
+  double stature = 0;       // metres, see roles/stature.h; 0 unless human
   std::string pose;         // "reference", "reference, limbs turned aside", "frame 12", ...
   Diagnostics diagnostics;  // notes and warnings
 };

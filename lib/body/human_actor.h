@@ -33,7 +33,7 @@ struct HumanActor {
   int head_top = -1;         // the highest child of the head, or -1
   std::array<Arm, 2> arms;   // left, right
   std::array<Leg, 2> legs;
-  double stature = 0;  // metres, estimated from bone lengths
+  double stature = 0;  // scale of the drawn body: the median of what single bones give, metres
 };
 
 // The landmarks, if the joint roles form a human and a human body fits the bone lengths; nullopt

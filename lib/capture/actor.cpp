@@ -44,19 +44,6 @@ std::optional<NearestAxis> standing_axis(Positions pose, const Landmarks& marks)
   return axis;
 }
 
-// Sum of bone lengths from `top` down to `joint`; 0 if either is missing or `joint` is not below
-// `top`.
-double path_length(const Evidence& evidence, Positions pose, int top, int joint) {
-  double length = 0;
-  if (top < 0) return 0;
-  while (joint >= 0 && joint != top) {
-    const int parent = evidence.skeleton.parents[static_cast<std::size_t>(joint)];
-    if (parent >= 0) length += (at(pose, joint) - at(pose, parent)).norm();
-    joint = parent;
-  }
-  return joint == top && std::isfinite(length) ? length : 0;
-}
-
 }  // namespace
 
 std::optional<double> stretch(Positions pose, const Landmarks& marks) {
@@ -145,38 +132,16 @@ Evidence::Evidence(const Skeleton& s, const RoleMap& r, std::span<const Vec3> sa
   reference_stands = standing_axis(reference, marks);
 }
 
-// Segment lengths over body height after Winter, Biomechanics and Motor Control of Human Movement
-// (leg to the ankle 0.49, arm to the wrist 0.33); the spine from the hips to the head joint is
-// about 0.37.
-double height_in(const Evidence& evidence, Positions pose) {
-  constexpr double kLeg = 0.49;
-  constexpr double kArm = 0.33;
-  constexpr double kSpine = 0.37;
-  const auto& marks = evidence.marks;
-  const auto mean = [](double a, double b) {
-    return a > 0 && b > 0 ? 0.5 * (a + b) : std::max(a, b);
-  };
-  const double leg = mean(path_length(evidence, pose, marks.left_leg, marks.left_foot),
-                          path_length(evidence, pose, marks.right_leg, marks.right_foot));
-  const double spine = path_length(evidence, pose, marks.hips, evidence.roles.joint(Role::head));
-  const double arm =
-      mean(path_length(evidence, pose, marks.left_arm, evidence.roles.joint(Role::left_hand)),
-           path_length(evidence, pose, marks.right_arm, evidence.roles.joint(Role::right_hand)));
-  if (leg > 0 && spine > 0) return (leg + spine) / (kLeg + kSpine);
-  if (leg > 0) return leg / kLeg;
-  if (arm > 0) return arm / kArm;
-  return 0;
-}
-
-double height_of(const Evidence& evidence) {
-  const double height = height_in(evidence, evidence.reference);
-  if (height > 0 || evidence.sample_count == 0) return height;
-  return height_in(evidence, evidence.sample(0));
+std::optional<Stature> stature_of(const Evidence& evidence) {
+  const auto stature = krok::stature_of(evidence.skeleton, evidence.roles, evidence.reference);
+  if (stature || evidence.sample_count == 0) return stature;
+  return krok::stature_of(evidence.skeleton, evidence.roles, evidence.sample(0));
 }
 
 std::optional<Heights> heights_along(const Evidence& evidence, Direction up) {
-  const double height = height_of(evidence);
-  if (!(height > 0) || evidence.marks.hips < 0) return std::nullopt;
+  const auto stature = stature_of(evidence);
+  if (!stature || evidence.marks.hips < 0) return std::nullopt;
+  const double height = stature->metres;
   const Vec3 vertical = direction_vector(up);
   std::vector<double> lows;
   std::vector<double> hips;

@@ -7,6 +7,7 @@
 
 #include "capture/conventions.h"
 #include "roles/roles.h"
+#include "roles/stature.h"
 #include "scene/skeleton.h"
 
 // Body measurements used to detect conventions: body directions, height, and the height of the
@@ -89,12 +90,8 @@ struct Evidence {
   }
 };
 
-// Body height computed from bone lengths, so independent of the pose; 0 if neither leg nor arm is
-// known.
-double height_in(const Evidence& evidence, Positions pose);
-
-// Height from the reference pose; if that is 0, from the first sample.
-double height_of(const Evidence& evidence);
+// From the reference pose; if it has no length there, from the first sample.
+std::optional<Stature> stature_of(const Evidence& evidence);
 
 // Positions along `up` in body heights; `lowest` and `hips` are medians over the samples.
 struct Heights {

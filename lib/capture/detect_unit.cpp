@@ -28,7 +28,8 @@ bool is_sensible(double metres) {
   return metres >= 0.01 && metres <= 1000.0;
 }
 
-void detect_unit_of_actor(double height, bool cmu_names, Conventions& found) {
+void detect_unit_of_actor(const Stature& stature, bool cmu_names, Conventions& found) {
+  const double height = stature.metres;
   constexpr double kUsualHeight = 1.72;
   double best = INFINITY;
   double second = INFINITY;
@@ -44,10 +45,12 @@ void detect_unit_of_actor(double height, bool cmu_names, Conventions& found) {
     }
   }
   const double metres = height * found.unit.metres;
-  const bool clear = second - best > 0.3;
-  if (metres >= 1.45 && metres <= 2.1 && clear) {
+  // Where segments disagree, so do the units that they would give.
+  const double doubt = std::min(stature.uncertainty / height, 1.0);
+  const double margin = second - best;
+  if (metres >= 1.45 && metres <= 2.1 && margin > 0.3 + doubt) {
     found.unit_confidence = Confidence::certain;
-  } else if (metres >= 1.25 && metres <= 2.4 && clear) {
+  } else if (metres >= 1.25 && metres <= 2.4 && margin > 0.3) {
     found.unit_confidence = Confidence::likely;
   }
   if (!is_sensible(metres)) {
@@ -55,7 +58,8 @@ void detect_unit_of_actor(double height, bool cmu_names, Conventions& found) {
         "the character would be {:.3g} m tall; no common unit gives a plausible height", metres);
     return;
   }
-  found.unit_reason = fmt::format("bone lengths fit a person about {:.2f} m tall", metres);
+  found.unit_reason = fmt::format("bone lengths fit a person {:.2f} m tall, within {:.2f} m",
+                                  metres, stature.uncertainty * found.unit.metres);
   if (found.unit.name == "cmu" && cmu_names && metres > 1.2 && metres < 2.2) {
     found.unit_confidence = Confidence::certain;
     found.unit_reason += ", with the joint names of the CMU collection";
@@ -90,8 +94,9 @@ bool has_cmu_names(const Skeleton& skeleton) {
 }  // namespace
 
 void detect_unit(const Evidence& evidence, Conventions& found) {
-  const double height = height_of(evidence);
-  if (height > 0) return detect_unit_of_actor(height, has_cmu_names(evidence.skeleton), found);
+  if (const auto stature = stature_of(evidence)) {
+    return detect_unit_of_actor(*stature, has_cmu_names(evidence.skeleton), found);
+  }
   const double extent = largest_extent(evidence);
   constexpr double kLargest = 10.0;  // metres
   for (const char* name : {"m", "cm", "mm"}) {

@@ -23,71 +23,48 @@ struct Word {
 // Acclaim's bone names (humerus, radius, femur, tibia) stand for the bone's first joint. Some joint
 // names (sternoclavicular, midtarsal, skullbase) are those of H-Anim, ISO/IEC 19774, also used by
 // SmartBody.
-constexpr std::array kSidedWords = {Word{"clavicle", Part::collar},
-                                    Word{"clav", Part::collar},
-                                    Word{"collar", Part::collar},
-                                    Word{"collarbone", Part::collar},
-                                    Word{"scapula", Part::collar},
-                                    Word{"sternoclavicular", Part::collar},
-                                    Word{"acromioclavicular", Part::collar},
-                                    Word{"shoulder", Part::shoulder},
-                                    Word{"shldr", Part::shoulder},
-                                    Word{"shldrbend", Part::upper_arm},
-                                    Word{"upperarm", Part::upper_arm},
-                                    Word{"uparm", Part::upper_arm},
-                                    Word{"uarm", Part::upper_arm},
-                                    Word{"armupper", Part::upper_arm},
-                                    Word{"armup", Part::upper_arm},
-                                    Word{"humerus", Part::upper_arm},
-                                    Word{"arm", Part::arm},
-                                    Word{"forearm", Part::lower_arm},
-                                    Word{"forearmbend", Part::lower_arm},
-                                    Word{"lowerarm", Part::lower_arm},
-                                    Word{"lowarm", Part::lower_arm},
-                                    Word{"loarm", Part::lower_arm},
-                                    Word{"farm", Part::lower_arm},
-                                    Word{"armlower", Part::lower_arm},
-                                    Word{"armlow", Part::lower_arm},
-                                    Word{"elbow", Part::lower_arm},
-                                    Word{"radius", Part::lower_arm},
-                                    Word{"hand", Part::hand},
-                                    Word{"wrist", Part::hand},
-                                    Word{"hip", Part::hip},
-                                    Word{"upperleg", Part::upper_leg},
-                                    Word{"upleg", Part::upper_leg},
-                                    Word{"uleg", Part::upper_leg},
-                                    Word{"legupper", Part::upper_leg},
-                                    Word{"legup", Part::upper_leg},
-                                    Word{"thigh", Part::upper_leg},
-                                    Word{"thighbend", Part::upper_leg},
-                                    Word{"femur", Part::upper_leg},
-                                    Word{"leg", Part::leg},
-                                    Word{"lowerleg", Part::lower_leg},
-                                    Word{"lowleg", Part::lower_leg},
-                                    Word{"loleg", Part::lower_leg},
-                                    Word{"leglower", Part::lower_leg},
-                                    Word{"leglow", Part::lower_leg},
-                                    Word{"shin", Part::lower_leg},
-                                    Word{"shank", Part::lower_leg},
-                                    Word{"calf", Part::lower_leg},
-                                    Word{"knee", Part::lower_leg},
-                                    Word{"tibia", Part::lower_leg},
-                                    Word{"foot", Part::foot},
-                                    Word{"ankle", Part::foot},
-                                    Word{"toe", Part::toes},
-                                    Word{"toes", Part::toes},
-                                    Word{"toebase", Part::toes},
-                                    Word{"forefoot", Part::toes},
-                                    Word{"midtarsal", Part::toes},
-                                    Word{"ball", Part::toes}};
+constexpr std::array kSidedWords = {
+    Word{"clavicle", Part::collar}, Word{"clav", Part::collar}, Word{"collar", Part::collar},
+    Word{"collarbone", Part::collar}, Word{"scapula", Part::collar},
+    Word{"sternoclavicular", Part::collar}, Word{"acromioclavicular", Part::collar},
+    Word{"shoulder", Part::shoulder}, Word{"shldr", Part::shoulder},
+    Word{"shldrbend", Part::upper_arm}, Word{"upperarm", Part::upper_arm},
+    Word{"uparm", Part::upper_arm}, Word{"uarm", Part::upper_arm},
+    Word{"armupper", Part::upper_arm}, Word{"armup", Part::upper_arm},
+    Word{"humerus", Part::upper_arm}, Word{"arm", Part::arm}, Word{"forearm", Part::lower_arm},
+    Word{"forearmbend", Part::lower_arm}, Word{"lowerarm", Part::lower_arm},
+    Word{"lowarm", Part::lower_arm}, Word{"loarm", Part::lower_arm}, Word{"farm", Part::lower_arm},
+    Word{"armlower", Part::lower_arm}, Word{"armlow", Part::lower_arm},
+    Word{"elbow", Part::lower_arm}, Word{"radius", Part::lower_arm}, Word{"hand", Part::hand},
+    Word{"wrist", Part::hand}, Word{"hip", Part::hip}, Word{"upperleg", Part::upper_leg},
+    Word{"upleg", Part::upper_leg}, Word{"uleg", Part::upper_leg},
+    Word{"legupper", Part::upper_leg}, Word{"legup", Part::upper_leg},
+    Word{"thigh", Part::upper_leg}, Word{"thighbend", Part::upper_leg},
+    Word{"femur", Part::upper_leg}, Word{"leg", Part::leg}, Word{"lowerleg", Part::lower_leg},
+    Word{"lowleg", Part::lower_leg}, Word{"loleg", Part::lower_leg},
+    Word{"leglower", Part::lower_leg}, Word{"leglow", Part::lower_leg},
+    Word{"shin", Part::lower_leg}, Word{"shank", Part::lower_leg}, Word{"calf", Part::lower_leg},
+    Word{"knee", Part::lower_leg}, Word{"tibia", Part::lower_leg}, Word{"foot", Part::foot},
+    Word{"ankle", Part::foot}, Word{"toe", Part::toes}, Word{"toes", Part::toes},
+    Word{"toebase", Part::toes}, Word{"forefoot", Part::toes}, Word{"midtarsal", Part::toes},
+    Word{"ball", Part::toes},
+    // 3ds Max's biped in German
+    Word{"schluesselbein", Part::collar}, Word{"oberarm", Part::upper_arm},
+    Word{"unterarm", Part::lower_arm}, Word{"oberschenkel", Part::upper_leg},
+    Word{"unterschenkel", Part::lower_leg}, Word{"wade", Part::lower_leg}, Word{"fuss", Part::foot},
+    Word{"zeh", Part::toes}, Word{"zehe", Part::toes}};
 
 constexpr std::array kMiddleWords = {
-    Word{"hips", Part::hips},      Word{"hip", Part::hips},        Word{"pelvis", Part::hips},
-    Word{"head", Part::head},      Word{"skull", Part::head},      Word{"lowerback", Part::spine},
-    Word{"skullbase", Part::head}, Word{"upperback", Part::spine}, Word{"back", Part::spine},
-    Word{"abdomen", Part::spine},  Word{"ab", Part::spine},        Word{"waist", Part::spine},
-    Word{"torso", Part::spine},    Word{"thorax", Part::spine},    Word{"tospine", Part::spine},
-    Word{"ribcage", Part::spine}};
+    Word{"hips", Part::hips},         Word{"hip", Part::hips},
+    Word{"pelvis", Part::hips},       Word{"head", Part::head},
+    Word{"skull", Part::head},        Word{"lowerback", Part::spine},
+    Word{"skullbase", Part::head},    Word{"upperback", Part::spine},
+    Word{"back", Part::spine},        Word{"abdomen", Part::spine},
+    Word{"ab", Part::spine},          Word{"waist", Part::spine},
+    Word{"torso", Part::spine},       Word{"thorax", Part::spine},
+    Word{"tospine", Part::spine},     Word{"ribcage", Part::spine},
+    Word{"becken", Part::hips},       Word{"kopf", Part::head},
+    Word{"wirbelsaeule", Part::spine}};
 
 // Matched anywhere in the name.
 constexpr std::array<std::string_view, 27> kHelperWords = {
@@ -130,7 +107,7 @@ bool is_trunk_word(std::string_view text) {
 }
 
 bool is_neck_word(std::string_view text) {
-  return text.starts_with("neck") || text == "lowerneck" || text == "upperneck";
+  return text.starts_with("neck") || text == "lowerneck" || text == "upperneck" || text == "hals";
 }
 
 Part middle_part(std::string_view text) {
@@ -278,11 +255,33 @@ void read_numbered_limbs(const Skeleton& skeleton, std::vector<JointName>& names
   }
 }
 
+// German letters in ASCII, as they are written where there are none: "Fuß" is "Fuss".
+std::string without_umlauts(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kLetters = {
+      {{"\u00e4", "ae"},
+       {"\u00f6", "oe"},
+       {"\u00fc", "ue"},
+       {"\u00df", "ss"},
+       {"\u00c4", "Ae"},
+       {"\u00d6", "Oe"},
+       {"\u00dc", "Ue"}}};
+  std::string result(name);
+  for (const auto& [letter, ascii] : kLetters) {
+    for (std::size_t at = result.find(letter); at != std::string::npos; at = result.find(letter)) {
+      result.replace(at, letter.size(), ascii);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
-std::vector<std::string> name_tokens(std::string_view name) {
-  const std::size_t space = name.find_last_of(":|");
-  if (space != std::string_view::npos && space + 1 < name.size()) name.remove_prefix(space + 1);
+std::vector<std::string> name_tokens(std::string_view full_name) {
+  const std::size_t space = full_name.find_last_of(":|");
+  if (space != std::string_view::npos && space + 1 < full_name.size()) {
+    full_name.remove_prefix(space + 1);
+  }
+  const std::string name = without_umlauts(full_name);
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(name[i]); };
   Tokens tokens;
   bool open = false;

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
@@ -11,67 +9,6 @@
 #include "tools/shared/role_report.h"
 
 namespace krok::cli::import {
-
-namespace {
-
-template <typename Vectors>
-double extent(const Vectors& positions) {
-  if (positions.empty()) return 0;
-  auto low = positions.front().y();
-  auto high = low;
-  for (const auto& position : positions) {
-    low = std::min(low, position.y());
-    high = std::max(high, position.y());
-  }
-  return static_cast<double>(high - low);
-}
-
-double reference_height(const Skeleton& skeleton) {
-  std::vector<Vec3> positions;
-  for (const Transform& joint : skeleton.reference) positions.push_back(joint.position);
-  return extent(positions);
-}
-
-}  // namespace
-
-HeightWatch::HeightWatch(const FrameSource& motion)
-    : joints_(static_cast<std::size_t>(motion.joint_count())),
-      step_(static_cast<std::size_t>(std::max(1, motion.frame_count / 100))),
-      at_rest_(reference_height(motion.skeleton)),
-      heights_((static_cast<std::size_t>(motion.frame_count) + step_ - 1) / step_) {}
-
-FrameSource HeightWatch::watched(const FrameSource& motion) {
-  FrameSource watching = motion;
-  watching.read = [this, read = motion.read](int first, int count, std::span<Vec3f> positions,
-                                             std::span<Quatf> orientations) {
-    Status status = read(first, count, positions, orientations);
-    if (status) see(static_cast<std::size_t>(first), positions);
-    return status;
-  };
-  return watching;
-}
-
-void HeightWatch::see(std::size_t first, std::span<const Vec3f> positions) {
-  if (joints_ == 0) return;
-  const std::size_t end = first + positions.size() / joints_;
-  for (std::size_t i = (first + step_ - 1) / step_; i * step_ < end; ++i) {
-    heights_[i] = extent(positions.subspan((i * step_ - first) * joints_, joints_));
-  }
-}
-
-double HeightWatch::height() const {
-  if (heights_.empty()) return at_rest_;
-  std::vector<double> heights = heights_;
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return *middle;
-}
-
-double height_of(const Clip& clip) {
-  HeightWatch watch(frames_of(clip));
-  watch.see(0, clip.positions);
-  return watch.height();
-}
 
 // Members are added one by one here and below: an initializer list is five times slower, which is
 // noticeable for many small files.
@@ -83,13 +20,13 @@ Json to_json(const Choice& choice) {
   return json;
 }
 
-Json facts_of(const FrameSource& motion, double height) {
+Json facts_of(const FrameSource& motion, const RoleMap& roles) {
   Json facts = object_for(5);
   facts["joints"] = motion.joint_count();
   facts["frames"] = motion.frame_count;
   facts["rate"] = motion.rate;
   facts["duration"] = motion.duration();
-  facts["height"] = height;
+  facts["stature"] = stature_json(stature_of(motion.skeleton, roles));
   return facts;
 }
 
@@ -123,13 +60,13 @@ Json facts_of(const io::CaptureDetails& details) {
   return facts;
 }
 
-Json result_of(const io::OpenedCapture& opened, const FrameSource& motion, double height) {
+Json result_of(const io::OpenedCapture& opened, const FrameSource& motion) {
   const Capture& capture = *opened.capture;
   Json result = object_for(32);
   const auto add = [&](Json facts) {
     for (auto& [name, fact] : facts.get_ref<Json::object_t&>()) result[name] = std::move(fact);
   };
-  add(facts_of(motion, height));
+  add(facts_of(motion, capture.roles));
   add(roles_json(motion.skeleton, capture.roles));
   add(facts_of(capture.conventions));
   result["source_rate"] = to_json(capture.rate);
@@ -147,11 +84,14 @@ void log_roles(const Skeleton& skeleton, const RoleMap& roles, ToolContext& cont
   context.log(text);
 }
 
-std::string line_about(const std::string& input, const FrameSource& motion, double height) {
+std::string line_about(const std::string& input, const FrameSource& motion, const RoleMap& roles) {
   const std::string name = input == "-" ? "standard input" : base_name(input);
-  return fmt::format("{}: {}, {} at {} fps ({} s), height {} m", name,
+  const auto stature = stature_of(motion.skeleton, roles);
+  const double size = stature ? stature->metres : reference_extent(motion.skeleton);
+  return fmt::format("{}: {}, {} at {} fps ({} s), {} {} m", name,
                      counted(motion.joint_count(), "joint"), counted(motion.frame_count, "frame"),
-                     readable(motion.rate), readable(motion.duration(), 2), readable(height, 3));
+                     readable(motion.rate), readable(motion.duration(), 2),
+                     stature ? "stature" : "size", readable(size, 3));
 }
 
 }  // namespace krok::cli::import

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <span>
-#include <vector>
+#include <string>
 
 #include "formats/io/open_capture.h"
+#include "roles/stature.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
 #include "tools/cli/tool.h"

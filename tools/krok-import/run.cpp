@@ -52,8 +52,6 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
                     readable(options.resample)));
     frames = frames_of(*resampled);
   }
-  HeightWatch height(frames);
-  frames = height.watched(frames);
   // The diagnostics and the checksum are complete once all frames were read.
   Provenance provenance;
   const auto complete = [&] {
@@ -65,7 +63,6 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
   };
   OutputSet outputs(context);
   if (context.output.empty()) {
-    height.see(0, (resampled ? *resampled : capture.clip).positions);
     complete();
   } else {
     const anim::WriteOptions writing{.orientation = options.orientation, .jobs = context.jobs};
@@ -83,9 +80,9 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
   if (status) status = outputs.finish();
   if (!status) return status;
 
-  context.report.result = result_of(opened, frames, height.height());
+  context.report.result = result_of(opened, frames);
   context.log(
-      fmt::format("{} -> {}", line_about(options.input, frames, height.height()), outputs.names()));
+      fmt::format("{} -> {}", line_about(options.input, frames, capture.roles), outputs.names()));
   log_roles(frames.skeleton, capture.roles, context);
   return {};
 }

@@ -201,7 +201,7 @@ Result<Description> describe_character(const InputFile& file, const SkeletonOpti
   if (how.mapped) {
     if (Status status = add_skeleton(model.skeleton, how, out); !status) return status.error();
   } else {
-    add_skeleton(model.skeleton, loaded->roles, how.verbose, out);
+    add_skeleton(model.skeleton, loaded->roles, how.verbose, 1, out);
   }
   add_eyes(character, out);
   add_expressions(*loaded, out);

@@ -122,13 +122,11 @@ bool moves_nodes(const nodes::Scene& scene) {
   });
 }
 
-// The skeleton that krok-import uses; empty if a scene has neither skins nor animated nodes, as
-// then any node might be a joint.
+// The skeleton that krok-import uses; empty if there is none.
 Result<std::optional<character::Rig>> find_rig(const nodes::Scene& scene,
                                                const nodes::Evaluator& evaluator,
                                                Diagnostics& found) {
   std::optional<character::Rig> none;
-  if (scene.skins.empty() && !moves_nodes(scene)) return none;
   auto joints = character::choose_joints(scene, evaluator, "", found);
   if (!joints && joints.error().code == "scene-skeleton") return none;
   if (!joints) return joints.error();
@@ -201,6 +199,10 @@ Status add_actor(const nodes::Scene& scene, const std::string& path, const Skele
   Diagnostics found;
   const auto rig = find_rig(scene, *evaluator, found);
   if (!rig) return rig.error();
+  // With neither skins nor animated nodes any node might be a joint, which is no skeleton to tell
+  // of.
+  const bool listed = !scene.skins.empty() || moves_nodes(scene);
+  if (!listed) found.clear();
   for (Diagnostic& diagnostic : found) {
     diagnostic.where.file = path;
     context.diagnose(std::move(diagnostic));
@@ -210,12 +212,14 @@ Status add_actor(const nodes::Scene& scene, const std::string& path, const Skele
     auto map = how.roles((*rig)->skeleton);
     if (!map) return map.error();
     roles = *std::move(map);
-    add_skeleton((*rig)->skeleton, roles, how.verbose, out);
   }
   const int first = scene.animations.empty() ? -1 : 0;
   const auto conventions =
       scene_conventions(scene, *evaluator, *rig ? &**rig : nullptr, roles, first, {});
   if (!conventions) return conventions.error();
+  if (listed && *rig) {
+    add_skeleton((*rig)->skeleton, roles, how.verbose, conventions->unit.metres, out);
+  }
   add_conventions(*conventions, out);
   return add_shown_size(scene, *evaluator, *conventions, out);
 }

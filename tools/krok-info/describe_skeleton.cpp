@@ -22,13 +22,23 @@ std::vector<int> depths_of(const Skeleton& skeleton) {
 
 }  // namespace
 
-void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, Description& out) {
+void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, double metres,
+                  Description& out) {
   const auto ends = std::count(skeleton.end_sites.begin(), skeleton.end_sites.end(), 1);
   std::string joints = grouped(skeleton.joint_count());
   if (ends > 0) joints += fmt::format(", {} of them end sites", ends);
   out.add("joints", joints);
   for (RoleRow& row : role_rows(skeleton, map)) out.add(std::move(row.label), std::move(row.text));
 
+  auto stature = stature_of(skeleton, map);
+  if (stature) {
+    stature->metres *= metres;
+    stature->uncertainty *= metres;
+    out.add("stature",
+            fmt::format("{} m, within {} m, by the lengths of legs, spine and arms",
+                        readable(stature->metres, 3), readable(stature->uncertainty, 2)));
+  }
+  out.json["stature"] = stature_json(stature);
   out.json["joints"] = skeleton.joint_count();
   out.json["end_sites"] = ends;
   out.json.update(roles_json(skeleton, map));
@@ -51,7 +61,7 @@ void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, De
 Status add_skeleton(const Skeleton& skeleton, const SkeletonOptions& options, Description& out) {
   const auto map = options.roles(skeleton);
   if (!map) return map.error();
-  add_skeleton(skeleton, *map, options.verbose, out);
+  add_skeleton(skeleton, *map, options.verbose, 1, out);
   return {};
 }
 

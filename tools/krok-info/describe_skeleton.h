@@ -13,10 +13,11 @@ struct SkeletonOptions {
   bool verbose = false;  // list every joint
 };
 
-// Joints, end sites, body parts and missing humanoid roles. Lists each joint with its role in JSON,
-// and with `verbose` also in the text. An Error if the map does not match the skeleton.
+// Joints, end sites, body parts, missing humanoid roles and stature. Lists each joint with its role
+// in JSON, and with `verbose` also in the text. An Error if the map does not match the skeleton.
 Status add_skeleton(const Skeleton& skeleton, const SkeletonOptions& options, Description& out);
-// The same for known roles.
-void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, Description& out);
+// The same for known roles; `metres` is the skeleton's unit.
+void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, double metres,
+                  Description& out);
 
 }  // namespace krok::cli::info

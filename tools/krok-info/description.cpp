@@ -66,8 +66,6 @@ void add_size(const Eigen::AlignedBox3d& box, const std::string& measured, Descr
   const Vec3 size = box.sizes();
   out.add("size", fmt::format("{} x {} x {} m (X, Y, Z; {})", readable(size.x(), 4),
                               readable(size.y(), 4), readable(size.z(), 4), measured));
-  out.add("height",
-          fmt::format("{} m (top minus bottom on Y; {})", readable(size.y(), 4), measured));
   out.json["size"] = {size.x(), size.y(), size.z()};
   out.json["height"] = size.y();
   out.json["measured"] = measured;

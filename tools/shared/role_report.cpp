@@ -182,4 +182,9 @@ Json roles_json(const Skeleton& skeleton, const RoleMap& map) {
   return json;
 }
 
+Json stature_json(const std::optional<Stature>& stature) {
+  if (!stature) return {};
+  return {{"metres", stature->metres}, {"uncertainty", stature->uncertainty}};
+}
+
 }  // namespace krok::cli

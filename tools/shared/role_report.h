@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "roles/roles.h"
+#include "roles/stature.h"
 #include "scene/skeleton.h"
 #include "tools/cli/report.h"
 
@@ -24,5 +26,8 @@ std::vector<RoleRow> role_rows(const Skeleton& skeleton, const RoleMap& map);
 // "missing_roles", those required for a humanoid; "unknown_joints", those without a role, except
 // end sites; "given_roles", from the user: one role per joint, null where a role was removed.
 Json roles_json(const Skeleton& skeleton, const RoleMap& map);
+
+// {"metres": 1.71, "uncertainty": 0.04}, or null.
+Json stature_json(const std::optional<Stature>& stature);
 
 }  // namespace krok::cli

@@ -87,6 +87,19 @@ TEST_F(BatchList, WhatIsMissingOrDoesNotFitIsSaid) {
   EXPECT_EQ(listing(), Names{"x.bvh"});
 }
 
+// Before the first file is converted, not an hour later; with --keep-going the others are.
+TEST_F(BatchList, MissingInputsOfAManifestAreListedFirst) {
+  put_capture("a.bvh");
+  put("list.tsv", "a.bvh\tx.anim\nnone.bvh\ty.anim\nalso/none.bvh\tz.anim\n");
+  const ToolRun run = import({"--manifest", "list.tsv"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("list.tsv:2:1: error: no such file: none.bvh"));
+  EXPECT_THAT(run.err, HasSubstr("list.tsv:3:1: error: no such file: also/none.bvh"));
+  EXPECT_EQ(listing(), (Names{"a.bvh", "list.tsv"}));
+  EXPECT_EQ(import({"--manifest", "list.tsv", "--keep-going"}).exit_code, 3);
+  EXPECT_EQ(files_below("."), (Names{"a.bvh", "list.tsv", "x.anim"}));
+}
+
 TEST_F(BatchList, TwoResultsOfOneNameAreRefused) {
   put_capture("a/x.bvh");
   put_capture("b/x.bvh");

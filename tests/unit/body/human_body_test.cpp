@@ -52,7 +52,7 @@ TEST(HumanBody, IsAClosedBoundSphereTurnedOutward) {
   expect_valid_body(body);
   EXPECT_TRUE(body.human);
   EXPECT_EQ(body.pose, "reference");
-  EXPECT_NEAR(body.stature, 1.75, 0.01);
+  EXPECT_NEAR(body.stature, 1.75, 0.1);
 }
 
 TEST(HumanBody, HasTheVolumeOfAPerson) {

@@ -89,6 +89,24 @@ TEST(FrameRate, FewDigitsAreDoubtful) {
   EXPECT_FALSE(rate_of("0.0333").few_digits);
 }
 
+// Of two rates that print alike neither is certain.
+TEST(FrameRate, DigitsOfTwoRatesAreLikely) {
+  const std::string row = "0 0 0 0 0 0 0 0 0\n";
+  for (const auto& [time, confidence] : {std::pair("0.033", Confidence::guess),
+                                         {"0.0333", Confidence::likely},
+                                         {"0.0083", Confidence::likely},
+                                         {"0.033333", Confidence::certain},
+                                         {"0.0333667", Confidence::certain}}) {
+    EXPECT_EQ(read_ok(kArm + motion(1, row, time)).rate.confidence, confidence) << time;
+  }
+}
+
+TEST(FrameRate, StrictRefusesARateOfNoCapture) {
+  const std::string row = "0 0 0 0 0 0 0 0 0\n";
+  EXPECT_EQ(read_error(kArm + motion(1, row, "30"), with(Strictness::strict)).code, "bvh-rate");
+  EXPECT_LT(read_ok(kArm + motion(1, row, "30")).clip.rate, 0.05);
+}
+
 TEST(FrameRate, AGivenRateStandsAboveTheFile) {
   ReadOptions options = plain_options();
   options.rate = 60;

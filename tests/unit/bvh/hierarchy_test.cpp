@@ -52,6 +52,21 @@ TEST(Hierarchy, DuplicateNamesBecomeUniqueWithAWarning) {
   EXPECT_TRUE(check(capture.clip).ok());
 }
 
+// What is renamed or joined is an error of the file.
+TEST(Hierarchy, StrictRefusesDuplicateNamesAndSeveralRoots) {
+  const std::string joint = "\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\n";
+  const Error twice =
+      read_error("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nJOINT a" + joint +
+                     "}\n" + motion(1, "1 1\n"),
+                 with(Strictness::strict));
+  EXPECT_EQ(twice.code, "bvh-name-duplicate");
+  EXPECT_EQ(twice.where.line, 6);
+  EXPECT_EQ(read_error("HIERARCHY\nROOT A" + joint + "ROOT B" + joint + motion(1, "1 1\n"),
+                       with(Strictness::strict))
+                .code,
+            "bvh-roots");
+}
+
 TEST(Hierarchy, ANameLikeAMadeUpOneIsKept) {
   const Capture capture = read_ok(
       "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\nEnd Site\n{\nOFFSET 1 0 0\n}\n"

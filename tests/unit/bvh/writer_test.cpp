@@ -180,6 +180,32 @@ TEST(BvhWriter, RatesReadBackExactly) {
   }
 }
 
+// The unit comes back although BVH has no place for it, whatever size the skeleton is; blanks that
+// an editor strips leave a file that is read as before.
+TEST(BvhWriter, TheUnitIsMarked) {
+  Clip clip = arm_clip(2);  // an arm of 3 m that lies along x and does not show axes
+  ReadOptions upright;
+  upright.up = Direction::plus_y;
+  upright.forward = Direction::plus_z;
+  for (const char* unit : {"m", "dm", "cm", "mm", "in", "ft", "cmu"}) {
+    WriteOptions options;
+    options.unit_metres = parse_unit(unit)->metres;
+    std::string text = written(clip, options);
+    const Capture back = read_ok(text, upright);
+    EXPECT_EQ(back.conventions.unit.name, unit);
+    EXPECT_EQ(back.conventions.unit_confidence, Confidence::certain);
+    EXPECT_EQ(back.rate.confidence, Confidence::certain);
+    expect_same_motion(clip, back.clip, 1e-5f);
+    const std::size_t time = text.find("Frame Time");
+    const std::size_t blanks = text.find_first_of(" \t", text.find(' ', text.find(':', time)) + 1);
+    text.erase(blanks, text.find('\n', time) - blanks);
+    EXPECT_NE(read_ok(text, upright).conventions.unit_confidence, Confidence::certain);
+    ReadOptions given = upright;
+    given.unit = Unit{0.5, "given"};
+    EXPECT_EQ(read_ok(written(clip, options), given).conventions.unit.metres, 0.5);
+  }
+}
+
 TEST(BvhWriter, NoFramesAndOneJoint) {
   Clip clip;
   clip.skeleton.add("a", -1, {});

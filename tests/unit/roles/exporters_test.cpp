@@ -262,6 +262,21 @@ const Scheme kSchemes[] = {
      "left_collar=Bip01_L_Clavicle left_upper_arm=Bip01_L_UpperArm left_lower_arm=Bip01_L_Forearm "
      "left_hand=Bip01_L_Hand left_fingers=Bip01_L_Finger0 left_upper_leg=Bip01_L_Thigh "
      "left_lower_leg=Bip01_L_Calf left_foot=Bip01_L_Foot left_toes=Bip01_L_Toe0"},
+    {"biped_german",
+     "Bip01 .Bip01_Becken ..Bip01_Wirbelsäule ...Bip01_L_Oberschenkel ....Bip01_L_Wade "
+     ".....Bip01_L_Fuß "
+     "......Bip01_L_Zehe0 ...Bip01_R_Oberschenkel ....Bip01_R_Wade .....Bip01_R_Fuß "
+     "......Bip01_R_Zehe0 "
+     "...Bip01_Wirbelsäule1 ....Bip01_Hals .....Bip01_Kopf .....Bip01_L_Schlüsselbein "
+     "......Bip01_L_Oberarm "
+     ".......Bip01_L_Unterarm ........Bip01_L_Hand .........Bip01_L_Finger0 "
+     ".....Bip01_R_Schlüsselbein "
+     "......Bip01_R_Oberarm .......Bip01_R_Unterarm ........Bip01_R_Hand .........Bip01_R_Finger0",
+     "root=Bip01 hips=Bip01_Becken spine=Bip01_Wirbelsäule chest=Bip01_Hals head=Bip01_Kopf "
+     "left_collar=Bip01_L_Schlüsselbein left_upper_arm=Bip01_L_Oberarm "
+     "left_lower_arm=Bip01_L_Unterarm "
+     "left_hand=Bip01_L_Hand left_fingers=Bip01_L_Finger0 left_upper_leg=Bip01_L_Oberschenkel "
+     "left_lower_leg=Bip01_L_Wade left_foot=Bip01_L_Fuß left_toes=Bip01_L_Zehe0"},
     {"unreal",
      "root .pelvis ..spine_01 ...spine_02 ....clavicle_l .....upperarm_l ......upperarm_twist_01_l "
      "......lowerarm_l .......hand_l ........index_01_l ....clavicle_r .....upperarm_r "
