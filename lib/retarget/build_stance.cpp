@@ -147,9 +147,13 @@ class StanceBuilder {
   }
 
   // Of the 24 rotations by quarter turns the one nearest to the mean of some; none for their sum 0.
+  // None, too, where the mean is not clearly another's (beyond about 65 degrees about one axis): hands
+  // are turned by half a quarter in whole takes.
   static Quat quarter_turns(const Mat3& sum) {
+    constexpr double kClearly = 1.5;
     Mat3 best = Mat3::Identity();
     double most = best.cwiseProduct(sum).sum();
+    if (most > 0) most *= kClearly;
     std::array<int, 3> axes = {0, 1, 2};
     do {
       for (int signs = 0; signs < 8; ++signs) {
@@ -317,7 +321,7 @@ class StanceBuilder {
     return count > 0 ? Vec3(sum / count) : sum;
   }
 
-  // Turns a foot about the ankle's hinge to the pitch that it has where it is lowest.
+  // Turns a foot about the ankle's hinge to the pitch that feet have on the ground.
   void flatten(Role role) {
     const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
     if (foot < 0 || front < 0) return;
@@ -325,20 +329,26 @@ class StanceBuilder {
     const double own = std::asin(std::clamp(now.y() / std::max(now.norm(), 1e-9), -1.0, 1.0));
     const bool known = std::abs(own - kUsualPitch) < kPitchRange;
     if (clip_.frame_count() == 0 && known) return;
-    const double pitch = clip_.frame_count() == 0 ? kUsualPitch : pitch_on_ground(foot, front);
+    const double pitch = clip_.frame_count() == 0 ? kUsualPitch : pitch_on_ground();
     // What of it points aside stays.
     const Vec3 wanted = std::cos(pitch) * kForward + std::sin(pitch) * kUpwards;
     roll(foot, kLeft, now, wanted);
   }
 
-  // Radians; upwards is positive. The ankle is lowest where the heel is on the ground.
-  double pitch_on_ground(int foot, int front) const {
-    std::vector<std::pair<float, double>> frames;  // the ankle's height, and the pitch
-    for (int f = 0; f < clip_.frame_count(); f += step_) {
-      const auto positions = clip_.frame_positions(f);
-      const Vec3 bone = (positions[at(front)] - positions[at(foot)]).cast<double>();
-      const double sine = bone.y() / std::max(bone.norm(), 1e-9);
-      frames.emplace_back(positions[at(foot)].y(), std::asin(std::clamp(sine, -1.0, 1.0)));
+  // Radians; upwards is positive. A foot is flat where ankle and ball are both low: on tiptoe and on
+  // the heel one of them is not. Of both feet together, as a take may hold one of them up.
+  double pitch_on_ground() const {
+    std::vector<std::pair<float, double>> frames;  // the heights of ankle and ball, and the pitch
+    for (const Role role : {Role::left_foot, Role::right_foot}) {
+      const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
+      if (foot < 0 || front < 0) continue;
+      for (int f = 0; f < clip_.frame_count(); f += step_) {
+        const auto positions = clip_.frame_positions(f);
+        const Vec3 bone = (positions[at(front)] - positions[at(foot)]).cast<double>();
+        const double sine = bone.y() / std::max(bone.norm(), 1e-9);
+        frames.emplace_back(positions[at(foot)].y() + positions[at(front)].y(),
+                            std::asin(std::clamp(sine, -1.0, 1.0)));
+      }
     }
     std::ranges::sort(frames);
     frames.resize(1 + static_cast<std::size_t>(kLowest * static_cast<double>(frames.size() - 1)));

@@ -402,7 +402,8 @@ Quat turn_between(const Clip& source, const std::string& joint, const Clip& targ
 }
 
 // How a skeleton is aligned belongs to it, not to what is done in a take: a walk, a part of it with
-// other bends, and one whose left arm is never bent are aligned alike.
+// other bends, one whose left arm is never bent, and one that hops on a leg with a hand turned
+// aside are aligned alike.
 TEST(Retarget, TakesOfASkeletonAreAlignedAlike) {
   const Skeleton heap = human_skeleton();
   Skeleton folded = heap;
@@ -413,7 +414,7 @@ TEST(Retarget, TakesOfASkeletonAreAlignedAlike) {
     const std::string arm = side > 0 ? "LeftShoulder" : "RightShoulder";
     folded = posed(folded, arm, from_rotation_vector(Vec3(0, 0, side * 1.5)));
   }
-  Clip walk = lively_clip(heap, 60), part, stiff = walk;
+  Clip walk = lively_clip(heap, 60), part, stiff = walk, hop = walk;
   part = walk;
   part.resize(0);
   part.resize(12);
@@ -431,8 +432,19 @@ TEST(Retarget, TakesOfASkeletonAreAlignedAlike) {
     local_to_world(heap.parents, local, pose);
     stiff.set_pose(f, pose);
   }
+  for (int f = 0; f < hop.frame_count(); ++f) {
+    hop.get_pose(f, pose);
+    world_to_local(heap.parents, pose, local);
+    const int hand = heap.find("RightHand"), knee = heap.find("LeftLeg");
+    local[at(hand)].orientation =
+        heap.reference_local(hand).orientation * from_rotation_vector(Vec3(0.95, 0.2, 0));
+    local[at(knee)].orientation =
+        heap.reference_local(knee).orientation * from_rotation_vector(Vec3(1.4, 0, 0));
+    local_to_world(heap.parents, local, pose);
+    hop.set_pose(f, pose);
+  }
   std::vector<Clip> made;
-  for (Clip* clip : {&walk, &part, &stiff}) {
+  for (Clip* clip : {&walk, &part, &stiff, &hop}) {
     clip->skeleton = folded;
     auto result =
         transfer(*clip, with_other_axes(human_skeleton(), 6), {.feet = retarget::Feet::free});
@@ -446,6 +458,8 @@ TEST(Retarget, TakesOfASkeletonAreAlignedAlike) {
     EXPECT_LT(angle_between(first, turn_between(part, joint, made[1])), 3 * kRadiansPerDegree)
         << joint;
     EXPECT_LT(angle_between(first, turn_between(stiff, joint, made[2])), 3 * kRadiansPerDegree)
+        << joint;
+    EXPECT_LT(angle_between(first, turn_between(hop, joint, made[3])), 3 * kRadiansPerDegree)
         << joint;
   }
 }
