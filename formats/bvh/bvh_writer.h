@@ -19,7 +19,8 @@ struct WriteOptions {
   double unit_metres = 0.01;
 
   // Decimals of angles (degrees) and of lengths in centimetres; other units get more or fewer for
-  // the same resolution. With 6, a round trip is within 1e-6 m and 1e-6 rad, up to float precision.
+  // the same resolution. With 6, a round trip of a capture is within 5e-6 m (positions are floats,
+  // and angles add up along the limbs).
   int decimals = 6;
 
   // Writes the root's reference position as its OFFSET. Without it the root's OFFSET is 0 0 0,

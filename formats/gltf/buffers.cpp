@@ -42,15 +42,22 @@ std::optional<std::string> decode_percent(const std::string& text) {
 
 // The file's path, if the URI is a relative path inside the folder, with links resolved.
 Result<std::string> path_of_uri(const std::string& uri, const std::string& what,
-                                const std::string& folder) {
+                                const ReadOptions& options) {
   const auto refuse = [&](const char* why) {
     return Error("gltf-buffer", fmt::format("the {} '{}' {}", what, shortened(uri), why),
                  "external files must be inside the file's folder, or embedded (.glb)");
   };
-  if (folder.empty()) return refuse("is an external file, but no folder is given");
+  if (options.folder.empty() && !options.open) {
+    return refuse("is an external file, but no folder is given");
+  }
   const auto decoded = decode_percent(uri);
   if (!decoded) return refuse("is not a valid path");
-  auto path = path_inside(folder, *decoded);
+  if (options.open) {
+    const std::string fault = path_fault(*decoded);
+    if (!fault.empty()) return refuse(fault.c_str());
+    return *decoded;
+  }
+  auto path = path_inside(options.folder, *decoded);
   if (path) return path;
   return Error("gltf-buffer", fmt::format("the {}: {}", what, path.error().message),
                path.error().hint);
@@ -82,11 +89,21 @@ Result<std::vector<unsigned char>> decode_data_uri(const std::string& uri,
   return bytes;
 }
 
-Result<InputFile> open_beside(const std::string& uri, const std::string& what,
-                              const std::string& folder, std::uint64_t most_bytes) {
-  const auto path = path_of_uri(uri, what, folder);
+Result<SideFile> open_beside(const std::string& uri, const std::string& what,
+                             const ReadOptions& options, std::uint64_t most_bytes) {
+  const auto path = path_of_uri(uri, what, options);
   if (!path) return path.error();
-  return InputFile::open(*path, most_bytes);
+  SideFile result{*path, std::nullopt, {}};
+  if (options.open) {
+    auto unpacked = options.open(*path, most_bytes);
+    if (!unpacked) return unpacked.error();
+    result.unpacked = *std::move(unpacked);
+    return result;
+  }
+  auto file = InputFile::open(*path, most_bytes);
+  if (!file) return file.error();
+  result.file = *std::move(file);
+  return result;
 }
 
 Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Container& container,
@@ -113,7 +130,7 @@ Result<Buffers> open_buffers(const std::vector<BufferEntry>& entries, const Cont
       buffers.decoded.push_back(std::move(*decoded));
       bytes = std::as_bytes(std::span(buffers.decoded.back()));
     } else {
-      auto file = open_beside(entry.uri, "buffer", options.folder, bytes_left);
+      auto file = open_beside(entry.uri, "buffer", options, bytes_left);
       if (!file) return file.error();
       buffers.files.push_back(std::move(*file));
       bytes = buffers.files.back().bytes();

@@ -177,10 +177,14 @@ Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options)
   if (!container) return container.error();
   auto parsed = parse_json(*container);
   if (!parsed) return parsed.error();
+  if (!options.unpack && !(parsed->packed_views.empty() && parsed->packed_primitives.empty())) {
+    return Error("gltf-compression", "its meshes are compressed, which is not supported here",
+                 "import it with krok-import --character, or decompress it in another program");
+  }
   auto buffers = open_buffers(parsed->buffers, *container, options);
   if (!buffers) return buffers.error();
   std::uint64_t input_bytes = bytes.size();
-  for (const InputFile& file : buffers->files) input_bytes += file.bytes().size();
+  for (const SideFile& file : buffers->files) input_bytes += file.bytes().size();
   for (const auto unpack : {unpack_meshopt, unpack_draco}) {
     const std::size_t before = buffers->views.size();
     if (Status status = unpack(*parsed, *buffers, decompression_limit(input_bytes)); !status) {
@@ -193,7 +197,9 @@ Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options)
   Accessors accessors(parsed->model, buffers->views, unpacking_limit(input_bytes));
   auto scene = Builder(*parsed, accessors).build();
   if (!scene) return scene;
-  for (const InputFile& file : buffers->files) scene->files.push_back(file.path());
+  for (const SideFile& file : buffers->files) {
+    if (file.file) scene->files.push_back(file.path);
+  }
   if (options.with_materials) read_materials(*parsed, buffers->views, options, *scene);
   return scene;
 }

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "nodes/scene.h"
@@ -24,11 +26,17 @@ struct ReadOptions {
   // Folder of external buffers. Their paths must be relative and stay inside it. Empty: external
   // buffers are an error.
   std::string folder;
+  // Opens such a buffer or image instead, by its path in that folder; for scenes in archives.
+  std::function<Result<std::vector<std::byte>>(const std::string& path, std::uint64_t most_bytes)>
+      open = nullptr;
   std::uint64_t most_bytes = std::uint64_t{4} << 30;  // of the input and all its buffers together
   // Also read Scene::materials, with images from buffers, data URIs and external files (same
   // rules). An unusable image is left out with a warning (gltf-picture), as are properties that
   // Material does not have (gltf-material).
   bool with_materials = false;
+  // Whether compressed data is unpacked; if not, it is an error (gltf-compression). For consumers
+  // of the file itself that cannot.
+  bool unpack = true;
 };
 
 Result<nodes::Scene> read(std::span<const std::byte> bytes, const ReadOptions& options = {});

@@ -90,16 +90,16 @@ Result<std::vector<std::byte>> Images::bytes_of_view(const Json& number) {
 Result<std::shared_ptr<const EncodedImage>> Images::beside(const std::string& uri,
                                                            const std::string& name) {
   if (uri.empty()) return bad_image("it has neither data nor a URI");
-  const auto file = open_beside(uri, "image", options_.folder, beside_left_);
+  const auto file = open_beside(uri, "image", options_, beside_left_);
   if (!file) return file.error();
   std::error_code error;
-  const auto real = std::filesystem::canonical(file->path(), error);
-  const std::string place = error ? file->path() : real.string();
+  const auto real = std::filesystem::canonical(file->path, error);
+  const std::string place = error || options_.open ? file->path : real.string();
   if (const auto known = by_file_.find(place); known != by_file_.end()) return known->second;
   const auto bytes = file->bytes();
   beside_left_ -= std::min<std::uint64_t>(beside_left_, bytes.size());
-  files_.push_back(file->path());
-  return by_file_[place] = made(name, file->path(), {bytes.begin(), bytes.end()});
+  if (file->file) files_.push_back(file->path);
+  return by_file_[place] = made(name, file->path, {bytes.begin(), bytes.end()});
 }
 
 }  // namespace krok::gltf

@@ -21,7 +21,7 @@ class Packer {
   void put_buffers(const Buffers& buffers) {
     std::vector<std::size_t> begins;
     for (const auto& view : buffers.views) begins.push_back(put(view));
-    for (const InputFile& file : buffers.files) packed_.files.push_back(file.path());
+    for (const SideFile& file : buffers.files) packed_.files.push_back(file.path);
     if (!json_.contains("bufferViews")) return;
     for (OrderedJson& view : json_["bufferViews"]) {
       if (!view.is_object()) continue;
@@ -57,7 +57,7 @@ class Packer {
   std::size_t put(std::span<const std::byte> bytes) { return append_aligned(bytes, bin_); }
 
   void put_image(const std::string& uri, OrderedJson& image) {
-    const auto file = open_beside(uri, "image", options_.folder, options_.most_bytes);
+    const auto file = open_beside(uri, "image", options_, options_.most_bytes);
     if (!file) {
       Diagnostic diagnostic = file.error();
       diagnostic.severity = Severity::warning;
@@ -66,7 +66,7 @@ class Packer {
       image["uri"] = kGreyPixel;
       return;
     }
-    packed_.files.push_back(file->path());
+    packed_.files.push_back(file->path);
     const auto bytes = file->bytes();
     const bool is_jpeg =
         bytes.size() > 1 && bytes[0] == std::byte{0xFF} && bytes[1] == std::byte{0xD8};

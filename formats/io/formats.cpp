@@ -23,6 +23,7 @@ constexpr auto kOwnFormats = std::to_array<Format>({
     {.kind = Kind::character, .read_model = read_character},
     {.kind = Kind::glb, .read_scene = read_gltf},
     {.kind = Kind::gltf, .read_scene = read_gltf},
+    {.kind = Kind::zip, .read_scene = read_zipped_gltf},
     {.kind = Kind::fbx, .read_scene = read_through_assimp},
     {.kind = Kind::collada, .read_scene = read_through_assimp},
     {.kind = Kind::smd, .read_scene = read_through_assimp},

@@ -1,9 +1,15 @@
 #include "formats/io/open_scene.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/path_inside.h"
+#include "core/text.h"
 #include "formats/assimp/assimp_reader.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/io/readers_internal.h"
+#include "formats/zip/zip_archive.h"
 
 namespace krok::io {
 
@@ -30,6 +36,42 @@ Result<nodes::Scene> read_gltf(const InputFile& file, Inputs& inputs, bool with_
   options.with_materials = with_materials;
   if (file.path() != "-") options.folder = folder_of(file.path());
   return with_its_files(gltf::read(file.bytes(), options), file, inputs);
+}
+
+Result<nodes::Scene> read_zipped_gltf(const InputFile& file, Inputs& inputs, bool with_materials) {
+  auto archive = zip::Archive::open(file.bytes());
+  if (!archive) return std::move(archive.error()).in_file(file.path());
+  std::vector<std::string> scenes;
+  for (const std::string& name : archive->names()) {
+    const std::string ending = extension(name);
+    if (ending == ".gltf" || ending == ".glb") scenes.push_back(name);
+  }
+  if (scenes.size() != 1) {
+    return Error("zip-scene",
+                 scenes.empty() ? "the archive has no glTF scene (.gltf, .glb)"
+                                : fmt::format("the archive has {} glTF scenes, such as {} and {}",
+                                              scenes.size(), shown(scenes[0]), shown(scenes[1])),
+                 "unpack it and give the file")
+        .in_file(file.path());
+  }
+  constexpr std::uint64_t kSmall = std::uint64_t{256} << 20, kExpansion = 64;
+  std::uint64_t left = kSmall + kExpansion * file.bytes().size();
+  const auto unpack = [&](const std::string& name,
+                          std::uint64_t most) -> Result<std::vector<std::byte>> {
+    auto bytes = archive->read(name, std::min(most, left));
+    if (bytes) left -= bytes->size();
+    return bytes;
+  };
+  const auto bytes = unpack(scenes[0], left);
+  if (!bytes) return Error(bytes.error()).in_file(file.path());
+  const std::size_t slash = scenes[0].rfind('/');
+  const std::string folder = slash == std::string::npos ? "" : scenes[0].substr(0, slash + 1);
+  gltf::ReadOptions options;
+  options.with_materials = with_materials;
+  options.open = [&](const std::string& path, std::uint64_t most) {
+    return unpack(folder + path, most);
+  };
+  return with_its_files(gltf::read(*bytes, options), file, inputs);
 }
 
 Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,

@@ -17,6 +17,8 @@ Result<OpenedCapture> open_asf(const InputFile& file, Inputs& inputs, const Capt
                                bool stream);
 
 Result<nodes::Scene> read_gltf(const InputFile& file, Inputs& inputs, bool with_materials);
+// The one glTF scene in a ZIP archive. Codes: those of zip::Archive and gltf::read, zip-scene.
+Result<nodes::Scene> read_zipped_gltf(const InputFile& file, Inputs& inputs, bool with_materials);
 Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,
                                          bool with_materials);
 

@@ -15,9 +15,8 @@ namespace {
 constexpr std::string_view kHierarchy = "HIERARCHY";
 
 // Other kinds of files that users may pass by mistake, by their first bytes.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kOtherKinds = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kOtherKinds = {
     {{"\x89PNG", "a PNG image"},
-     {"PK\x03\x04", "a ZIP archive"},
      {"\x1F\x8B", "a gzip archive"},
      {"BZh", "a bzip2 archive"},
      {"\xFD"
@@ -152,6 +151,9 @@ bool is_scene(std::string_view content) {
 bool is_pc2(std::string_view content) {
   return content.starts_with(std::string_view("POINTCACHE2\0", 12));
 }
+bool is_zip(std::string_view content) {
+  return content.starts_with("PK\x03\x04");
+}
 bool is_glb(std::string_view content) {
   return content.starts_with("glTF");
 }
@@ -172,6 +174,7 @@ constexpr auto kFormats = std::to_array<Format>({
     {Kind::ragdoll, "ragdoll.json", "Krok bodies and joints (.ragdoll.json)",
      is_json<Kind::ragdoll>},
     {Kind::gltf, "gltf", "a glTF file (.gltf)", is_json<Kind::gltf>},
+    {Kind::zip, "zip", "a ZIP archive", is_zip},
     {Kind::fbx, "fbx", "an FBX file", is_scene<Kind::fbx>},
     {Kind::collada, "dae", "a COLLADA file (.dae)", is_scene<Kind::collada>},
     {Kind::smd, "smd", "a Valve SMD file", is_scene<Kind::smd>},

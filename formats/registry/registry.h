@@ -28,6 +28,7 @@ enum class Kind : unsigned char {
   // scenes: glTF, and what formats/assimp reads
   glb,
   gltf,
+  zip,  // an archive, perhaps of a glTF scene
   fbx,
   collada,
   smd,

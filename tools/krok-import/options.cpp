@@ -27,9 +27,11 @@ Result<std::optional<Direction>> direction_option(const std::string& text, const
 
 void declare_inputs(CommandOptions& command, Options& options) {
   command
-      .add_option("input IN", options.input,
-                  "Motion capture (BVH; Acclaim motion, AMC; Acclaim skeleton, ASF) or character "
-                  "(GLB, glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5); - is standard input")
+      .add_option(
+          "input IN", options.input,
+          "Motion capture (BVH; Acclaim motion, AMC; Acclaim skeleton, ASF) or character "
+          "(GLB, glTF, a ZIP with one of them, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5); - is "
+          "standard input")
       .required();
   command.add_option("--skeleton IN.asf", options.skeleton,
                      "Skeleton of an Acclaim motion; default: the .asf file beside it whose name "

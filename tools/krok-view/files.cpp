@@ -80,7 +80,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
     }
     case Kind::glb: {
       // Parsed only for its errors; the page contains the file itself.
-      if (auto scene = gltf::read(input->bytes()); !scene) {
+      if (auto scene = gltf::read(input->bytes(), {.unpack = false}); !scene) {
         return std::move(scene).error().in_file(path);
       }
       const auto bytes = input->bytes();
@@ -89,7 +89,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
     }
     case Kind::gltf: {
       // A page cannot open external files, so buffers and images are packed.
-      auto packed = gltf::pack_glb(input->bytes(), {.folder = folder_of(path)});
+      auto packed = gltf::pack_glb(input->bytes(), {.folder = folder_of(path), .unpack = false});
       if (!packed) return std::move(packed).error().in_file(path);
       for (Diagnostic& diagnostic : packed->diagnostics) context.diagnose(std::move(diagnostic));
       for (const std::string& beside : packed->files) {
