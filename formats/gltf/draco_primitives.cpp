@@ -130,7 +130,7 @@ std::vector<std::byte> decode(const std::vector<DracoPrimitive>& primitives) {
     out.write(static_cast<std::uint32_t>(mesh.num_points()));
     out.write(static_cast<std::uint32_t>(mesh.num_faces()));
     for (draco::FaceIndex f(0); f < mesh.num_faces(); ++f) {
-      for (const draco::PointIndex corner : mesh.face(f)) out.write(corner.value());
+      for (const auto& corner : mesh.face(f)) out.write(corner.value());
     }
     for (const DracoAttribute& wanted : primitive.attributes) append_attribute(mesh, wanted, out);
   }

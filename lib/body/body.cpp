@@ -115,8 +115,13 @@ Status check_request(const Clip& clip, const BodyOptions& options) {
         "frames count from 0");
   }
   const std::size_t joints = clip.skeleton.names.size();
-  if (joints > 65536) {
-    return Error("body-joints", fmt::format("{} joints, a model has at most 65,536", joints));
+  // The surface is evaluated bone by bone: bones that all meet in one place would take hours and
+  // more memory than there is.
+  constexpr std::size_t kMaxBodyJoints = 2000;
+  if (joints > kMaxBodyJoints) {
+    return Error("body-joints",
+                 fmt::format("{} joints; bodies are made for up to {}", joints, kMaxBodyJoints),
+                 "pictures and pages draw the bones instead with --body none");
   }
   return {};
 }

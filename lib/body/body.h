@@ -46,7 +46,7 @@ struct Body {
 // bones and of their descendants (general_shape.h).
 //
 // Codes: those of check(Clip); body-frame for a frame outside the clip; body-joints for more than
-// 65,536 joints, the limit of a model's influences; body-size for a skeleton so large or small that
+// 2,000 joints; body-size for a skeleton so large or small that
 // coordinates overflow.
 Result<Body> make_body(const Clip& clip, const BodyOptions& options = {});
 

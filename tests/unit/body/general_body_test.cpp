@@ -169,7 +169,7 @@ TEST(GeneralBody, NumbersOutOfBoundsAreRefused) {
   EXPECT_FALSE(make_body(Skeleton(), {}).ok());
 
   Skeleton crowd;
-  for (int j = 0; j <= 65536; ++j) {
+  for (int j = 0; j <= 2000; ++j) {
     crowd.add("j" + std::to_string(j), j - 1, Transform(), false);
   }
   const auto many = make_body(crowd, {});
