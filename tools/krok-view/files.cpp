@@ -80,7 +80,9 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
     }
     case Kind::glb: {
       // Parsed only for its errors; the page contains the file itself.
-      if (auto scene = gltf::read(input->bytes(), {.unpack = false}); !scene) {
+      gltf::ReadOptions as_is;
+      as_is.unpack = false;
+      if (auto scene = gltf::read(input->bytes(), as_is); !scene) {
         return std::move(scene).error().in_file(path);
       }
       const auto bytes = input->bytes();
@@ -89,7 +91,10 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
     }
     case Kind::gltf: {
       // A page cannot open external files, so buffers and images are packed.
-      auto packed = gltf::pack_glb(input->bytes(), {.folder = folder_of(path), .unpack = false});
+      gltf::ReadOptions packing;
+      packing.folder = folder_of(path);
+      packing.unpack = false;
+      auto packed = gltf::pack_glb(input->bytes(), packing);
       if (!packed) return std::move(packed).error().in_file(path);
       for (Diagnostic& diagnostic : packed->diagnostics) context.diagnose(std::move(diagnostic));
       for (const std::string& beside : packed->files) {
