@@ -147,8 +147,8 @@ class StanceBuilder {
   }
 
   // Of the 24 rotations by quarter turns the one nearest to the mean of some; none for their sum 0.
-  // None, too, where the mean is not clearly another's (beyond about 65 degrees about one axis): hands
-  // are turned by half a quarter in whole takes.
+  // None, too, where the mean is not clearly another's (beyond about 65 degrees about one axis):
+  // hands are turned by half a quarter in whole takes.
   static Quat quarter_turns(const Mat3& sum) {
     constexpr double kClearly = 1.5;
     Mat3 best = Mat3::Identity();
@@ -335,8 +335,8 @@ class StanceBuilder {
     roll(foot, kLeft, now, wanted);
   }
 
-  // Radians; upwards is positive. A foot is flat where ankle and ball are both low: on tiptoe and on
-  // the heel one of them is not. Of both feet together, as a take may hold one of them up.
+  // Radians; upwards is positive. A foot is flat where ankle and ball are both low: on tiptoe and
+  // on the heel one of them is not. Of both feet together, as a take may hold one of them up.
   double pitch_on_ground() const {
     std::vector<std::pair<float, double>> frames;  // the heights of ankle and ball, and the pitch
     for (const Role role : {Role::left_foot, Role::right_foot}) {
