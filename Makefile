@@ -14,12 +14,13 @@ BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
   chromium openexr python3-jsonschema python3-numpy liborocos-kdl-dev
 LINT_PACKAGES := clang-tidy
+FUZZ_PACKAGES := afl++
 
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'
 
 .DEFAULT_GOAL := all
 .PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench \
-  golden format format-check lint lint-changed headers install clean
+  fuzz golden format format-check lint lint-changed headers install clean
 
 help:
 	@echo "make demo                   build, then capture -> animated glTF on the samples, see out/demo"
@@ -31,6 +32,8 @@ help:
 	@echo "make deps      install the Debian packages that the build needs and lacks"
 	@echo "make sanitize  the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
 	@echo "make tsan      the tests under ThreadSanitizer"
+	@echo "make fuzz      every reader and many operations under AFL++; MINUTES=60 for all together, of each"
+	@echo "               core; TARGETS='bvh operations' for some of them"
 	@echo "make bench     benchmarks, as ratios against a reference in the same run"
 	@echo "make golden    write golden files that are missing and renew the generated pages; with FORCE=1"
 	@echo "               replace golden files that differ, too: review them as a diff"
@@ -111,6 +114,13 @@ tsan: test-deps
 	cmake --preset tsan $(CMAKE_FLAGS)
 	cmake --build --preset tsan -j $(JOBS)
 	ctest --preset tsan -j $(JOBS)
+
+MINUTES ?= 60
+fuzz: test-deps
+	$(call install-missing,$(FUZZ_PACKAGES))
+	cmake --preset fuzz $(CMAKE_FLAGS)
+	cmake --build --preset fuzz -j $(JOBS)
+	python3 tests/guided/fuzz.py build-fuzz/tests/krok_targets --minutes $(MINUTES) --jobs $(JOBS) $(TARGETS)
 
 bench: CMAKE_FLAGS += -DKROK_BUILD_TESTS=ON -DKROK_BUILD_BENCHMARKS=ON
 bench: test-deps all

@@ -57,17 +57,17 @@ Error error_of(const ChildReport& report, const ChildLimits& limits) {
           fmt::format(
               "Assimp was stopped after {:.4g} seconds, the time limit for a file of this size",
               limits.seconds),
-          hint);
+          "allow more with --limit-time; if that does not help, " + hint);
     case ChildEnd::out_of_memory:
       return Error("assimp-memory",
                    fmt::format("Assimp exceeded {} MiB, the memory limit for a file of this size",
                                limits.memory_bytes >> 20),
-                   hint);
+                   "allow more with --limit-memory; if that does not help, " + hint);
     case ChildEnd::result_too_large:
       return Error("assimp-memory",
-                   fmt::format("the file's content exceeds the memory limit of {} MB",
+                   fmt::format("the file's content exceeds the memory limit of {} MiB",
                                limits.result_bytes >> 20),
-                   hint);
+                   "allow more with --limit-memory; if that does not help, " + hint);
     case ChildEnd::not_started:
       return Error("assimp-start",
                    fmt::format("cannot start a process to read the file: {}", report.what),
@@ -88,11 +88,11 @@ Result<nodes::Scene> read_in_child(const std::vector<MemoryFile>& files, Kind ki
   std::uint64_t size = 0;
   for (const MemoryFile& file : files) size += file.bytes.size();
   ChildLimits limits;
-  limits.seconds =
-      options.most_seconds + options.seconds_per_mebibyte * static_cast<double>(size) / (1 << 20);
-  limits.memory_bytes =
-      options.most_bytes +
-      static_cast<std::uint64_t>(std::max(options.most_expansion, 0.0) * static_cast<double>(size));
+  limits.seconds = options.limits.seconds.value_or(
+      options.most_seconds + options.seconds_per_mebibyte * static_cast<double>(size) / (1 << 20));
+  limits.memory_bytes = options.limits.memory_bytes.value_or(
+      options.most_bytes + static_cast<std::uint64_t>(std::max(options.most_expansion, 0.0) *
+                                                      static_cast<double>(size)));
   limits.result_bytes = limits.memory_bytes;
   const ChildReport report =
       run_in_child([&] { return pack_result(run_assimp(files, kind, options)); }, limits);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/child_process.h"
 #include "core/result.h"
 #include "nodes/scene.h"
 
@@ -27,6 +28,7 @@ struct ReadOptions {
   double most_seconds = 15, seconds_per_mebibyte = 5;
   std::uint64_t most_bytes = std::uint64_t{256} << 20;
   double most_expansion = 64;
+  GivenLimits limits = {};                                 // instead of these
   std::uint64_t most_file_bytes = std::uint64_t{1} << 31;  // Assimp counts bytes in 32 bits
   // Also read Scene::materials, as far as Assimp provides them: colours, alpha, textures. Images
   // are embedded (FBX) or in the file's folder tree, found by the path in the file or by base name.

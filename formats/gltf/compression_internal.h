@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/child_process.h"
 #include "core/result.h"
 #include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/json_text_internal.h"
@@ -20,6 +21,7 @@ Status unpack_meshopt(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_b
 // KHR_draco_mesh_compression: the indices and attributes of each packed primitive, with libdraco.
 // Its decoder runs in a process of its own with limits, as it takes memory by what the data claims
 // (see core/child_process.h). Codes: gltf-compression, gltf-too-large.
-Status unpack_draco(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_bytes);
+Status unpack_draco(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_bytes,
+                    const GivenLimits& given);
 
 }  // namespace krok::gltf

@@ -182,8 +182,9 @@ Status take(const PackedPrimitive& packed, const DracoPrimitive& decoded, ByteRe
 
 Error error_of(const ChildReport& report) {
   if (report.end == ChildEnd::out_of_memory || report.end == ChildEnd::result_too_large) {
-    return Error("gltf-too-large", "the Draco data unpacks to far more than the file contains",
-                 kDamagedHint);
+    return Error(
+        "gltf-too-large", "the Draco data unpacks to far more than the file contains",
+        std::string("allow more with --limit-memory; if that does not help, ") + kDamagedHint);
   }
   if (report.end == ChildEnd::not_started) {
     return Error("gltf-compression", "cannot start a process to unpack Draco data: " + report.what,
@@ -191,12 +192,17 @@ Error error_of(const ChildReport& report) {
   }
   const std::string what =
       report.end == ChildEnd::out_of_time ? "the decoder took too long" : report.what;
-  return Error("gltf-compression", "cannot unpack Draco data: " + what, kDamagedHint);
+  return Error(
+      "gltf-compression", "cannot unpack Draco data: " + what,
+      (report.end == ChildEnd::out_of_time ? "allow more with --limit-time; if that does not help, "
+                                           : "") +
+          std::string(kDamagedHint));
 }
 
 }  // namespace
 
-Status unpack_draco(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_bytes) {
+Status unpack_draco(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_bytes,
+                    const GivenLimits& given) {
   if (parsed.packed_primitives.empty()) return {};
   std::vector<DracoPrimitive> primitives;
   std::uint64_t input_bytes = 0;
@@ -207,8 +213,8 @@ Status unpack_draco(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_byt
     primitives.push_back(std::move(*primitive));
   }
   ChildLimits limits;
-  limits.seconds = 15 + 5 * static_cast<double>(input_bytes) / (1 << 20);
-  limits.memory_bytes = 4 * most_bytes;
+  limits.seconds = given.seconds.value_or(15 + 5 * static_cast<double>(input_bytes) / (1 << 20));
+  limits.memory_bytes = given.memory_bytes.value_or(4 * most_bytes);
   limits.result_bytes = most_bytes;
   const ChildReport report = run_in_child([&] { return decode(primitives); }, limits);
   if (report.end != ChildEnd::returned) return error_of(report);

@@ -185,11 +185,12 @@ Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options)
   if (!buffers) return buffers.error();
   std::uint64_t input_bytes = bytes.size();
   for (const SideFile& file : buffers->files) input_bytes += file.bytes().size();
-  for (const auto unpack : {unpack_meshopt, unpack_draco}) {
+  for (const bool draco : {false, true}) {
     const std::size_t before = buffers->views.size();
-    if (Status status = unpack(*parsed, *buffers, decompression_limit(input_bytes)); !status) {
-      return status.error();
-    }
+    const std::uint64_t limit = decompression_limit(input_bytes);
+    Status status = draco ? unpack_draco(*parsed, *buffers, limit, options.limits)
+                          : unpack_meshopt(*parsed, *buffers, limit);
+    if (!status) return status.error();
     for (std::size_t b = before; b < buffers->views.size(); ++b) {
       input_bytes += buffers->views[b].size();
     }

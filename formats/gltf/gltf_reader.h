@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/child_process.h"
 #include "core/result.h"
 #include "nodes/scene.h"
 
@@ -37,6 +38,7 @@ struct ReadOptions {
   // Whether compressed data is unpacked; if not, it is an error (gltf-compression). For consumers
   // of the file itself that cannot.
   bool unpack = true;
+  GivenLimits limits = {};  // of Draco's decoder, which runs in a process of its own
 };
 
 Result<nodes::Scene> read(std::span<const std::byte> bytes, const ReadOptions& options = {});

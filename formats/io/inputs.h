@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/child_process.h"
 #include "core/file.h"
 #include "core/progress.h"
 #include "core/result.h"
@@ -31,6 +32,9 @@ class Inputs {
   // Takes warnings and notes of readers.
   virtual void diagnose(Diagnostic diagnostic) = 0;
   void diagnose(const Diagnostics& diagnostics);
+
+  // Of readers that run in a process of their own: Assimp, Draco.
+  GivenLimits limits;
 
   int jobs = 0;                  // threads; 0 is one per core
   Progress* progress = nullptr;  // may be null

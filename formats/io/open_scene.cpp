@@ -34,6 +34,7 @@ Result<nodes::Scene> with_its_files(Result<nodes::Scene> scene, const InputFile&
 Result<nodes::Scene> read_gltf(const InputFile& file, Inputs& inputs, bool with_materials) {
   gltf::ReadOptions options;
   options.with_materials = with_materials;
+  options.limits = inputs.limits;
   if (file.path() != "-") options.folder = folder_of(file.path());
   return with_its_files(gltf::read(file.bytes(), options), file, inputs);
 }
@@ -68,6 +69,7 @@ Result<nodes::Scene> read_zipped_gltf(const InputFile& file, Inputs& inputs, boo
   const std::string folder = slash == std::string::npos ? "" : scenes[0].substr(0, slash + 1);
   gltf::ReadOptions options;
   options.with_materials = with_materials;
+  options.limits = inputs.limits;
   options.open = [&](const std::string& path, std::uint64_t most) {
     return unpack(folder + path, most);
   };
@@ -86,6 +88,7 @@ Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,
   if (kind == registry::Kind::md5mesh) inputs.depends_on_neighbours(file.path(), ".md5anim");
   assimp::ReadOptions options;
   options.with_materials = with_materials;
+  options.limits = inputs.limits;
   return with_its_files(assimp::read_file(file.path(), options), file, inputs);
 }
 

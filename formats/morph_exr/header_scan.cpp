@@ -23,13 +23,19 @@ constexpr std::uint32_t kMaxAttributes = 1000;
 // Max expansion of deflate, rounded up for small files.
 constexpr std::uint64_t kMaxExpansion = 1040;
 
-// Types whose readers use no more memory than the attribute's size; strings are checked here.
-constexpr std::string_view kTypes[] = {"box2f",       "box2i",    "chlist",       "chromaticities",
-                                       "compression", "double",   "envmap",       "float",
-                                       "int",         "keycode",  "lineOrder",    "m33f",
-                                       "m44f",        "rational", "string",       "v2f",
-                                       "v2i",         "v3f",      "stringvector", "v3i",
-                                       "timecode"};
+// Types whose readers use no more memory than the attribute's size. OpenEXR 3.1 reads these without
+// looking at the size that the file says: with another one it would take a value for the next name.
+struct Type {
+  std::string_view name;
+  std::uint32_t size = 0;  // bytes; 0: varies
+};
+constexpr Type kTypes[] = {
+    {"box2f", 16},      {"box2i", 16},   {"chlist"},       {"chromaticities", 32},
+    {"compression", 1}, {"double", 8},   {"envmap", 1},    {"float", 4},
+    {"int", 4},         {"keycode", 28}, {"lineOrder", 1}, {"m33f", 36},
+    {"m44f", 64},       {"rational", 8}, {"string"},       {"v2f", 8},
+    {"v2i", 8},         {"v3f", 12},     {"stringvector"}, {"v3i", 12},
+    {"timecode", 8}};
 
 class Scan {
  public:
@@ -74,11 +80,31 @@ class Scan {
     return in_.ok();
   }
 
+  // Whether the list of names with 16 bytes each ends, with an empty name, where its value does.
+  static bool ends_with_its_channels(std::span<const std::byte> value) {
+    const std::string_view text(reinterpret_cast<const char*>(value.data()), value.size());
+    for (std::size_t at = 0;;) {
+      const std::size_t end = text.find('\0', at);
+      if (end == std::string_view::npos || end - at > kLongestName) return false;
+      if (end == at) return end + 1 == text.size();
+      at = end + 1 + 16;
+      if (at > text.size()) return false;
+    }
+  }
+
   Status look_at(std::string_view name, std::string_view type, std::span<const std::byte> value) {
     ByteReader in(value);
-    if (std::find(std::begin(kTypes), std::end(kTypes), type) == std::end(kTypes)) {
+    const auto* known = std::ranges::find(kTypes, type, &Type::name);
+    if (known == std::end(kTypes)) {
       return fail(fmt::format("attribute '{}' has an unsupported type", shown(name)),
                   "save it without previews and custom attributes");
+    }
+    if (known->size != 0 && value.size() != known->size) {
+      return fail(fmt::format("attribute '{}' has {} bytes, its type {} has {}", shown(name),
+                              value.size(), type, known->size));
+    }
+    if (type == "chlist" && !ends_with_its_channels(value)) {
+      return fail(fmt::format("the channels of attribute '{}' do not fill its size", shown(name)));
     }
     while (type == "stringvector" && in.ok() && in.remaining() > 0) {
       in.take(in.read<std::uint32_t>());

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct ChildLimits {
   // which reserve terabytes.
   std::uint64_t memory_bytes = std::uint64_t{1} << 30;
   std::uint64_t result_bytes = std::uint64_t{1} << 30;
+};
+
+// What a user set instead of a reader's own limits.
+struct GivenLimits {
+  std::optional<double> seconds;              // > 0
+  std::optional<std::uint64_t> memory_bytes;  // > 0
 };
 
 enum class ChildEnd : unsigned char {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "motion/ground_frame.h"
@@ -85,19 +86,17 @@ class PairFinder {
   }
 
   void pair_by_names() {
-    std::vector<std::vector<std::string>> words;
-    for (const std::string& name : skeleton_.names) words.push_back(name_tokens(name));
+    std::map<std::vector<std::string>, std::vector<int>> by_words;
+    for (int j = 1; j < skeleton_.joint_count(); ++j) {
+      by_words[name_tokens(skeleton_.names[at(j)])].push_back(j);
+    }
     for (int j = 1; j < skeleton_.joint_count(); ++j) {
       if (!open(j)) continue;
-      const auto wanted = other_side(words[at(j)]);
+      const auto wanted = other_side(name_tokens(skeleton_.names[at(j)]));
       if (!wanted) continue;
-      int found = MirrorPairs::kNone, count = 0;
-      for (int k = 1; k < skeleton_.joint_count(); ++k) {
-        if (k == j || words[at(k)] != *wanted) continue;
-        found = k;
-        ++count;
-      }
-      if (count == 1 && open(found)) pair(j, found);
+      const auto found = by_words.find(*wanted);
+      if (found == by_words.end() || found->second.size() != 1) continue;
+      if (const int other = found->second.front(); other != j && open(other)) pair(j, other);
     }
   }
 
@@ -118,40 +117,47 @@ class PairFinder {
   }
   double x(int joint) const { return skeleton_.reference[at(joint)].position.x(); }
 
-  // Distance from a joint's mirror image to another joint in the reference pose, relative to their
-  // parents, so that asymmetric parents do not matter.
-  double apart(int joint, int other) const {
-    const auto from_parent = [&](int j) -> Vec3 {
-      return skeleton_.reference[at(j)].position -
-             skeleton_.reference[at(skeleton_.parents[at(j)])].position;
-    };
-    Vec3 image = from_parent(joint);
-    image.x() = -image.x();
-    return (image - from_parent(other)).norm();
+  // A joint in the reference pose relative to its parent, so that asymmetric parents do not matter.
+  Vec3 from_parent(int joint) const {
+    return skeleton_.reference[at(joint)].position -
+           skeleton_.reference[at(skeleton_.parents[at(joint)])].position;
   }
 
+  // The joint of `among`, which is sorted by height, that is nearest to the mirror image of
+  // `joint`, and nearer than `within`; of two equally near ones the first in the skeleton.
   int nearest(int joint, const std::vector<int>& among, double within) const {
+    Vec3 image = from_parent(joint);
+    image.x() = -image.x();
+    const auto height = [&](int j) { return from_parent(j).y(); };
     int best = MirrorPairs::kNone;
-    for (const int k : among) {
-      if (k == joint || !open(k)) continue;
-      if (skeleton_.end_sites[at(k)] != skeleton_.end_sites[at(joint)]) continue;
-      const double distance = apart(joint, k);
-      if (distance < within) {
+    for (auto k = std::ranges::lower_bound(among, image.y() - within, {}, height); k != among.end();
+         ++k) {
+      if (height(*k) > image.y() + within) break;
+      if (*k == joint || !open(*k)) continue;
+      if (skeleton_.end_sites[at(*k)] != skeleton_.end_sites[at(joint)]) continue;
+      const double distance = (image - from_parent(*k)).norm();
+      if (distance < within || (distance == within && *k < best)) {
         within = distance;
-        best = k;
+        best = *k;
       }
     }
     return best;
   }
 
+  std::vector<int> by_height(std::vector<int> joints) const {
+    std::ranges::stable_sort(joints, {}, [&](int j) { return from_parent(j).y(); });
+    return joints;
+  }
+
   void pair_children_of_middle(int parent) {
+    const std::vector<int> sorted = by_height(children_[at(parent)]);
     for (const int j : children_[at(parent)]) {
       if (!open(j)) continue;
       if (std::abs(x(j) - pairs_.plane) < near_) {
         pair(j, j);
         continue;
       }
-      const int other = nearest(j, children_[at(parent)], 2.5 * near_);
+      const int other = nearest(j, sorted, 2.5 * near_);
       if (other != MirrorPairs::kNone) pair(j, other);
     }
     // If the reference pose tilts the head, jaw and tongue are off the plane.
@@ -169,6 +175,7 @@ class PairFinder {
     for (const int j : children_[at(right)]) {
       if (open(j)) theirs.push_back(j);
     }
+    theirs = by_height(std::move(theirs));
     const bool only = mine.size() == 1 && theirs.size() == 1;
     for (const int j : mine) {
       const int other =

@@ -225,6 +225,31 @@ TEST_P(Signals, WhileReadingLeaveTheOldOutput) {
   EXPECT_EQ(listing(), (Names{"in.bvh", "out.anim"}));
 }
 
+// A file that keeps another library busy ends every tool at the user's limit, not at ours.
+TEST_F(Trouble, LimitsOfOtherLibrariesAreTheUsers) {
+  put("in.smd",
+      "version 1\nnodes\n0 \"root\" -1\n1 \"a\" 0\nend\nskeleton\ntime 0\n0 0 0 0 0 0 0\n1 0 0 1 0 "
+      "0 "
+      "0\ntime 1\n0 0 0 0 0 0 0\n1 0 0 2 0 0 0\nend\n");
+  const std::vector<std::vector<std::string>> commands = {
+      {"krok-info", "in.smd"},
+      {"krok-import", "in.smd", "-o", "out.anim"},
+      {"krok-view", "in.smd", "-o", "out.html"},
+      {"krok-plot", "in.smd", "--sheet", "out.png"},
+  };
+  for (const auto& command : commands) {
+    SCOPED_TRACE(command[0]);
+    std::vector<std::string> arguments(command.begin() + 1, command.end());
+    arguments.insert(arguments.end(), {"--limit-time", "0.00001"});
+    const ToolRun run = run_here(command[0], arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_TRUE(has_code(run.err, "assimp-time")) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("after 1e-05 seconds"));
+    EXPECT_THAT(run.err, HasSubstr("--limit-time"));
+    EXPECT_EQ(listing(), Names{"in.smd"});
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Signals, testing::Values(SIGTERM, SIGINT, SIGHUP));
 
 }  // namespace

@@ -7,7 +7,10 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <thread>
 #include <vector>
@@ -93,11 +96,38 @@ inline ToolRun run(const std::vector<std::string>& arguments, const ToolOptions&
   return result;
 }
 
+// Keeps the report of a run, if it wrote one, for tests/support/check_reports.py.
+inline void keep_report(const std::vector<std::string>& arguments, const ToolOptions& options,
+                        const ToolRun& result) {
+  static int count = 0;
+  namespace fs = std::filesystem;
+  std::string report;
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (argument == "--json" && options.output_path.empty()) report = result.out;
+    if (!argument.starts_with("--json=")) continue;
+    const fs::path path = fs::path(options.folder) / argument.substr(7);
+    std::ifstream file(path, std::ios::binary);
+    if (fs::is_regular_file(path)) {
+      report.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+    }
+  }
+  // A refused report may name an input.
+  if (!report.starts_with("{") || result.exit_code < 0) return;
+  const fs::path folder = KROK_REPORTS;
+  fs::create_directories(folder);
+  std::ofstream kept(folder / (std::to_string(getpid()) + "_" + std::to_string(count++) + ".json"),
+                     std::ios::binary);
+  kept << report;
+}
+
 // A tool of this build.
 inline ToolRun run_tool(const std::string& tool, std::vector<std::string> arguments,
                         const ToolOptions& options = {}) {
   arguments.insert(arguments.begin(), std::string(KROK_BIN_DIR) + "/" + tool);
-  return run(arguments, options);
+  ToolRun result = run(arguments, options);
+  keep_report(arguments, options, result);
+  return result;
 }
 
 }  // namespace krok::test

@@ -164,6 +164,7 @@ class Batch {
     if (!parsed) return fail(file, parsed.error(), outcome);
     context = ready->line.context();
     context.jobs = jobs_of_a_file_;
+    context.limits = line_.limits();
     context.quiet = line_.quiet;
     context.verbose = line_.verbose;
     context.progress = &no_progress_;

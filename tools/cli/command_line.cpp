@@ -116,6 +116,16 @@ void CommandLine::declare_common(const ToolSpec& spec) {
   add_whole(options_, "-j,--jobs", jobs, "Number of threads; 0: one per core", 0, 1024)
       .default_str("0")
       .group(kCommon);
+  add_number(options_, "--limit-time SECONDS", limit_seconds,
+             "Time for reading a file by another library in a process of its own (FBX, COLLADA and "
+             "others, Draco) [15, and 5 per MiB]")
+      .check([](std::string& text) {
+        return *parse_finite(text) > 0 ? std::string() : "the time must be positive";
+      })
+      .group(kCommon);
+  add_whole(options_, "--limit-memory MIB", limit_mebibytes,
+            "Memory of that process [256, and 64 times the file's size]", 1, 1 << 24)
+      .group(kCommon);
 }
 
 void CommandLine::declare_for_many() {
@@ -218,11 +228,19 @@ std::string CommandLine::help() const {
   return help_text(app_);
 }
 
+GivenLimits CommandLine::limits() const {
+  GivenLimits limits;
+  limits.seconds = limit_seconds;
+  if (limit_mebibytes) limits.memory_bytes = static_cast<std::uint64_t>(*limit_mebibytes) << 20;
+  return limits;
+}
+
 ToolContext CommandLine::context() const {
   ToolContext context;
   context.report.tool = tool_;
   context.report.version = version();
   context.jobs = jobs;
+  context.limits = limits();
   context.no_clobber = no_clobber;
   context.quiet = quiet;
   context.verbose = verbose;

@@ -3,9 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/child_process.h"
 #include "core/result.h"
 #include "tools/cli/console_progress.h"
 #include "tools/cli/tool.h"
@@ -49,6 +51,9 @@ class CommandLine {
   // The tool's own options that were given, in declaration order.
   const std::vector<GivenOption>& given() const { return given_; }
 
+  // Of --limit-time and --limit-memory.
+  GivenLimits limits() const;
+
   // A context with the given options; the output names are its destinations.
   ToolContext context() const;
 
@@ -61,6 +66,8 @@ class CommandLine {
   std::string json_path;  // "-" is standard output
   ProgressStyle style = ProgressStyle::automatic;
   int jobs = 0;
+  std::optional<double> limit_seconds;
+  std::optional<int> limit_mebibytes;
   bool no_clobber = false;
   bool quiet = false;
   bool verbose = false;

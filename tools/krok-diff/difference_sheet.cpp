@@ -130,7 +130,9 @@ Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
   how.jobs = context.jobs;
   const auto made = render::make_sheet(image, how);
   if (!made) return made.error();
-  return write_image(made->image, options.path, context);
+  OutputSet outputs(context);
+  if (Status status = add_image(made->image, options.path, outputs); !status) return status;
+  return outputs.finish();
 }
 
 }  // namespace krok::cli::diff

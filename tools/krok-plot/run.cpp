@@ -96,7 +96,8 @@ Result<draw::Chart> make_chart(const Options& options, ToolContext& context) {
   return chart_motions(*motions, options, context);
 }
 
-Status write_charts(const Options& options, ToolContext& context) {
+Status add_charts(const Options& options, ToolContext& context, OutputSet& outputs,
+                  std::vector<std::string>& done) {
   if (Status status = check_output(context.output); !status) return status;
   auto chart = make_chart(options, context);
   if (!chart) return chart.error();
@@ -105,11 +106,11 @@ Status write_charts(const Options& options, ToolContext& context) {
   const auto svg = draw::to_svg(*chart);
   if (!svg) return svg.error();
   const Status status =
-      write_output(context, context.output, [&](OutputFile& file) { return file.write(*svg); });
+      outputs.add(context.output, [&](OutputFile& file) { return file.write(*svg); });
   if (!status) return status;
   context.report.result["panels"] = summary_of(*chart);
-  context.log(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
-                          counted(static_cast<long long>(chart->panels.size()), "panel")));
+  done.push_back(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
+                             counted(static_cast<long long>(chart->panels.size()), "panel")));
   return {};
 }
 
@@ -123,13 +124,17 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (images && context.one_of_many != nullptr) {
     return Error("usage", "--sheet and --strip cannot be used in batch mode");
   }
+  OutputSet outputs(context);
+  std::vector<std::string> done;
   if (images) {
-    if (Status status = make_sheets(options.inputs, options.sheet, context); !status) {
-      return status.error();
-    }
+    Status status = make_sheets(options.inputs, options.sheet, context, outputs, done);
+    if (!status) return status.error();
   }
-  if (context.output.empty()) return kExitDone;
-  if (Status status = write_charts(options, context); !status) return status.error();
+  if (!context.output.empty()) {
+    if (Status status = add_charts(options, context, outputs, done); !status) return status.error();
+  }
+  if (Status status = outputs.finish(); !status) return status.error();
+  for (const std::string& line : done) context.log(line);
   return kExitDone;
 }
 

@@ -226,32 +226,38 @@ Json report_of(const render::SheetImage& image, const ShownActors& all, std::siz
   return json;
 }
 
+// Where images go.
+struct Results {
+  ToolContext& context;
+  OutputSet& outputs;
+  std::vector<std::string>& done;
+};
+
 Status write(const render::Sheet& sheet, const render::SheetOptions& options,
-             const std::string& path, const ShownActors& all, ToolContext& context,
-             const char* name) {
+             const std::string& path, const ShownActors& all, Results& results, const char* name) {
   const auto image = render::make_sheet(sheet, options);
   if (!image) return image.error();
-  if (Status status = write_image(image->image, path, context); !status) return status;
-  context.report.result[name] = report_of(*image, all, sheet.rows.size() / all.size());
-  context.log(fmt::format("{}: {} x {} pixels, {} per metre", path, image->image.width,
-                          image->image.height, readable(image->pixels_per_metre, 3)));
+  if (Status status = add_image(image->image, path, results.outputs); !status) return status;
+  results.context.report.result[name] = report_of(*image, all, sheet.rows.size() / all.size());
+  results.done.push_back(fmt::format("{}: {} x {} pixels, {} per metre", path, image->image.width,
+                                     image->image.height, readable(image->pixels_per_metre, 3)));
   return {};
 }
 
 Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
-                  const SheetOptions& options, const SheetGround& ground, ToolContext& context) {
-  const auto all = show_all(actors, options, ground, kSheetMoments, context.jobs);
+                  const SheetOptions& options, const SheetGround& ground, Results& results) {
+  const auto all = show_all(actors, options, ground, kSheetMoments, results.context.jobs);
   if (!all) return all.error();
   render::SheetOptions how;
   how.row_height = options.image.size;
   how.cell_width = 2 * options.image.size;
-  how.jobs = context.jobs;
-  return write(contact_sheet(*all, sides, options), how, options.sheet, *all, context, "sheet");
+  how.jobs = results.context.jobs;
+  return write(contact_sheet(*all, sides, options), how, options.sheet, *all, results, "sheet");
 }
 
 Status make_strip(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
-                  const SheetOptions& options, const SheetGround& ground, ToolContext& context) {
-  const auto all = show_all(actors, options, ground, kStripMoments, context.jobs);
+                  const SheetOptions& options, const SheetGround& ground, Results& results) {
+  const auto all = show_all(actors, options, ground, kStripMoments, results.context.jobs);
   if (!all) return all.error();
   std::deque<render::StripCells> cells;
   render::Sheet sheet;
@@ -274,8 +280,8 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
   render::SheetOptions how;
   how.row_height = options.image.size;
   how.cell_width = std::max(kStripWidth, 2 * options.image.size);
-  how.jobs = context.jobs;
-  return write(sheet, how, options.strip, *all, context, "strip");
+  how.jobs = results.context.jobs;
+  return write(sheet, how, options.strip, *all, results, "strip");
 }
 
 }  // namespace
@@ -319,7 +325,8 @@ bool has_image_options(const SheetOptions& options) {
 }
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
-                   ToolContext& context) {
+                   ToolContext& context, OutputSet& outputs, std::vector<std::string>& done) {
+  Results results{context, outputs, done};
   const auto sides = parse_sides(options.image);
   if (!sides) return sides.error();
   for (const auto& [option, path] :
@@ -342,11 +349,11 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
     }
   }
   if (!options.sheet.empty()) {
-    if (Status status = make_sheet(*actors, *sides, options, ground, context); !status) {
+    if (Status status = make_sheet(*actors, *sides, options, ground, results); !status) {
       return status;
     }
   }
-  if (!options.strip.empty()) return make_strip(*actors, *sides, options, ground, context);
+  if (!options.strip.empty()) return make_strip(*actors, *sides, options, ground, results);
   return {};
 }
 

@@ -38,8 +38,9 @@ void declare_sheet(CommandOptions& command, SheetOptions& options);
 // Whether an option that only applies to images was given.
 bool has_image_options(const SheetOptions& options);
 
-// Renders the characters of all inputs, writes the requested images and adds them to the report.
+// Renders the characters of all inputs, adds the requested images to the outputs and the report,
+// and a line for each to `done`.
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
-                   ToolContext& context);
+                   ToolContext& context, OutputSet& outputs, std::vector<std::string>& done);
 
 }  // namespace krok::cli::plot

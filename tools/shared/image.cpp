@@ -175,10 +175,10 @@ Status check_image_name(const std::string& path, const std::string& option) {
                "call it .png");
 }
 
-Status write_image(const render::Image& image, const std::string& path, ToolContext& context) {
+Status add_image(const render::Image& image, const std::string& path, OutputSet& outputs) {
   const auto bytes = render::write_png(image);
   if (!bytes) return bytes.error();
-  return write_output(context, path, [&](OutputFile& file) { return file.write(*bytes); });
+  return outputs.add(path, [&](OutputFile& file) { return file.write(*bytes); });
 }
 
 Json to_json(const render::CellLayout& cell) {

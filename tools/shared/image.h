@@ -5,6 +5,7 @@
 
 #include "core/result.h"
 #include "render/sheet.h"
+#include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 
 // Options of tools that render images of actors: times, sides and size.
@@ -58,8 +59,8 @@ Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options);
 // Fails (code usage) if the extension of `path` is that of another kind of file.
 Status check_image_name(const std::string& path, const std::string& option);
 
-// Writes the image as PNG to `path` and adds it to the report.
-Status write_image(const render::Image& image, const std::string& path, ToolContext& context);
+// Adds the image as PNG to the outputs.
+Status add_image(const render::Image& image, const std::string& path, OutputSet& outputs);
 
 // Position and camera of a cell, for the report; needed for measuring in images.
 Json to_json(const render::CellLayout& cell);

@@ -1,0 +1,70 @@
+"""Reads the reports that tools wrote during the tests, with a parser that is not theirs.
+
+Usage: check_reports.py FOLDER. Prints what is wrong with them; exit code 1 if anything is, or if
+there is no report.
+"""
+
+import json
+import pathlib
+import sys
+
+
+def refuse_constant(text):
+    raise ValueError(f"the number {text}")
+
+
+def refuse_repeats(pairs):
+    keys = [key for key, _ in pairs]
+    if len(keys) != len(set(keys)):
+        raise ValueError(f"a key twice in {keys}")
+    return dict(pairs)
+
+
+def finite(text):
+    value = float(text)
+    if value in (float("inf"), float("-inf")):
+        raise ValueError(f"the number {text}, which no double holds")
+    return value
+
+
+def strings(value):
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for key, item in value.items():
+            yield key
+            yield from strings(item)
+    elif isinstance(value, list):
+        for item in value:
+            yield from strings(item)
+
+
+def fault_of(data):
+    try:
+        report = json.loads(data.decode("utf-8"), parse_constant=refuse_constant, parse_float=finite,
+                            object_pairs_hook=refuse_repeats)
+    except ValueError as fault:  # also of decode()
+        return str(fault)
+    for key in ("schema", "tool", "version", "issues", "result"):
+        if key not in report:
+            return f"no '{key}'"
+    for text in strings(report):
+        if any(0xD800 <= ord(c) < 0xE000 for c in text):
+            return "half of a surrogate pair"
+    return ""
+
+
+def main():
+    reports = sorted(pathlib.Path(sys.argv[1]).glob("*.json"))
+    faults = 0
+    for path in reports:
+        fault = fault_of(path.read_bytes())
+        if fault:
+            faults += 1
+            print(f"{path}: {fault}")
+    print(f"{len(reports)} reports, {faults} faults")
+    sys.exit(1 if faults or not reports else 0)
+
+
+if __name__ == "__main__":
+    main()
