@@ -227,15 +227,16 @@ TEST_P(Signals, WhileReadingLeaveTheOldOutput) {
 
 // A file that keeps another library busy ends every tool at the user's limit, not at ours.
 TEST_F(Trouble, LimitsOfOtherLibrariesAreTheUsers) {
+  put("in.bvh", capture(5));
   put("in.smd",
       "version 1\nnodes\n0 \"root\" -1\n1 \"a\" 0\nend\nskeleton\ntime 0\n0 0 0 0 0 0 0\n1 0 0 1 0 "
-      "0 "
-      "0\ntime 1\n0 0 0 0 0 0 0\n1 0 0 2 0 0 0\nend\n");
+      "0 0\ntime 1\n0 0 0 0 0 0 0\n1 0 0 2 0 0 0\nend\n");
   const std::vector<std::vector<std::string>> commands = {
       {"krok-info", "in.smd"},
       {"krok-import", "in.smd", "-o", "out.anim"},
-      {"krok-view", "in.smd", "-o", "out.html"},
-      {"krok-plot", "in.smd", "--sheet", "out.png"},
+      {"krok-view", "in.bvh", "--ground", "in.smd", "-o", "out.html"},
+      {"krok-plot", "in.bvh", "--ground", "in.smd", "--sheet", "out.png"},
+      {"krok-ik", "in.bvh", "--reach", "Head=0,1,0@0s", "--ground", "in.smd", "-o", "out.anim"},
   };
   for (const auto& command : commands) {
     SCOPED_TRACE(command[0]);
@@ -246,7 +247,7 @@ TEST_F(Trouble, LimitsOfOtherLibrariesAreTheUsers) {
     EXPECT_TRUE(has_code(run.err, "assimp-time")) << run.err;
     EXPECT_THAT(run.err, HasSubstr("after 1e-05 seconds"));
     EXPECT_THAT(run.err, HasSubstr("--limit-time"));
-    EXPECT_EQ(listing(), Names{"in.smd"});
+    EXPECT_EQ(listing(), (Names{"in.bvh", "in.smd"}));
   }
 }
 
