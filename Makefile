@@ -12,15 +12,16 @@ BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev
   libcli11-dev help2man libembree-dev libpng-dev libjpeg-dev libfreetype-dev libceres-dev \
   libbullet-dev libmeshoptimizer-dev libdraco-dev libzip-dev fonts-dejavu-core
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
-  chromium openexr python3-jsonschema python3-numpy python3-pandas python3-xxhash liborocos-kdl-dev
+  chromium openexr python3-jsonschema python3-numpy python3-pandas python3-xxhash liborocos-kdl-dev pkg-config
 LINT_PACKAGES := clang-tidy
+DEB_PACKAGES := debhelper dh-python python3-all fakeroot lintian
 FUZZ_PACKAGES := afl++
 
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'
 
 .DEFAULT_GOAL := all
 .PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench \
-  fuzz golden format format-check lint lint-changed headers install clean
+  fuzz golden format format-check lint lint-changed headers install deb clean
 
 help:
 	@echo "make demo                   build, then capture -> animated glTF on the samples, see out/demo"
@@ -40,6 +41,7 @@ help:
 	@echo "make format    clang-format all sources"
 	@echo "make lint      clang-tidy, and each public header by itself; FILES='a.cpp b.cpp' for some sources"
 	@echo "make install   install tools, library and headers (PREFIX=/usr/local, DESTDIR=)"
+	@echo "make deb       Debian packages krok, libkrok-dev, python3-krok in build-deb"
 	@echo "make clean     remove the build folders"
 
 # install-missing PACKAGES: apt-get only for what is not there, so that no network and no root are
@@ -165,5 +167,14 @@ install: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF -DCMAKE_INSTALL_PREFIX=$(PREFIX)
 install: all
 	cmake --install $(BUILD)
 
+# Packages of what git has, in build-deb. nodejs and npm may come from elsewhere than Debian, hence -d.
+deb: deps
+	$(call install-missing,$(DEB_PACKAGES))
+	rm -rf build-deb && mkdir -p build-deb/krok
+	git ls-files -z -- ':!packaging' | xargs -0 cp --parents -t build-deb/krok
+	cp -r packaging/debian build-deb/krok/
+	cd build-deb/krok && dpkg-buildpackage -b -us -uc -d -j$(JOBS)
+	lintian --pedantic --fail-on error,warning build-deb/*.changes
+
 clean:
-	rm -rf $(BUILD) build build-asan build-tsan build-debug build-lint out
+	rm -rf $(BUILD) build build-asan build-tsan build-debug build-lint build-deb out

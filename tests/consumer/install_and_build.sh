@@ -8,6 +8,12 @@ cmake --install "$build" --prefix "$scratch/prefix" > /dev/null
 cmake -S "$program" -B "$scratch/build" -G Ninja -DCMAKE_PREFIX_PATH="$scratch/prefix" > /dev/null
 cmake --build "$scratch/build"
 "$scratch/build/consumer"
+# The same by pkg-config, where that is installed.
+if pkg-config --version > /dev/null 2>&1; then
+  PKG_CONFIG_PATH=$(dirname "$(find "$scratch/prefix" -name krok.pc)") pkg-config --cflags --libs krok |
+    xargs c++ -std=c++20 "$program/main.cpp" -o "$scratch/by_pkg_config"
+  "$scratch/by_pkg_config"
+fi
 for tool in "$scratch"/prefix/bin/krok*; do
   "$tool" --version
 done
