@@ -1,10 +1,13 @@
 #include "formats/assimp/collada_text_internal.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <set>
 
 #include "core/numbers.h"
 #include "core/text.h"
+#include "math/types.h"
 
 namespace krok::assimp {
 
@@ -71,13 +74,56 @@ std::map<std::string, std::string> collada_node_names(std::string_view text) {
   return names;
 }
 
-std::vector<double> collada_vertical_fields_of_view(std::string_view text) {
-  std::vector<double> values;
-  for_each_tag(text, "<yfov", [&](std::string_view, std::string_view after) {
-    const auto value = parse_finite(trimmed(after.substr(0, after.find('<'))));
-    if (value) values.push_back(*value);
+namespace {
+
+// The vertical field of view of a <camera>, degrees: <yfov>, or that of <xfov> and <aspect_ratio>
+// (4:3 without one).
+std::optional<double> field_of_view(std::string_view camera) {
+  constexpr double kUsualAspect = 4.0 / 3.0;
+  const auto number = [&](std::string_view tag) {
+    std::optional<double> value;
+    for_each_tag(camera, tag, [&](std::string_view, std::string_view rest) {
+      value = parse_finite(trimmed(rest.substr(0, rest.find('<'))));
+    });
+    return value;
+  };
+  if (const auto upright = number("<yfov")) return upright;
+  const auto across = number("<xfov");
+  const double aspect = number("<aspect_ratio").value_or(kUsualAspect);
+  if (!across || !(*across > 0 && *across < 180) || !(aspect > 0)) return std::nullopt;
+  return 2 * std::atan(std::tan(0.5 * *across * kRadiansPerDegree) / aspect) / kRadiansPerDegree;
+}
+
+}  // namespace
+
+std::map<std::string, double> collada_fields_of_view(std::string_view text) {
+  std::map<std::string, double> of_camera;
+  for_each_tag(text, "<camera", [&](std::string_view tag, std::string_view after) {
+    const auto angle = field_of_view(after.substr(0, after.find("</camera")));
+    if (angle) of_camera.emplace("#" + attribute(tag, "id"), *angle);
   });
-  return values;
+  std::map<std::string, double> of_node;
+  std::vector<std::string_view> open;  // tags of the nodes around
+  while (!of_camera.empty()) {
+    const std::size_t begin = text.find('<');
+    const std::size_t end = text.find('>', std::min(begin, text.size()));
+    if (end == std::string_view::npos) break;
+    const std::string_view tag = text.substr(begin, end - begin);
+    text.remove_prefix(end + 1);
+    if (tag.starts_with("</node")) {
+      if (!open.empty()) open.pop_back();
+    } else if (tag.starts_with("<node") && !tag.ends_with('/')) {
+      open.push_back(tag);
+    } else if (tag.starts_with("<instance_camera") && !open.empty()) {
+      const auto found = of_camera.find(attribute(tag, "url"));
+      if (found == of_camera.end()) continue;
+      for (const char* name : {"id", "sid", "name"}) {
+        std::string value = attribute(open.back(), name);
+        if (!value.empty()) of_node.emplace(std::move(value), found->second);
+      }
+    }
+  }
+  return of_node;
 }
 
 std::vector<ColladaClip> collada_clips(std::string_view text) {

@@ -12,8 +12,8 @@ namespace krok::assimp {
 // Maps ids of <node> elements, which Assimp uses as names, to their names; nodes with both only.
 std::map<std::string, std::string> collada_node_names(std::string_view text);
 
-// The values of all <yfov> elements, degrees.
-std::vector<double> collada_vertical_fields_of_view(std::string_view text);
+// The vertical field of view, degrees, of the camera at each node, by the node's id, sid and name.
+std::map<std::string, double> collada_fields_of_view(std::string_view text);
 
 // An <animation_clip>: some of the file's animations, over a time range.
 struct ColladaClip {

@@ -68,8 +68,7 @@ std::optional<double> sensible(double angle) {
   return std::nullopt;
 }
 
-// For COLLADA cameras with only a vertical field of view, Assimp 5.2 gives a wrong value, pi / 4
-// interpreted as degrees.
+// For COLLADA cameras, Assimp 5.2 mostly gives a wrong value, pi / 4 interpreted as degrees.
 bool is_collada_default(const Conversion& to, const aiCamera& camera) {
   const double wrong = kPi / 4 * kRadiansPerDegree;
   return to.kind == Kind::collada &&
@@ -78,14 +77,13 @@ bool is_collada_default(const Conversion& to, const aiCamera& camera) {
 
 // Vertical, radians.
 std::optional<double> vertical_field_of_view(Conversion& to, const aiCamera& camera,
-                                             const Max3dsCamera* lens, const std::string& name) {
+                                             const Max3dsCamera* lens,
+                                             const std::map<std::string, double>& of_collada,
+                                             const std::string& name) {
   constexpr double kUsualAspect = 4.0 / 3.0;
   if (is_collada_default(to, camera)) {
-    const std::vector<double> given = collada_vertical_fields_of_view(to.text);
-    const bool same = !given.empty() && std::all_of(given.begin(), given.end(), [&](double angle) {
-      return angle == given.front();
-    });
-    if (same && given.front() > 0 && given.front() < 180) return given.front() * kRadiansPerDegree;
+    const auto own = of_collada.find(to_text(camera.mName));
+    if (own != of_collada.end()) return sensible(own->second * kRadiansPerDegree);
     return std::nullopt;
   }
   const auto across = lens != nullptr ? sensible(lens->horizontal_field_of_view())
@@ -133,6 +131,10 @@ void convert_cameras(Conversion& to) {
   // Assimp 5.2 interprets the lens of 3DS cameras as an angle and uses a wrong up vector for roll.
   std::map<std::string, Max3dsCamera> of_3ds;
   if (to.kind == Kind::max_3ds) of_3ds = read_3ds_cameras(std::as_bytes(std::span(to.text)));
+  std::map<std::string, double> of_collada;
+  if (to.kind == Kind::collada && to.source.mNumCameras > 0) {
+    of_collada = collada_fields_of_view(to.text);
+  }
   for (unsigned c = 0; c < to.source.mNumCameras; ++c) {
     const aiCamera& source = *to.source.mCameras[c];
     Camera camera;
@@ -152,7 +154,8 @@ void convert_cameras(Conversion& to) {
       continue;
     }
     const auto angle =
-        vertical_field_of_view(to, source, in_world ? &own->second : nullptr, camera.name);
+        vertical_field_of_view(to, source, in_world ? &own->second : nullptr, of_collada,
+                               camera.name);
     if (!angle) {
       to.warn("assimp-camera",
               fmt::format("camera '{}' has an invalid field of view and is left out", camera.name));

@@ -65,6 +65,13 @@ struct Pelvis {
 
   bool known() const { return spine >= 0; }
 
+  // Whether the spine begins clearly above the hips, so that it shows which way is up.
+  bool is_tall(Positions pose) const {
+    const Vec3 left = at(pose, left_leg) - at(pose, right_leg);
+    const Vec3 middle = 0.5 * (at(pose, left_leg) + at(pose, right_leg));
+    return (at(pose, spine) - middle).cross(left).norm() > 0.3 * left.squaredNorm();
+  }
+
   // Axes of the pelvis in a pose, as columns: left, perpendicular to it towards the spine, forward.
   std::optional<Mat3> frame(Positions pose) const {
     const Vec3 left = at(pose, left_leg) - at(pose, right_leg);
@@ -95,22 +102,34 @@ bool detect_forward_by_pelvis(const Evidence& evidence, Conventions& found) {
   return true;
 }
 
-// For a reference pose that is not upright (such as rigs with all bones along one axis): assumes
-// that its pelvis is oriented as in the motion on average.
+// The up axis of the pelvis as the motion has it on average: that of the reference pose is not
+// known where spine and hips begin at one height.
+std::optional<NearestAxis> upright_pelvis(const Evidence& evidence, const Pelvis& pelvis,
+                                          const Mat3& reference, Direction vertical) {
+  Vec3 up = Vec3::Zero();
+  for (std::size_t i = 0; i < evidence.sample_count; ++i) {
+    const auto turned = pelvis.frame(evidence.sample(i));
+    if (turned) up += reference * (turned->transpose() * direction_vector(vertical));
+  }
+  const NearestAxis upright = nearest_axis(up);
+  if (upright.cosine < kInLine || !(up.norm() > 0.5 * static_cast<double>(evidence.sample_count)))
+    return std::nullopt;
+  return upright;
+}
+
+// For a reference pose that is not upright (such as rigs with all bones along one axis): those of
+// its pelvis.
 void detect_reference_axes_by_pelvis(const Evidence& evidence, Conventions& found) {
   const Pelvis pelvis(evidence);
   if (!pelvis.known()) return;
   const auto reference = pelvis.frame(evidence.reference);
   if (!reference) return;
-  const Vec3 vertical = direction_vector(found.up);
-  Vec3 up = Vec3::Zero();
-  for (std::size_t i = 0; i < evidence.sample_count; ++i) {
-    const auto turned = pelvis.frame(evidence.sample(i));
-    if (turned) up += *reference * (turned->transpose() * vertical);
+  NearestAxis upright = nearest_axis(reference->col(1));
+  if (upright.cosine < kInLine || !pelvis.is_tall(evidence.reference)) {
+    const auto moved = upright_pelvis(evidence, pelvis, *reference, found.up);
+    if (!moved) return;
+    upright = *moved;
   }
-  const NearestAxis upright = nearest_axis(up);
-  if (upright.cosine < kInLine || !(up.norm() > 0.5 * static_cast<double>(evidence.sample_count)))
-    return;
   const Vec3 left = reference->col(0);
   const NearestAxis ahead = nearest_axis(left.cross(direction_vector(upright.direction)));
   if (ahead.cosine < kInLine) return;

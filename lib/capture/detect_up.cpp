@@ -14,7 +14,6 @@ namespace {
 struct UpVotes {
   std::array<int, 6> votes{};
   int valid = 0;
-  Vec3 sum = Vec3::Zero();
 
   explicit UpVotes(const Evidence& evidence) {
     constexpr double kUpright = 0.8;  // within 37 degrees
@@ -22,7 +21,6 @@ struct UpVotes {
       const auto axis = body_axis(evidence.sample(i), evidence.marks);
       if (!axis) continue;
       ++valid;
-      sum += *axis;
       const NearestAxis nearest = nearest_axis(*axis);
       if (nearest.cosine >= kUpright) ++votes[static_cast<std::size_t>(nearest.direction)];
     }
@@ -59,21 +57,33 @@ bool is_usual(Direction up) {
   return up == Direction::plus_y || up == Direction::plus_z;
 }
 
+// The reference pose's up axis if files have such a one; a reference pose along another lies.
+std::optional<NearestAxis> usual_reference(const Evidence& evidence) {
+  const auto& reference = evidence.reference_stands;
+  return reference && is_usual(reference->direction) ? reference : std::nullopt;
+}
+
+constexpr double kNear = 0.08;  // in body heights, as all that follow
+constexpr double kBelow = -0.03;
+constexpr double kKeepsHeight = 0.1;
+
+bool keeps_to_the_ground(const Heights& heights) {
+  return heights.lowest >= kBelow && heights.lowest <= kNear && heights.spread < kKeepsHeight;
+}
+
 // The floor is at 0, so the lowest joint of a standing character is near 0. If it is not along the
 // detected up axis, and the reference pose is not upright along that axis either, the character may
 // lie on the floor: its lowest joint is then near 0 along the true up axis.
 void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
-  constexpr double kNear = 0.08;  // these are in body heights
-  constexpr double kBelow = -0.03;
   constexpr double kMinHips = 0.03;  // soft tissue between the hips and the ground
-  const auto& reference = evidence.reference_stands;
-  const bool unusual = !is_usual(found.up) && reference && is_usual(reference->direction);
+  const auto reference = usual_reference(evidence);
+  const bool unusual = !is_usual(found.up);
   const auto standing = heights_along(evidence, found.up);
   if (!standing || (std::abs(standing->lowest) <= kNear && !unusual)) return;
   const auto lies = [&](Direction up) {
     if (on_one_axis(up, found.up)) return false;
     const auto lying = heights_along(evidence, up);
-    return lying && lying->lowest >= kBelow && lying->lowest <= kNear && lying->hips >= kMinHips;
+    return lying && keeps_to_the_ground(*lying) && lying->hips >= kMinHips;
   };
   std::optional<Direction> ground;
   if (reference) {
@@ -91,11 +101,11 @@ void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
     found.up_confidence = Confidence::guess;
     return;
   }
-  if (std::abs(standing->lowest) <= kNear) return;
+  const auto& stands = evidence.reference_stands;
+  if (std::abs(standing->lowest) <= kNear || (stands && stands->direction == found.up)) return;
   found.up_reason += "; but the lowest joint is not near the ground there";
-  const bool other_is_usual = reference && is_usual(reference->direction);
-  if (!is_usual(found.up) || other_is_usual) {
-    if (other_is_usual && !is_usual(found.up)) {
+  if (unusual || reference) {
+    if (unusual && reference) {
       found.up = reference->direction;
       found.up_reason += ", and that up axis is rare; using that of the reference pose";
     }
@@ -124,8 +134,7 @@ bool stays_folded(const Evidence& evidence) {
 // one height along another axis, that axis is up.
 void look_for_a_floor(const Evidence& evidence, Conventions& found) {
   constexpr std::size_t kFewestSamples = 10;
-  constexpr double kTravels = 0.25;  // these are in body heights
-  constexpr double kKeepsHeight = 0.1;
+  constexpr double kTravels = 0.25;
   if (evidence.sample_count < kFewestSamples || !stays_folded(evidence)) return;
   const auto seeming = heights_along(evidence, found.up);
   if (!seeming || seeming->spread < kTravels) return;
@@ -146,23 +155,41 @@ void look_for_a_floor(const Evidence& evidence, Conventions& found) {
   found.up_confidence = Confidence::guess;
 }
 
+constexpr double kPart = 0.2;  // of the samples
+
+// Whether the character is upright along both usual axes in part of the motion, so that it lies or
+// falls along one of them.
+bool is_upright_along_both(const UpVotes& votes) {
+  return votes.share(Direction::plus_y) >= kPart && votes.share(Direction::plus_z) >= kPart;
+}
+
 // Whether the character is upright along the reference pose's up axis in part of the motion; along
 // `other` it then lies or falls.
 bool stands_at_times(const Evidence& evidence, const UpVotes& votes, Direction other) {
-  constexpr double kPart = 0.2;
-  const auto& reference = evidence.reference_stands;
-  return reference && reference->direction != other && is_usual(reference->direction) &&
-         votes.share(reference->direction) >= kPart;
+  const auto reference = usual_reference(evidence);
+  return reference && reference->direction != other && votes.share(reference->direction) >= kPart;
+}
+
+// The up axis of a character that is rarely upright or lies along a usual axis at times: +y, which
+// most files have, unless its lowest joint keeps to the ground along +z alone.
+Direction up_by_the_ground(const Evidence& evidence) {
+  const auto y = heights_along(evidence, Direction::plus_y);
+  const auto z = heights_along(evidence, Direction::plus_z);
+  const bool along_z = z && keeps_to_the_ground(*z) && !(y && keeps_to_the_ground(*y));
+  return along_z ? Direction::plus_z : Direction::plus_y;
 }
 
 void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Conventions& found) {
   const auto& reference = evidence.reference_stands;
+  const auto usual = usual_reference(evidence);
   const Direction winner = votes.winner();
   const double share = votes.share(winner);
   const int percent = static_cast<int>(std::lround(100 * share));
   const bool agrees = reference && reference->direction == winner;
-  const bool turned_over = reference && reference->direction == opposite(winner);
-  if (share >= 0.5 && !turned_over && !stands_at_times(evidence, votes, winner)) {
+  const bool turned_over = usual && usual->direction == opposite(winner);
+  const bool lies_at_times =
+      usual ? stands_at_times(evidence, votes, winner) : is_upright_along_both(votes);
+  if (share >= 0.5 && !turned_over && !lies_at_times) {
     found.up = winner;
     found.up_confidence = agrees || share >= 0.8 ? Confidence::certain : Confidence::likely;
     found.up_reason = fmt::format("the head is above the {} along {} in {}% of the sampled frames",
@@ -177,12 +204,12 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
         found.up_confidence = Confidence::likely;
       }
     }
-    if (!agrees) hold_against_the_ground(evidence, found);
+    if (!agrees || !is_usual(winner)) hold_against_the_ground(evidence, found);
     if (!reference) look_for_a_floor(evidence, found);
     return;
   }
-  if (reference) {
-    found.up = reference->direction;
+  if (usual) {
+    found.up = usual->direction;
     found.up_confidence = Confidence::likely;
     found.up_reason = fmt::format(
         "the reference pose is upright along {}; the motion is upright along it in only {}% of the "
@@ -194,10 +221,11 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
     }
     return;
   }
-  found.up = nearest_axis(votes.sum).direction;
+  found.up = up_by_the_ground(evidence);
   found.up_reason = fmt::format(
-      "on average the head is furthest from the {} along {}, but the character is rarely upright",
-      evidence.marks.lower_end(), signed_name(found.up));
+      "the character is rarely upright; {}",
+      found.up == Direction::plus_z ? "the lowest joint is near the ground along +z"
+                                    : "+y is kept, which most files have");
   look_for_a_floor(evidence, found);
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/index.h"
@@ -54,9 +55,31 @@ class StanceBuilder {
                     -kUpwards, kLeft},
                Limb{Role::root, Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
                     -kUpwards, kLeft});
-    flatten(Role::left_foot);
-    flatten(Role::right_foot);
+    const std::vector<FootOnGround> on_ground = feet_on_ground();
+    flatten(Role::left_foot, Role::left_toes, on_ground);
+    flatten(Role::right_foot, Role::right_toes, on_ground);
     return std::move(pose_);
+  }
+
+  // Some exporters put a T-pose before the motion: it shows more than bones do.
+  bool begins_in_a_stance() const {
+    if (clip_.frame_count() == 0) return false;
+    const auto positions = clip_.frame_positions(0);
+    const auto bone = [&](Role from, Role to) {
+      const int a = roles_.joint(from), b = roles_.joint(to);
+      if (a < 0 || b < 0) return Vec3(Vec3::Zero());
+      return Vec3((positions[at(b)] - positions[at(a)]).cast<double>().stableNormalized());
+    };
+    const Vec3 left = bone(Role::right_upper_leg, Role::left_upper_leg);
+    double least = 1;
+    const auto limb = [&](Role upper, Role lower, Role end, const Vec3& along) {
+      least = std::min({least, bone(upper, lower).dot(along), bone(lower, end).dot(along)});
+    };
+    limb(Role::left_upper_leg, Role::left_lower_leg, Role::left_foot, -kUpwards);
+    limb(Role::right_upper_leg, Role::right_lower_leg, Role::right_foot, -kUpwards);
+    limb(Role::left_upper_arm, Role::left_lower_arm, Role::left_hand, left);
+    limb(Role::right_upper_arm, Role::right_lower_arm, Role::right_hand, -left);
+    return least > kStraight;
   }
 
  private:
@@ -120,10 +143,28 @@ class StanceBuilder {
             (skeleton.reference_local(j).orientation.conjugate() * local).toRotationMatrix();
       }
     }
+    const std::vector<Quat> quarters = quarter_turns(turns);
     for (int j = 1; count > 0 && j < clip_.joint_count(); ++j) {
-      const Quat local = skeleton.reference_local(j).orientation * quarter_turns(turns[at(j)]);
+      const Quat local = skeleton.reference_local(j).orientation * quarters[at(j)];
       pose_[at(j)] = pose_[at(skeleton.parents[at(j)])] * Transform{offsets[at(j)] / count, local};
     }
+  }
+
+  // Those of all joints. A rig has them on both sides; on one alone they are a hand that is held
+  // aside throughout a take.
+  std::vector<Quat> quarter_turns(const std::vector<Mat3>& sums) const {
+    std::vector<Quat> turns;
+    for (const Mat3& sum : sums) turns.push_back(quarter_turns(sum));
+    for (const auto& [left, right] : {std::pair(Role::left_collar, Role::right_collar),
+                                      std::pair(Role::left_hand, Role::right_hand),
+                                      std::pair(Role::left_foot, Role::right_foot),
+                                      std::pair(Role::left_toes, Role::right_toes)}) {
+      const int a = roles_.joint(left), b = roles_.joint(right);
+      if (a < 0 || b < 0) continue;
+      const auto none = [&](int joint) { return std::abs(turns[at(joint)].w()) > 0.99; };
+      if (none(a) || none(b)) turns[at(a)] = turns[at(b)] = Quat::Identity();
+    }
+    return turns;
   }
 
   bool shown_by_motion(int joint) const {
@@ -166,27 +207,6 @@ class StanceBuilder {
       }
     } while (std::ranges::next_permutation(axes).found);
     return Quat(best).normalized();
-  }
-
-  // Some exporters put a T-pose before the motion: it shows more than bones do.
-  bool begins_in_a_stance() const {
-    if (clip_.frame_count() == 0) return false;
-    const auto positions = clip_.frame_positions(0);
-    const auto bone = [&](Role from, Role to) {
-      const int a = roles_.joint(from), b = roles_.joint(to);
-      if (a < 0 || b < 0) return Vec3(Vec3::Zero());
-      return Vec3((positions[at(b)] - positions[at(a)]).cast<double>().stableNormalized());
-    };
-    const Vec3 left = bone(Role::right_upper_leg, Role::left_upper_leg);
-    double least = 1;
-    const auto limb = [&](Role upper, Role lower, Role end, const Vec3& along) {
-      least = std::min({least, bone(upper, lower).dot(along), bone(lower, end).dot(along)});
-    };
-    limb(Role::left_upper_leg, Role::left_lower_leg, Role::left_foot, -kUpwards);
-    limb(Role::right_upper_leg, Role::right_lower_leg, Role::right_foot, -kUpwards);
-    limb(Role::left_upper_arm, Role::left_lower_arm, Role::left_hand, left);
-    limb(Role::right_upper_arm, Role::right_lower_arm, Role::right_hand, -left);
-    return least > kStraight;
   }
 
   // From the hips to the head or neck; empty if there is no such way.
@@ -321,24 +341,51 @@ class StanceBuilder {
     return count > 0 ? Vec3(sum / count) : sum;
   }
 
-  // Turns a foot about the ankle's hinge to the pitch that feet have on the ground.
-  void flatten(Role role) {
+  // A foot in a frame in which it may be flat on the ground.
+  struct FootOnGround {
+    float height;  // of ankle and ball together
+    double pitch;  // radians; upwards is positive
+    int frame;
+    Role foot;
+  };
+
+  // Turns a foot about the ankle's hinge to the pitch that feet have on the ground, and bends its
+  // toes as they are then.
+  void flatten(Role role, Role toes, const std::vector<FootOnGround>& on_ground) {
     const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
     if (foot < 0 || front < 0) return;
     const Vec3 now = place(front) - place(foot);
     const double own = std::asin(std::clamp(now.y() / std::max(now.norm(), 1e-9), -1.0, 1.0));
     const bool known = std::abs(own - kUsualPitch) < kPitchRange;
-    if (clip_.frame_count() == 0 && known) return;
-    const double pitch = clip_.frame_count() == 0 ? kUsualPitch : pitch_on_ground();
+    if (on_ground.empty() && known) return;
+    const double pitch =
+        on_ground.empty() ? kUsualPitch : on_ground[on_ground.size() / 2].pitch;
     // What of it points aside stays.
     const Vec3 wanted = std::cos(pitch) * kForward + std::sin(pitch) * kUpwards;
     roll(foot, kLeft, now, wanted);
+    bend_toes(role, roles_.joint(toes), on_ground);
   }
 
-  // Radians; upwards is positive. A foot is flat where ankle and ball are both low: on tiptoe and
-  // on the heel one of them is not. Of both feet together, as a take may hold one of them up.
-  double pitch_on_ground() const {
-    std::vector<std::pair<float, double>> frames;  // the heights of ankle and ball, and the pitch
+  void bend_toes(Role foot, int toes, const std::vector<FootOnGround>& on_ground) {
+    const int parent = toes < 0 ? -1 : clip_.skeleton.parents[at(toes)];
+    if (parent < 0 || parent != roles_.joint(foot)) return;
+    Vec4 sum = Vec4::Zero();
+    for (const FootOnGround& one : on_ground) {
+      if (one.foot != foot) continue;
+      const auto orientations = clip_.frame_orientations(one.frame);
+      const Quat local = orientations[at(parent)].cast<double>().conjugate() *
+                         orientations[at(toes)].cast<double>();
+      sum += sum.dot(local.coeffs()) < 0 ? Vec4(-local.coeffs()) : local.coeffs();
+    }
+    if (!(sum.norm() > 0)) return;
+    const Quat wanted = pose_[at(parent)].orientation * Quat(Vec4(sum.normalized()));
+    turn(toes, wanted * pose_[at(toes)].orientation.conjugate());
+  }
+
+  // By pitch. A foot is flat where ankle and ball are both low: on tiptoe and on the heel one of
+  // them is not. Of both feet together, as a take may hold one of them up.
+  std::vector<FootOnGround> feet_on_ground() const {
+    std::vector<FootOnGround> frames;
     for (const Role role : {Role::left_foot, Role::right_foot}) {
       const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
       if (foot < 0 || front < 0) continue;
@@ -346,15 +393,18 @@ class StanceBuilder {
         const auto positions = clip_.frame_positions(f);
         const Vec3 bone = (positions[at(front)] - positions[at(foot)]).cast<double>();
         const double sine = bone.y() / std::max(bone.norm(), 1e-9);
-        frames.emplace_back(positions[at(foot)].y() + positions[at(front)].y(),
-                            std::asin(std::clamp(sine, -1.0, 1.0)));
+        frames.push_back({positions[at(foot)].y() + positions[at(front)].y(),
+                          std::asin(std::clamp(sine, -1.0, 1.0)), f, role});
       }
     }
-    std::ranges::sort(frames);
+    if (frames.empty()) return frames;
+    const auto by_height = [](const FootOnGround& a) {
+      return std::tuple(a.height, a.frame, a.foot);
+    };
+    std::ranges::sort(frames, {}, by_height);
     frames.resize(1 + static_cast<std::size_t>(kLowest * static_cast<double>(frames.size() - 1)));
-    const auto middle = frames.begin() + static_cast<std::ptrdiff_t>(frames.size() / 2);
-    std::ranges::nth_element(frames, middle, {}, &std::pair<float, double>::second);
-    return middle->second;
+    std::ranges::stable_sort(frames, {}, &FootOnGround::pitch);
+    return frames;
   }
 
   const Clip& clip_;
@@ -367,6 +417,10 @@ class StanceBuilder {
 
 std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs) {
   return StanceBuilder(clip, roles).build(limbs);
+}
+
+bool begins_in_a_stance(const Clip& clip, const RoleMap& roles) {
+  return StanceBuilder(clip, roles).begins_in_a_stance();
 }
 
 }  // namespace krok::retarget

@@ -17,4 +17,7 @@ namespace krok::retarget {
 // whole. Where a motion begins with a T-pose, as some exporters have it, that is the stance.
 std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs);
 
+// Whether limbs are straight in the first frame, legs down and arms to the sides.
+bool begins_in_a_stance(const Clip& clip, const RoleMap& roles);
+
 }  // namespace krok::retarget

@@ -91,14 +91,20 @@ void declare(CommandOptions& command, Options& options) {
       command.add_option("--onto-reference-pose POSE", options.onto_reference_pose,
                          "The same for a target that is a motion");
   onto_pose.default_str("auto");
+  const CommandOption takes =
+      command.add_option("--takes IN", options.takes,
+                         "Build that T-pose from these takes of the input's actor, too: a file, a "
+                         "folder or a pattern; repeatable");
+  takes.one_each_time().excludes(pose);
   command
       .add_option("--alignment IN.json", options.alignment,
                   "Poses of both skeletons that match, as --save-alignment wrote them, so that all "
                   "motions of a pair are retargeted alike")
       .excludes(pose)
-      .excludes(onto_pose);
+      .excludes(onto_pose)
+      .excludes(takes);
   command.add_option("--save-alignment OUT.json", options.save_alignment,
-                     "Write the poses that were matched");
+                     "Write the poses that were matched; without -o nothing else is written");
   command.group("Motion");
   add_choice<krok::retarget::Feet>(
       command, "--feet", options.feet,
@@ -137,6 +143,7 @@ ToolSpec make_spec() {
   ToolSpec spec = spec_of("krok-retarget", options, declare, check, run);
   spec.summary = "Retargets a motion to another skeleton";
   spec.inputs = "--onto IN.model|IN.anim IN.anim";
+  spec.needs_output = false;  // --save-alignment alone is enough
   spec.examples = {{"krok-retarget --onto hero.model walk.anim -o hero_walk.anim -v",
                     "joints are mapped by role; -v prints the mapping"},
                    {"krok-retarget --map rig.json --onto hero.model take.anim -o hero_take.anim",
@@ -145,10 +152,10 @@ ToolSpec make_spec() {
                    {"krok-retarget --onto child.model walk.anim --ground stairs:rise=17cm,run=29cm "
                     "-o child_walk.anim",
                     "a walk of krok-walk on another skeleton, on the same stairs"},
-                   {"krok-retarget --onto hero.model tpose.anim -o hero_tpose.anim "
-                    "--save-alignment pair.json && krok-retarget --onto hero.model take.anim "
-                    "--alignment pair.json -o hero_take.anim",
-                    "all takes of an actor aligned as in one of them"},
+                   {"krok-retarget --onto hero.model takes/walk.bvh --takes takes --save-alignment "
+                    "pair.json && krok-retarget --onto hero.model takes --alignment pair.json "
+                    "--out-dir hero_takes",
+                    "all takes of an actor, aligned by what all of them show"},
                    {"krok-retarget --onto hero.model motions --out-dir hero_motions",
                     "all motions in a folder"}};
   spec.batch = {io::motion_endings(), always(".anim")};

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "formats/container/packed_orientation.h"
 #include "retarget/retarget.h"
@@ -19,6 +20,7 @@ struct Options {
   std::string scale;                    // empty: ratio of leg lengths
   std::string reference_pose = "auto";  // auto, a frame, or FILE:FRAME
   std::string onto_reference_pose = "auto";
+  std::vector<std::string> takes;  // of the input's actor: files, folders, patterns
   std::string alignment;          // of the two skeletons; empty: none
   std::string save_alignment;     // empty: none
   std::string ground;             // what io::open_terrain() takes; empty: none

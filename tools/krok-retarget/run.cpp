@@ -15,9 +15,11 @@
 #include "formats/registry/registry.h"
 #include "gait/shown_prints.h"
 #include "plant/follow_feet.h"
+#include "retarget/stance.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-retarget/outcome.h"
+#include "tools/krok-retarget/takes.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/planting.h"
 
@@ -98,15 +100,24 @@ std::optional<double> believable_floor(const Target& target, const RoleMap& role
   return near ? target.floor : std::nullopt;
 }
 
-void report_choices(const Outcome& outcome, ToolContext& context) {
+void report_choices(const Outcome& outcome, bool pose_is_given, ToolContext& context) {
   const krok::retarget::Report& report = outcome.report;
-  const auto note = [&](std::string code, std::string message) {
+  const auto note = [&](std::string code, std::string message, std::string hint = {}) {
     Diagnostic diagnostic;
     diagnostic.severity = Severity::note;
     diagnostic.code = std::move(code);
     diagnostic.message = std::move(message);
+    diagnostic.hint = std::move(hint);
     context.diagnose(std::move(diagnostic));
   };
+  const std::vector<Transform>& reference = outcome.source.reference;
+  if (!pose_is_given && outcome.source_roles.humanoid &&
+      report.method == krok::retarget::Method::roles &&
+      !krok::retarget::stands({outcome.source, outcome.source_roles, reference})) {
+    note("retarget-stance",
+         "the input's reference pose does not stand; a T-pose built from this take replaces it",
+         "takes of an actor are aligned alike with --takes and --save-alignment, then --alignment");
+  }
   const auto note_frame = [&](const std::optional<int>& frame, const char* whose) {
     if (!frame) return;
     note("retarget-reference",
@@ -195,16 +206,30 @@ Status take_alignment(const std::string& path, const Skeleton& source, const Ske
   return {};
 }
 
+// What needs more than the options to be found out.
+Status check_outputs(const Options& options, const ToolContext& context) {
+  if (context.one_of_many != nullptr && !options.takes.empty()) {
+    return Error("usage", "--takes is for one input: each file of a batch would read all takes",
+                 "write their alignment with --takes and --save-alignment first, and give it to "
+                 "the batch with --alignment");
+  }
+  if (!context.output.empty()) return check_output_kind(context.output, "-o", registry::Kind::anim);
+  if (options.save_alignment.empty()) {
+    return Error("usage", "nothing to write: neither -o nor --save-alignment is given",
+                 "write the motion with -o OUTPUT.anim");
+  }
+  if (options.ground.empty()) return {};
+  return Error("usage", "--ground is for a motion that is written", "give its name with -o");
+}
+
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
+  if (Status status = check_outputs(options, context); !status) return status.error();
   auto how = parse(options);
   if (!how) return how.error();
   how->jobs = context.jobs;
   how->progress = context.progress;
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
   const auto source = io::open_motion(options.input, context);
   if (!source) return source.error();
   const auto target = read_target(options.onto, context);
@@ -226,6 +251,11 @@ Result<int> run(const Options& options, ToolContext& context) {
         take_alignment(options.alignment, source->skeleton, target->clip.skeleton, *how, context);
   }
   if (!posed) return posed.error();
+  if (!options.takes.empty()) {
+    auto pose = pose_of_takes(options.takes, *source, *source_roles, context);
+    if (!pose) return pose.error();
+    how->source_pose = *std::move(pose);
+  }
 
   auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, *how);
   if (!result) return std::move(result).error().in_file(options.input);
@@ -239,7 +269,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
                         result->report};
-  report_choices(outcome, context);
+  const bool pose_is_given = how->source_frame || !how->source_pose.empty();
+  report_choices(outcome, pose_is_given, context);
 
   Clip& clip = result->clip;
   clip.provenance = context.provenance();
@@ -255,7 +286,9 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   context.report.result = to_json(outcome);
   if (followed) context.report.result["ground"] = ground_json(*followed);
-  context.log(fmt::format("{}: {}", context.output, summary(outcome)));
+  context.log(fmt::format("{}: {}",
+                          context.output.empty() ? options.save_alignment : context.output,
+                          summary(outcome)));
   if (followed) context.log("  " + ground_line(*followed));
   if (context.verbose) context.log(table(outcome));
   return kExitDone;

@@ -126,6 +126,31 @@ TEST(Collada, CurvesOfOneNodeInSeveralAnimations) {
   EXPECT_FALSE(read_or_fail(folder.add("bare.dae", collada(rig, false))).space.metres);
 }
 
+// As Blender writes them: several cameras, by the horizontal field of view. Without this they are
+// left out, since Assimp reads none of it.
+TEST(Collada, CamerasOfDifferentHorizontalFieldsOfView) {
+  const Folder folder;
+  std::string text = collada(MovingRig());
+  const std::string lens =
+      "<camera id=\"{}\"><optics><technique_common><perspective><xfov sid=\"xfov\">{}</xfov>"
+      "<aspect_ratio>{}</aspect_ratio><znear>0.1</znear><zfar>100</zfar></perspective>"
+      "</technique_common></optics></camera>";
+  text.insert(text.find("</library_cameras>"), fmt::format(fmt::runtime(lens), "wide", 90, 2) +
+                                                   fmt::format(fmt::runtime(lens), "far", 20, 1));
+  text.insert(text.find("</visual_scene>"),
+              "<node id=\"a\" name=\"a\"><node id=\"b\" name=\"b\"><instance_camera "
+              "url=\"#far\"/></node><instance_camera url=\"#wide\"/></node>");
+  const auto scene = read_or_fail(folder.add("shots.dae", text));
+  std::map<std::string, double> degrees;
+  for (const nodes::Camera& camera : scene.cameras) {
+    degrees[camera.name] = camera.field_of_view / kRadiansPerDegree;
+  }
+  ASSERT_EQ(degrees.size(), 3U);
+  EXPECT_NEAR(degrees["a"], 2 * std::atan(0.5) / kRadiansPerDegree, 1e-9);
+  EXPECT_NEAR(degrees["b"], 20, 1e-9);
+  EXPECT_NEAR(degrees["eye-node"], 40, 1e-9);
+}
+
 TEST(Collada, CameraWithAVerticalFieldOfViewAlone) {
   const Folder folder;
   const auto scene = read_or_fail(folder.add("shot.dae", collada(MovingRig())));

@@ -171,10 +171,35 @@ TEST(DetectConventions, AFoldedReferencePoseWhosePelvisTellsNothingIsAsTheMotion
   const Conventions flat = detect(folded, sample_of(upright));
   EXPECT_EQ(flat.reference_up, flat.up);
   EXPECT_EQ(flat.reference_forward, flat.forward);
-  // Without frames there is nothing to hold it against.
+  // A file without frames has the reference pose of the takes of its skeleton.
   const Conventions still = detect(folded_person());
-  EXPECT_EQ(still.reference_up, still.up);
-  EXPECT_EQ(still.reference_forward, still.forward);
+  EXPECT_EQ(still.reference_up, Direction::plus_x);
+  EXPECT_EQ(still.reference_forward, Direction::plus_y);
+}
+
+// Takes of a skeleton whose reference pose does not stand, in which the actor lies, falls or gets
+// up, have the axes of those in which it stands.
+TEST(DetectConventions, TakesThatLieAgreeWithThoseThatStand) {
+  Skeleton upright = person(1, Direction::plus_y, Direction::plus_z);
+  for (Transform& joint : upright.reference) joint.position.y() += 0.94;
+  // Not along +z: alone, such a take is one that stands in axes with z up.
+  for (const double heading : {50.0, 90.0, 180.0, 270.0}) {
+    const Quat lying = axis_rotation(Axis::y, heading * kRadiansPerDegree) *
+                       axis_rotation(Axis::x, kPi / 2);  // on the front
+    for (const int standing : {0, 4, 6}) {
+      std::vector<Vec3> samples;
+      for (int i = 0; i < 10; ++i) {
+        auto sample = sample_of(upright, i < standing ? Quat::Identity() : lying);
+        for (Vec3& p : sample) p.y() += i < standing ? 0 : 0.17;
+        samples.insert(samples.end(), sample.begin(), sample.end());
+      }
+      const Conventions found = detect(folded_person(), samples);
+      EXPECT_EQ(found.up, Direction::plus_y) << heading << ": " << found.up_reason;
+      EXPECT_EQ(found.forward, Direction::plus_z) << heading;
+      EXPECT_EQ(found.reference_up, Direction::plus_x) << heading;
+      EXPECT_EQ(found.reference_forward, Direction::plus_y) << heading;
+    }
+  }
 }
 
 TEST(DetectConventions, AHandstandDoesNotTurnTheWorldOver) {
