@@ -153,9 +153,8 @@ void convert_cameras(Conversion& to) {
                           camera.name));
       continue;
     }
-    const auto angle =
-        vertical_field_of_view(to, source, in_world ? &own->second : nullptr, of_collada,
-                               camera.name);
+    const auto angle = vertical_field_of_view(to, source, in_world ? &own->second : nullptr,
+                                              of_collada, camera.name);
     if (!angle) {
       to.warn("assimp-camera",
               fmt::format("camera '{}' has an invalid field of view and is left out", camera.name));

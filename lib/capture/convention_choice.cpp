@@ -105,6 +105,9 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
     diagnostic.message = fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
                          (reason.empty() ? std::string() : ": " + reason);
     if (guess) diagnostic.hint = fmt::format("set it with --{} if that is wrong", name);
+    if (guess && name == std::string_view("up") && code_prefix != "scene") {
+      diagnostic.hint += ", or take the axes of a take that stands with --axes-from";
+    }
     diagnostic.where.file = file_name;
     diagnostics.push_back(std::move(diagnostic));
   };

@@ -222,10 +222,10 @@ void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Convent
     return;
   }
   found.up = up_by_the_ground(evidence);
-  found.up_reason = fmt::format(
-      "the character is rarely upright; {}",
-      found.up == Direction::plus_z ? "the lowest joint is near the ground along +z"
-                                    : "+y is kept, which most files have");
+  found.up_reason =
+      fmt::format("the character is rarely upright; {}",
+                  found.up == Direction::plus_z ? "the lowest joint is near the ground along +z"
+                                                : "+y is kept, which most files have");
   look_for_a_floor(evidence, found);
 }
 

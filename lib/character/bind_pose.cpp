@@ -63,7 +63,8 @@ class Finder {
         diagnostics_(diagnostics),
         reference_(at(joints.count()), Mat4::Identity()),
         known_(at(joints.count()), 0),
-        weighted_(at(joints.count()), 0) {}
+        weighted_(at(joints.count()), 0),
+        doubtful_(at(joints.count()), 0) {}
 
   BindPose find() {
     evaluator_.place_nodes(-1, 0, rest_);
@@ -92,7 +93,7 @@ class Finder {
   Mat4 upright(int skin, const std::vector<std::size_t>& places, const Mat4& by_top) const;
   Mat4 mesh_to_world(int skin, const std::vector<std::size_t>& places);
   std::vector<std::size_t> usable_binds(int skin);
-  bool fits_parent(std::size_t joint, const Mat4& place) const;
+  bool fits_others(std::size_t joint, const Mat4& place) const;
   void use_skin(int skin);
   void follow_nodes();
   void report_binds();
@@ -107,6 +108,7 @@ class Finder {
   std::vector<Mat4> reference_;
   std::vector<char> known_;
   std::vector<char> weighted_;
+  std::vector<char> doubtful_;  // without vertices, and bound where it cannot be
   std::size_t unusable_ = 0;
   std::string first_unusable_;
 };
@@ -250,16 +252,31 @@ std::vector<std::size_t> Finder::usable_binds(int skin) {
   return places;
 }
 
-// Whether a bone has the length and scale relative to its parent that its nodes give it. Some
-// exporters write arbitrary matrices for joints without vertices.
-bool Finder::fits_parent(std::size_t joint, const Mat4& place) const {
-  const int parent = joints_.parents[joint];
-  if (parent < 0 || !known_[at(parent)]) return true;
-  const Mat4 bound = inverse_or_identity(reference_[at(parent)]) * place;
-  const Mat4 by_nodes = inverse_or_identity(rest(parent)) * rest(static_cast<int>(joint));
+// Whether a joint without vertices has the scale that its nodes give it relative to a joint whose
+// bind pose is known, and the distance from its parent. Some exporters write arbitrary matrices for
+// such joints, or the identity for all of them.
+bool Finder::fits_others(std::size_t joint, const Mat4& place) const {
   const auto differ = [](double a, double b) { return std::abs(a - b) > 0.02 * std::max(a, b); };
-  return !differ(bound.topLeftCorner<3, 3>().norm(), by_nodes.topLeftCorner<3, 3>().norm()) &&
-         !differ(bound.topRightCorner<3, 1>().norm(), by_nodes.topRightCorner<3, 1>().norm());
+  const auto fits = [&](int other, bool by_distance) {
+    const Mat4 bound = inverse_or_identity(reference_[at(other)]) * place;
+    const Mat4 by_nodes = inverse_or_identity(rest(other)) * rest(static_cast<int>(joint));
+    return !differ(bound.topLeftCorner<3, 3>().norm(), by_nodes.topLeftCorner<3, 3>().norm()) &&
+           !(by_distance &&
+             differ(bound.topRightCorner<3, 1>().norm(), by_nodes.topRightCorner<3, 1>().norm()));
+  };
+  const int parent = joints_.parents[joint];
+  if (parent >= 0 && doubtful_[at(parent)]) return false;
+  for (int above = parent; above >= 0; above = joints_.parents[at(above)]) {
+    if (known_[at(above)]) return fits(above, above == parent);
+  }
+  std::vector<char> inside(at(joints_.count()), 0);
+  inside[joint] = 1;
+  for (int below = static_cast<int>(joint) + 1; below < joints_.count(); ++below) {
+    const int its = joints_.parents[at(below)];
+    inside[at(below)] = its >= 0 ? inside[at(its)] : 0;
+    if (inside[at(below)] && known_[at(below)]) return fits(below, false);
+  }
+  return true;
 }
 
 void Finder::use_skin(int skin) {
@@ -276,11 +293,15 @@ void Finder::use_skin(int skin) {
   for (const std::size_t k : places) {
     const std::size_t joint = joint_of(skin, k);
     const Mat4 place = to_world * inverse_or_identity(one.inverse_binds[k]);
-    if (!weighted_[joint] && !fits_parent(joint, place)) continue;
+    if (!weighted_[joint] && !fits_others(joint, place)) {
+      doubtful_[joint] = known_[joint] == 0 ? 1 : 0;
+      continue;
+    }
     Mat4& reference = reference_[joint];
     if (!known_[joint]) {
       reference = place;
       known_[joint] = 1;
+      doubtful_[joint] = 0;
       continue;
     }
     if (nearly_same(place, reference, size_)) continue;

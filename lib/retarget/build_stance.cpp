@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <tuple>
 #include <utility>
 
@@ -55,7 +56,7 @@ class StanceBuilder {
                     -kUpwards, kLeft},
                Limb{Role::root, Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
                     -kUpwards, kLeft});
-    const std::vector<FootOnGround> on_ground = feet_on_ground();
+    const std::vector<FootOnGround> on_ground = feet_on_ground({Role::left_foot, Role::right_foot});
     flatten(Role::left_foot, Role::left_toes, on_ground);
     flatten(Role::right_foot, Role::right_toes, on_ground);
     return std::move(pose_);
@@ -358,12 +359,13 @@ class StanceBuilder {
     const double own = std::asin(std::clamp(now.y() / std::max(now.norm(), 1e-9), -1.0, 1.0));
     const bool known = std::abs(own - kUsualPitch) < kPitchRange;
     if (on_ground.empty() && known) return;
-    const double pitch =
-        on_ground.empty() ? kUsualPitch : on_ground[on_ground.size() / 2].pitch;
+    const double pitch = on_ground.empty() ? kUsualPitch : on_ground[on_ground.size() / 2].pitch;
     // What of it points aside stays.
     const Vec3 wanted = std::cos(pitch) * kForward + std::sin(pitch) * kUpwards;
     roll(foot, kLeft, now, wanted);
-    bend_toes(role, roles_.joint(toes), on_ground);
+    const bool stood =
+        std::ranges::any_of(on_ground, [&](const FootOnGround& one) { return one.foot == role; });
+    bend_toes(role, roles_.joint(toes), stood ? on_ground : feet_on_ground({role}));
   }
 
   void bend_toes(Role foot, int toes, const std::vector<FootOnGround>& on_ground) {
@@ -384,9 +386,9 @@ class StanceBuilder {
 
   // By pitch. A foot is flat where ankle and ball are both low: on tiptoe and on the heel one of
   // them is not. Of both feet together, as a take may hold one of them up.
-  std::vector<FootOnGround> feet_on_ground() const {
+  std::vector<FootOnGround> feet_on_ground(std::initializer_list<Role> feet) const {
     std::vector<FootOnGround> frames;
-    for (const Role role : {Role::left_foot, Role::right_foot}) {
+    for (const Role role : feet) {
       const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
       if (foot < 0 || front < 0) continue;
       for (int f = 0; f < clip_.frame_count(); f += step_) {

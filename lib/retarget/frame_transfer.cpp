@@ -75,7 +75,7 @@ class FrameTransfer {
     return 0.5 * (pose[at(sides[0])].position + pose[at(sides[1])].position);
   }
 
-  // Moves the anchor and its descendants.
+  // Moves the anchor and its descendants, and takes along what hangs beside them.
   void place(std::span<const Transform> source_pose, std::span<Transform> pose) const {
     const Vec3 goal =
         plan_.scale * middle(source_pose, plan_.source_sides) + plan_.rise * Vec3::UnitY();
@@ -83,13 +83,30 @@ class FrameTransfer {
     for (std::size_t k = 0; k < pose.size(); ++k) {
       if (below_anchor_[k] != 0) pose[k].position += shift;
     }
+    const Transform carried =
+        pose[at(plan_.anchor)] * target_.reference[at(plan_.anchor)].inverse();
+    for (std::size_t k = 0; k < pose.size(); ++k) {
+      if (beside_anchor_[k] == 0) continue;
+      const std::size_t parent = at(target_.parents[k]);
+      const Quat own = pose[k].orientation;
+      pose[k] = beside_anchor_[parent] != 0 ? pose[parent] * plan_.local[k]
+                                            : carried * target_.reference[k];
+      if (plan_.mapping[k].first >= 0) pose[k].orientation = own;
+    }
   }
 
+  // Joints beside the anchor, neither above nor below it: some rigs hang parts of a body, such as a
+  // belly, on the root. They keep their place by the anchor.
   void find_below_anchor() {
     below_anchor_.assign(target_.names.size(), 0);
     below_anchor_[at(plan_.anchor)] = 1;
     for (int k = plan_.anchor + 1; k < target_.joint_count(); ++k) {
       below_anchor_[at(k)] = below_anchor_[at(target_.parents[at(k)])];
+    }
+    beside_anchor_.assign(target_.names.size(), 1);
+    for (int k = plan_.anchor; k >= 0; k = target_.parents[at(k)]) beside_anchor_[at(k)] = 0;
+    for (std::size_t k = 0; k < below_anchor_.size(); ++k) {
+      if (below_anchor_[k] != 0 || target_.parents[k] < 0) beside_anchor_[k] = 0;
     }
   }
 
@@ -113,7 +130,7 @@ class FrameTransfer {
 
   void lower(double by, std::span<Transform> pose) const {
     for (std::size_t k = 0; k < pose.size(); ++k) {
-      if (below_anchor_[k] != 0) pose[k].position.y() -= by;
+      if (below_anchor_[k] != 0 || beside_anchor_[k] != 0) pose[k].position.y() -= by;
     }
   }
 
@@ -152,7 +169,7 @@ class FrameTransfer {
   const Skeleton& target_;
   const TransferPlan& plan_;
   const Options& options_;
-  std::vector<char> below_anchor_;  // [target joints]
+  std::vector<char> below_anchor_, beside_anchor_;  // [target joints]
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 namespace krok::retarget {
 
 TakePool::TakePool(std::size_t takes, const RoleMap& roles)
-    : frames_each_(static_cast<int>(std::max<std::size_t>(20'000 / std::max<std::size_t>(takes, 1),
-                                                          4))),
+    : frames_each_(
+          static_cast<int>(std::max<std::size_t>(20'000 / std::max<std::size_t>(takes, 1), 4))),
       roles_(roles) {}
 
 void TakePool::add(const Clip& take) {

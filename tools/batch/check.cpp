@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "core/text.h"
 #include "tools/cli/paths.h"
 
 namespace krok::cli::batch {
@@ -32,12 +31,6 @@ class Check {
     });
     for (std::size_t i = 0; i < count; ++i) {
       note_read(list_.files[i].input, inputs[i]);
-      const bool listed = !list_.files[i].line.file.empty();
-      if (inputs[i] || !listed || line_.keep_going) continue;
-      Error error("file-missing", fmt::format("no such file: {}", shown(list_.files[i].input)),
-                  "check the path, or convert the other files with --keep-going");
-      error.where = list_.files[i].line;
-      errors_.push_back(std::move(error));
     }
     for (const std::string& path : line_.fixed_positionals) note_read(path);
     if (line_.manifest != "-") note_read(line_.manifest);

@@ -11,6 +11,7 @@
 #include "core/glob.h"
 #include "core/hash.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "tools/batch/check.h"
 #include "tools/cli/paths.h"
 
@@ -185,6 +186,17 @@ class Lister {
         paths, [&](const std::string& path) { return absolute_path(path).rfind(results, 0) == 0; });
   }
 
+  // With --keep-going a missing file fails when its turn comes.
+  void check_exists(const ManifestWord& input) {
+    std::error_code missing;
+    if (line_.keep_going || input.text == "-" || fs::exists(input.text, missing)) return;
+    Error error("file-missing", fmt::format("no such file: {}", shown(input.text)),
+                "check the path, or convert the other files with --keep-going");
+    error.where = input.where;
+    error.where.file = line_.manifest;
+    fail(std::move(error));
+  }
+
   void from_manifest() {
     if (!line_.inputs.empty()) {
       return fail(Error("usage", "inputs cannot be combined with --manifest", "use one of them"));
@@ -194,6 +206,7 @@ class Lister {
     Manifest manifest = parse_manifest(file->text(), line_.manifest);
     errors_.insert(errors_.end(), manifest.errors.begin(), manifest.errors.end());
     for (ManifestLine& line : manifest.lines) {
+      check_exists(line.input);
       const auto set = sets_.find(line.options);
       if (!set) {
         fail(Error(set.error()).in_file(line_.manifest));

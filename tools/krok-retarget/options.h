@@ -21,10 +21,10 @@ struct Options {
   std::string reference_pose = "auto";  // auto, a frame, or FILE:FRAME
   std::string onto_reference_pose = "auto";
   std::vector<std::string> takes;  // of the input's actor: files, folders, patterns
-  std::string alignment;          // of the two skeletons; empty: none
-  std::string save_alignment;     // empty: none
-  std::string ground;             // what io::open_terrain() takes; empty: none
-  std::string contacts = "auto";  // of the input's feet, for `ground`
+  std::string alignment;           // of the two skeletons; empty: none
+  std::string save_alignment;      // empty: none
+  std::string ground;              // what io::open_terrain() takes; empty: none
+  std::string contacts = "auto";   // of the input's feet, for `ground`
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 

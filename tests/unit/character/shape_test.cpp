@@ -273,6 +273,44 @@ TEST(ImportedShape, MatricesOfJointsWithoutVerticesMayBeAnything) {
   EXPECT_NEAR((skeleton.reference[3].position - skeleton.reference[2].position).norm(), 0.2, 1e-9);
 }
 
+// Some exporters write the identity for each joint that only controls others: the whole trunk would
+// be at the origin, and the character retargeted in pieces.
+TEST(ImportedShape, ControlsWithTheIdentityAreWhereTheirNodesAre) {
+  nodes::Scene scene;
+  const int armature =
+      add_node(scene, "Armature", -1, Vec3::Zero(), from_rotation_vector(Vec3(-1.5, 0, 0)), 0.01);
+  const int root = add_node(scene, "root", armature);
+  const int torso = add_node(scene, "torso", root, Vec3(0, 0, 60));
+  const int control = add_node(scene, "spine_fk", torso, Vec3(0, 0, 20));
+  const int thigh = add_node(scene, "thigh", torso, Vec3(10, 0, -2));
+  const int shin = add_node(scene, "shin", thigh, Vec3(0, 0, -25));
+  const int head = add_node(scene, "head", control, Vec3(0, 3, 30));
+  Mat4 mesh_to_world = Mat4::Identity();
+  mesh_to_world.topLeftCorner<3, 3>() *= 0.01;
+  const int skin = add_skin(scene, "Skin", {thigh, shin, head}, mesh_to_world);
+  add_mesh(scene, "Body", -1, skin);
+  for (const int joint : {root, torso, control}) {
+    scene.skins[0].joints.push_back(joint);
+    scene.skins[0].inverse_binds.push_back(Mat4::Identity());
+  }
+  add_channel(scene.animations.emplace_back(), shin, nodes::Path::rotation, 4, {0.0f, 0.5f},
+              {0, 0, 0, 1, 0, 0, 0.6f, 0.8f});
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  EXPECT_LT(farthest(scene, evaluator, imported), 2e-6);
+  EXPECT_FALSE(has_code(imported.diagnostics, "scene-scale"));
+  const Skeleton& skeleton = imported.clip.skeleton;
+  const auto apart = [&](const char* a, const char* b) {
+    const auto place = [&](const char* name) {
+      return skeleton.reference[static_cast<std::size_t>(skeleton.find(name))].position;
+    };
+    return (place(a) - place(b)).norm();
+  };
+  EXPECT_NEAR(apart("root", "torso"), 0.6, 1e-9);
+  EXPECT_NEAR(apart("torso", "spine_fk"), 0.2, 1e-9);
+  EXPECT_NEAR(apart("spine_fk", "head"), std::hypot(0.03, 0.3), 1e-9);
+}
+
 TEST(ImportedShape, TargetsStandInTheReferencePose) {
   nodes::Scene scene = armature_scene();
   const auto give_targets = [&](std::size_t mesh, const Vec3f& move) {

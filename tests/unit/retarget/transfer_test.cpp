@@ -6,6 +6,8 @@
 
 #include <cstring>
 
+#include "retarget/stance.h"
+#include "retarget/take_pool.h"
 #include "support/skeleton_text.h"
 #include "tests/unit/retarget/actors.h"
 
@@ -437,7 +439,7 @@ TEST(Retarget, TakesOfASkeletonAreAlignedAlike) {
     world_to_local(heap.parents, pose, local);
     const int hand = heap.find("RightHand"), knee = heap.find("LeftLeg");
     local[at(hand)].orientation =
-        heap.reference_local(hand).orientation * from_rotation_vector(Vec3(0.95, 0.2, 0));
+        heap.reference_local(hand).orientation * from_rotation_vector(Vec3(1.55, 0.2, 0));
     local[at(knee)].orientation =
         heap.reference_local(knee).orientation * from_rotation_vector(Vec3(1.4, 0, 0));
     local_to_world(heap.parents, local, pose);
@@ -462,6 +464,105 @@ TEST(Retarget, TakesOfASkeletonAreAlignedAlike) {
     EXPECT_LT(angle_between(first, turn_between(hop, joint, made[3])), 3 * kRadiansPerDegree)
         << joint;
   }
+}
+
+// Rigs whose toes are bent in the reference pose, or straight there and bent wherever the foot
+// stands: the target's lie flat as in its own reference pose, and do not curl up.
+TEST(Retarget, ToesLieFlatWhereTheInputsDo) {
+  const Skeleton human = human_skeleton();
+  Skeleton folded = human;
+  Clip walk = lively_clip(human, 60);
+  std::vector<Transform> pose(human.names.size()), local(pose.size());
+  for (int f = 0; f < walk.frame_count(); ++f) {
+    walk.get_pose(f, pose);
+    world_to_local(human.parents, pose, local);
+    for (const char* toes : {"LeftToeBase", "RightToeBase"}) {
+      local[at(human.find(toes))] = human.reference_local(human.find(toes));
+    }
+    local_to_world(human.parents, local, pose);
+    walk.set_pose(f, pose);
+  }
+  for (const std::string side : {"Left", "Right"}) {
+    folded = posed(folded, side + "UpLeg", from_rotation_vector(Vec3(3, 0, 0)));
+    folded = posed(folded, side + "ToeBase", from_rotation_vector(Vec3(0.5, 0, 0)));
+  }
+  walk.skeleton = folded;
+  const Skeleton target = with_other_axes(human, 6);
+  const auto result = transfer(walk, target, {.feet = retarget::Feet::free});
+  ASSERT_TRUE(result.ok());
+  result->clip.get_pose(7, pose);
+  world_to_local(target.parents, pose, local);
+  for (const char* toes : {"rig:LeftToeBase", "rig:RightToeBase"}) {
+    const int joint = target.find(toes);
+    EXPECT_LT(
+        angle_between(local[at(joint)].orientation, target.reference_local(joint).orientation),
+        2 * kRadiansPerDegree)
+        << toes;
+  }
+}
+
+// Some rigs hang a part of the body on the root, beside the hips: it goes along with them instead
+// of being left where the walk began.
+TEST(Retarget, PartsBesideTheHipsGoAlong) {
+  const Skeleton human = human_skeleton();
+  Skeleton rooted;
+  rooted.add("root", -1, {});
+  const int belly =
+      rooted.add("belly", 0, {human.reference[0].position + Vec3(0, 0.1, 0.1), Quat::Identity()});
+  const int navel = rooted.add("navel", belly,
+                               rooted.reference[1] * Transform{Vec3(0, 0, 0.1), Quat::Identity()});
+  for (int j = 0; j < human.joint_count(); ++j) {
+    const int parent = human.parents[at(j)];
+    rooted.add(human.names[at(j)], parent < 0 ? 0 : parent + 3, human.reference[at(j)]);
+  }
+  Clip walk = lively_clip(human, 30);
+  for (int f = 0; f < walk.frame_count(); ++f) {
+    for (Vec3f& p : walk.frame_positions(f)) p.z() += 0.1F * static_cast<float>(f);
+  }
+  const auto result = transfer(walk, rooted, {});
+  ASSERT_TRUE(result.ok());
+  std::vector<Transform> pose(rooted.names.size());
+  for (const int frame : {3, 29}) {
+    result->clip.get_pose(frame, pose);
+    for (const int joint : {belly, navel}) {
+      const Transform now = pose[3].inverse() * pose[at(joint)];
+      const Transform own = rooted.reference[3].inverse() * rooted.reference[at(joint)];
+      EXPECT_LT((now.position - own.position).norm(), 1e-5) << frame;
+      EXPECT_LT(angle_between(now.orientation, own.orientation), 1e-5) << frame;
+    }
+    EXPECT_LT(pose[0].position.norm(), 1e-6);
+  }
+}
+
+// What several takes show together; one that begins with a T-pose decides for all of them.
+TEST(Retarget, TakesTogetherGiveOneStance) {
+  const Skeleton human = human_skeleton();
+  Skeleton folded = human;
+  for (const char* name : {"LeftUpLeg", "RightUpLeg"}) {
+    folded = posed(folded, name, from_rotation_vector(Vec3(3, 0, 0)));
+  }
+  Clip walk = lively_clip(human, 60), posing = walk;
+  posing.set_pose(0, human.reference);
+  walk.skeleton = posing.skeleton = folded;
+  const RoleMap roles = find_roles(folded);
+  retarget::TakePool pool(2, roles), other(2, roles);
+  pool.add(walk);
+  const Clip alone = pool.clip();
+  pool.add(posing);
+  other.add(posing);
+  other.add(walk);
+  EXPECT_EQ(alone.frame_count(), 60);
+  EXPECT_EQ(pool.clip().frame_count(), 121);
+  for (const retarget::TakePool* takes : {&pool, &other}) {
+    const auto stance = retarget::find_stance(takes->clip(), roles, std::nullopt);
+    ASSERT_TRUE(stance.ok());
+    for (std::size_t j = 0; j < stance->pose.size(); ++j) {
+      const Transform& wanted = human.reference[j];
+      EXPECT_LT((stance->pose[j].position - wanted.position).norm(), 1e-5);
+      EXPECT_LT(angle_between(stance->pose[j].orientation, wanted.orientation), 1e-3);
+    }
+  }
+  EXPECT_EQ(retarget::TakePool(100'000, roles).clip().frame_count(), 0);
 }
 
 }  // namespace
