@@ -26,15 +26,21 @@ constexpr double kFrame = 1.0 / 60;  // seconds
 constexpr double kWhole = 0.75;      // of a stance
 constexpr double kJerk = 0.1;        // seconds
 constexpr int kFewSeeds = 2;         // events
-constexpr double kLowRate = 45;      // frames per second; below it, frames are interpolated
-// GaitOptions::landed below kLowRate. By walks captured at 30 Hz and at 60 Hz, every other frame.
-constexpr double kLandedBlurred = 0.2;
+// Frames per second; below the first, frames are interpolated, up to the second if they do not
+// jitter much: interpolated jitter looks like movement.
+constexpr double kLowRate = 45, kDenseRate = 100;
+constexpr double kMuchJitter = 0.0025;  // metres, frame to frame, for a leg of 0.86 m
+constexpr int kMaxDenseFrames = 1 << 20;
 
 class KeytimeFinder {
  public:
   KeytimeFinder(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
                 const GaitOptions& options)
       : clip_(clip), found_(found), feet_(clip, roles, found, options) {}
+
+  bool jitters_much() const {
+    return feet_.jitter() > kMuchJitter * found_.leg_length / contacts::kUsualLeg;
+  }
 
   Gait find() const {
     Gait gait;
@@ -251,10 +257,13 @@ class KeytimeFinder {
 
 namespace {
 
-Gait find_between_frames(const Clip& clip, const RoleMap& roles, GaitOptions options) {
-  const Clip dense = contacts::doubled_rate(clip);
+Gait find_between_frames(const Clip& clip, const RoleMap& roles, const GaitOptions& options,
+                         bool jittery) {
+  Clip dense = contacts::doubled_rate(clip);
+  while (!jittery && dense.rate < kDenseRate && dense.frame_count() < kMaxDenseFrames) {
+    dense = contacts::doubled_rate(dense);
+  }
   const auto found = find_contacts(dense, roles);
-  options.landed = std::min(options.landed, kLandedBlurred);
   return found ? KeytimeFinder(dense, roles, *found, options).find() : Gait();
 }
 
@@ -277,9 +286,11 @@ Gait find_gait(const Clip& clip, const RoleMap& roles, const FoundContacts& foun
                const GaitOptions& options) {
   Gait gait;
   if (clip.frame_count() >= 3 && !found.tracks.empty() && found.leg_length > 0) {
-    gait = clip.rate < kLowRate && clip.frame_count() >= 4
-               ? find_between_frames(clip, roles, options)
-               : KeytimeFinder(clip, roles, found, options).find();
+    const KeytimeFinder finder(clip, roles, found, options);
+    const bool interpolates = clip.rate < (finder.jitters_much() ? kLowRate : kDenseRate) &&
+                              clip.frame_count() >= 4 && clip.frame_count() < kMaxDenseFrames;
+    gait = interpolates ? find_between_frames(clip, roles, options, finder.jitters_much())
+                        : finder.find();
   }
   const auto warn = [&](std::string code, std::string message, std::string hint) {
     gait.warnings.push_back(make_warning(std::move(code), std::move(message), std::move(hint)));

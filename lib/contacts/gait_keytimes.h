@@ -27,7 +27,11 @@ struct GaitOptions {
   double low_height = 0.08;
   // A foot that drifts while it lands is down when its deceleration has fallen to this part of its
   // peak.
-  double landed = 0.5;
+  double landed = 0.3;
+  // ... and it is no faster than this: half of the fastest landings, since a stop seen through a
+  // low-pass filter has passed half its speed when it happens; metres per second, for a leg of
+  // 0.86 m (Winter, "Foot trajectory in human gait", Phys. Ther. 72, 1992: up to 1 m/s).
+  double landing_speed = 0.5;
   // Min height of the pelvis above the lower foot, in leg lengths; below it the character sits,
   // lies or crawls.
   double least_height = 0.6;
@@ -47,8 +51,8 @@ struct Gait {
 // of its points is in contact, extended while it rolls over heel or toes: from when it becomes
 // slower than touch_speed before that to when it becomes faster after. A heel (walking backwards:
 // ball or tip) that drifts meanwhile, because the true one is elsewhere in the foot, strikes when
-// its deceleration has fallen to half its peak. Without contacts, a foot is in stance while it is
-// much slower than in swing.
+// its deceleration has fallen to 0.3 of its peak and it is no faster than feet land. Without
+// contacts, a foot is in stance while it is much slower than in swing.
 //
 // Stances are compared with the seeds, the times at which the foot is furthest ahead of and behind
 // the pelvis in the direction of travel (Zeni, Richards and Higginson, "Two simple methods for
@@ -67,9 +71,9 @@ struct Gait {
 // A clip cut at a strike has that strike at its start or end. Nothing is found while the pelvis is
 // low: sitting, lying, crawling.
 //
-// Below 45 frames per second events are found between frames, on a clip of twice the rate, and
-// decelerations, which such rates blur, are followed down to a fifth of their peak. In runs
-// contacts begin late and end early, since feet land and leave fast: the events are where the
+// Below 100 frames per second (45 if it jitters much) events are found between frames, on a clip
+// interpolated to a multiple of its rate, so that a capture has the same events at any rate. In
+// runs contacts begin late and end early, since feet land and leave fast: the events are where the
 // slowest point of the foot passes 0.12 of its max speed; offs of backward walks, 0.06. Where an
 // event between two strikes or two toe-offs a cycle apart is missing, it is placed by the usual
 // lengths of stance and swing.

@@ -98,6 +98,10 @@ WalkingFeet::WalkingFeet(const Clip& clip, const RoleMap& roles, const FoundCont
   for (Foot& foot : feet_) to_landings(foot);
 }
 
+double WalkingFeet::jitter() const {
+  return jitters_.empty() ? 0 : std::ranges::max(jitters_);
+}
+
 void WalkingFeet::take_directions() {
   std::vector<Vec3> slow = velocities(pelvis_, clip_.rate);
   slow = smoothed(slow, clip_.rate, kTravelCutoff);
@@ -332,12 +336,21 @@ double WalkingFeet::end_of_slowing(std::size_t t, int frame, int earliest, doubl
   while (f <= last && slowing(f) > slowed) ++f;
   if (!(slowed > 0) || f > last) return rest;
   // The deceleration between two frames is that at the time half-way.
-  const double end = f - 0.5 + (slowing(f - 1) - slowed) / (slowing(f - 1) - slowing(f));
+  double end = f - 0.5 + (slowing(f - 1) - slowed) / (slowing(f - 1) - slowing(f));
   const auto speed_at = [&](double time) {
     const double at = std::clamp<double>(time, 0, last);
     const auto i = static_cast<std::size_t>(at);
     return speed[i] + (at - std::floor(at)) * (speed[i + 1] - speed[i]);
   };
+  // A heel that is still faster than it lands has slowed down in the air, before the ground.
+  const double landing = options_.landing_speed * leg_ / kUsualLeg;
+  if (speed_at(end) > landing) {
+    f = static_cast<int>(end) + 1;
+    while (f <= last && speed[static_cast<std::size_t>(f)] > landing) ++f;
+    if (f > last) return rest;
+    const auto speed_in = [&](int i) { return speed[static_cast<std::size_t>(i)]; };
+    end = crossed(speed_in, f, f - 1, clip_.frame_count(), landing);
+  }
   const double jitter = kJitterTimes * speed_jitter(jitters_[t], kSpeedCutoff, clip_.rate);
   const double settled = std::ceil(rest + std::max(1.0, kSettling * clip_.rate));
   const bool rests = std::min(speed_at(settled), speed_at(settled + 1)) <

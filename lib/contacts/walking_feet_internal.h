@@ -27,6 +27,7 @@ class WalkingFeet {
 
   const Foot& foot(std::size_t side) const { return feet_[side]; }
   bool jittery() const { return jittery_; }
+  double jitter() const;  // metres, frame to frame, of the point that jitters most
 
   // Whether the foot is down for most of the time from a front seed to the next back seed, or from
   // a back seed to the front seed before. A foot on a pedal is not.

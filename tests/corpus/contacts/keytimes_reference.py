@@ -8,7 +8,12 @@
         while the reference sees all frames (--thin N with KEYS_FOLDER does not change it).
 
 Options: --frame SECONDS (default: 1/60), --each (a row per file), --groups (a row per first words
-of the names, up to the last digits).
+of the names, up to the last digits), --kinds (a row per kind of step, whatever the file is called).
+
+A step is a run if the pelvis is low in the middle of its stance, where a walker's is high (Cavagna,
+Heglund and Taylor 1977), and travels at over 1 m/s (for a leg of 0.86 m), else a walk: forward,
+backward or sideways by its travel relative to the line through the hips, over 0.3 m/s; below that,
+on the spot.
 
 Nothing here is from Krok: another reader of BVH, other points of the foot, another criterion. The
 sole is a line from behind the heel over the ball to the tip of the toes, all placed from the frames
@@ -109,7 +114,8 @@ def joint(names, words, side):
         plain = name.split(":")[-1]
         first = side[0]
         of_side = (side in plain.lower() or plain.endswith("_" + first.upper())
-                   or "_" + first.upper() + "_" in plain or re.match(first + "[A-Z]", plain))
+                   or "_" + first.upper() + "_" in plain or re.match(first + "[A-Z]", plain)
+                   or plain.lower() in [first + word for word in words])
         if of_side and any(word in plain.lower() for word in words):
             return j
     return -1
@@ -167,6 +173,9 @@ class Body:
         scale = 0.86 / self.leg
         pelvis = 0.5 * (places[:, hips[0]] + places[:, hips[1]])
         self.pelvis = smooth(spline(pelvis, bvh.time, at) * scale, 6)
+        across = spline(places[:, hips[0]] - places[:, hips[1]], bvh.time, at)
+        self.facing = smooth(np.stack([-across[:, 2], 0 * across[:, 0], across[:, 0]], 1), 2)
+        self.travel = np.gradient(smooth(self.pelvis, 1), axis=0) * RATE * [1, 0, 1]
         self.feet = []
         for side, ankle in zip(("left", "right"), ankles):
             toe = next((j for j, p in enumerate(bvh.parents) if p == ankle), -1)
@@ -213,7 +222,25 @@ class Body:
         for side, points in zip(("left", "right"), self.feet):
             strikes, offs = self.of_foot(points)
             found[side + "_strike"], found[side + "_off"] = strikes, offs
+        self.found = found
         return found
+
+    def kind(self, event, time):
+        """What kind of step an event of events() belongs to."""
+        i = min(int(time * RATE), len(self.at) - 1)
+        speed = np.linalg.norm(self.travel[i])
+        if speed < 0.3:
+            return "on the spot"
+        ahead = self.travel[i] @ self.facing[i] / (speed * np.linalg.norm(self.facing[i]) + 1e-9)
+        direction = "forward" if ahead > 0.7 else "backward" if ahead < -0.7 else "sideways"
+        side, what = event.split("_")
+        partners = self.found[side + ("_off" if what == "strike" else "_strike")]
+        away = [t - time for t in partners if 0 < (t - time if what == "strike" else time - t) < 1]
+        length = min(away, key=abs) if away else 0.4 if what == "strike" else -0.4
+        heights = [self.pelvis[min(max(int((time + part * length) * RATE), 0),
+                                   len(self.at) - 1), 1] for part in (0, 0.5, 1)]
+        sinks = heights[1] < 0.5 * (heights[0] + heights[2])
+        return ("run " if sinks and speed > 1 else "walk ") + direction
 
     def of_foot(self, points):
         speeds = [np.linalg.norm(np.gradient(p, axis=0), axis=1) * RATE for p in points]
@@ -299,6 +326,7 @@ def main():
     parser.add_argument("--frame", type=float, default=1 / 60)
     parser.add_argument("--each", action="store_true")
     parser.add_argument("--groups", action="store_true")
+    parser.add_argument("--kinds", action="store_true")
     parser.add_argument("folder")
     parser.add_argument("inputs", nargs="+")
     options = parser.parse_args()
@@ -330,9 +358,14 @@ def main():
             inside = [t for t in times if 0.08 < t < body.duration - 0.08]
             mine = [k["time"] for k in found if k["name"] == event
                     and 0.08 < k["time"] < body.duration - 0.08]
+            kind = event.split("_")[1]
             for group in groups:
-                kind = event.split("_")[1]
                 tallies.setdefault((group, kind), Tally()).add(inside, mine, options.frame)
+            for time in inside if options.kinds else []:
+                near = [t for t in mine if abs(t - time) <= 0.2
+                        and all(abs(t - time) <= abs(t - other) for other in inside)]
+                tallies.setdefault((body.kind(event, time), kind), Tally()).add(
+                    [time], near, options.frame)
     for (group, kind), tally in sorted(tallies.items()):
         print(f"{group:40s} {kind:7s}{tally.text(options.frame)}")
 
