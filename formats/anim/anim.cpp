@@ -13,8 +13,12 @@ namespace krok::anim {
 
 namespace {
 
+// Bit 1 of the flags: joints are stretched. A flag, so that a reader that knows of none refuses the
+// file instead of showing another motion.
+constexpr std::uint32_t kFlagStretched = 2;
+
 constexpr ContainerFormat kFormat = {registry::Kind::anim, registry::kAnimMagic, 1,
-                                     kFlagFourComponents};
+                                     kFlagFourComponents | kFlagStretched};
 
 struct Info {
   double rate;
@@ -72,6 +76,59 @@ Status write_frames(const FrameSource& source, const WriteOptions& options,
   return make_in_order((frames + at_once - 1) / at_once, options.jobs, make, take);
 }
 
+// The joints that are stretched in some frame, increasing.
+std::vector<std::uint32_t> stretched_joints(std::span<const Stretch> stretches,
+                                            std::size_t joints) {
+  std::vector<char> stretched(joints, 0);
+  for (std::size_t i = 0; i < stretches.size(); ++i) {
+    if (!(stretches[i] == Stretch())) stretched[i % joints] = 1;
+  }
+  std::vector<std::uint32_t> found;
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (stretched[j] != 0) found.push_back(static_cast<std::uint32_t>(j));
+  }
+  return found;
+}
+
+Status write_stretches(std::span<const Stretch> stretches, std::size_t joints,
+                       std::span<const std::uint32_t> stretched, ContainerWriter& container) {
+  static_assert(sizeof(Stretch) == 24);
+  if (Status status = container.section("SJOINTS", std::as_bytes(stretched)); !status) {
+    return status;
+  }
+  if (Status status = container.begin("STRETCH"); !status) return status;
+  std::vector<Stretch> row(stretched.size());
+  for (std::size_t first = 0; first < stretches.size(); first += joints) {
+    for (std::size_t k = 0; k < row.size(); ++k) row[k] = stretches[first + stretched[k]];
+    if (Status status = container.append(std::as_bytes(std::span(row))); !status) return status;
+  }
+  return {};
+}
+
+Result<Stretches> read_stretches(const ContainerReader& container, const Info& info) {
+  const auto listed = container.section("SJOINTS");
+  if (!listed) return listed.error();
+  std::vector<std::uint32_t> stretched;
+  const std::uint64_t count = listed->bytes.size() / sizeof(std::uint32_t);
+  if (Status status = read_array(container, "SJOINTS", count, stretched); !status) {
+    return status.error();
+  }
+  for (std::size_t k = 0; k < stretched.size(); ++k) {
+    if (stretched[k] < info.joint_count && (k == 0 || stretched[k] > stretched[k - 1])) continue;
+    return at_section(Error("anim-shape", "the stretched joints are not listed in order"),
+                      container, "SJOINTS");
+  }
+  Stretches stored;
+  if (Status status = read_array(container, "STRETCH", info.frame_count * count, stored); !status) {
+    return status.error();
+  }
+  Stretches stretches(stored.empty() ? 0 : info.frame_count * info.joint_count);
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    stretches[i / count * info.joint_count + stretched[i % count]] = stored[i];
+  }
+  return stretches;
+}
+
 // Adds the location to an error of check(Clip).
 Error with_place(Error error, const Clip& clip, const ContainerReader& container) {
   if (error.frame >= 0) {
@@ -89,6 +146,7 @@ Error with_place(Error error, const Clip& clip, const ContainerReader& container
 
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   if (Status status = check(clip); !status) return status;
+  if (Status status = check(options.stretches, clip); !status) return status;
   return write(
       frames_of(clip), [&] { return clip.provenance; }, options, file);
 }
@@ -102,8 +160,15 @@ Status write(const FrameSource& source, const std::function<Provenance()>& prove
   if (Status status = check(head); !status) return status;
   const auto joints = static_cast<std::uint32_t>(source.joint_count());
   const Info info = {source.rate, static_cast<std::uint64_t>(source.frame_count), joints, 0};
-  ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
-                            3 + kSkeletonSections);
+  const std::span stretches = options.stretches;
+  if (!stretches.empty() && stretches.size() != info.frame_count * joints) {
+    return Error("stretch-shape", fmt::format("{} stretches for {} frames of {} joints",
+                                              stretches.size(), info.frame_count, joints));
+  }
+  const auto stretched = stretched_joints(stretches, joints);
+  const std::uint32_t flags = stretched.empty() ? 0 : kFlagStretched;
+  ContainerWriter container(file, kFormat, orientation_flags(options.orientation) | flags,
+                            3 + kSkeletonSections + (stretched.empty() ? 0 : 2));
   if (Status status = container.section("INFO", std::as_bytes(std::span(&info, 1))); !status) {
     return status;
   }
@@ -111,11 +176,15 @@ Status write(const FrameSource& source, const std::function<Provenance()>& prove
     return status;
   }
   if (Status status = write_frames(source, options, container); !status) return status;
+  if (!stretched.empty()) {
+    Status status = write_stretches(stretches, joints, stretched, container);
+    if (!status) return status;
+  }
   if (Status status = write_provenance(provenance(), container); !status) return status;
   return container.finish();
 }
 
-Result<Clip> read(std::span<const std::byte> file) {
+Result<Clip> read(std::span<const std::byte> file, Stretches* stretches) {
   const auto container = ContainerReader::open(file, kFormat);
   if (!container) return container.error();
   const auto info_section = container->section("INFO", 1, sizeof(Info));
@@ -131,6 +200,10 @@ Result<Clip> read(std::span<const std::byte> file) {
                           std::numeric_limits<int>::max()),
               "create the file again"),
         *container, "INFO");
+  }
+  const bool is_stretched = (container->flags() & kFlagStretched) != 0;
+  if (is_stretched && stretches == nullptr) {
+    return Error("anim-stretch", "its joints change scale, which is not supported here");
   }
   const OrientationEncoding encoding = orientation_encoding(*container);
   const std::size_t size = transform_size(encoding);
@@ -156,6 +229,15 @@ Result<Clip> read(std::span<const std::byte> file) {
   }
   if (Status status = check(clip); !status) {
     return with_place(std::move(status).error(), clip, *container);
+  }
+  if (stretches == nullptr) return clip;
+  stretches->clear();
+  if (!is_stretched) return clip;
+  auto read = read_stretches(*container, info);
+  if (!read) return read.error();
+  *stretches = *std::move(read);
+  if (Status status = check(*stretches, clip); !status) {
+    return at_section(std::move(status).error(), *container, "STRETCH");
   }
   return clip;
 }

@@ -9,19 +9,26 @@
 #include "formats/container/packed_orientation.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
+#include "scene/stretch.h"
 
 // Krok's motion format, .anim; formats/anim/SPEC.md describes the bytes.
 
 namespace krok::anim {
 
 // Reads a clip; it passes check(). Orientations stored as x, y, z are read with w <= 0. Safe for
-// untrusted input: memory use is bounded by the file size. Codes: those of
-// formats/container/container.h, anim-shape, those of check(Clip), with byte offsets.
-Result<Clip> read(std::span<const std::byte> file);
+// untrusted input: memory use is bounded by the file size, twice that with stretches.
+//
+// `stretches` gets those of the joints, none for rigid ones. Without it a file that has them is an
+// Error (code anim-stretch).
+//
+// Codes: those of formats/container/container.h, anim-shape, those of check(Clip) and
+// check(Stretches), with byte offsets.
+Result<Clip> read(std::span<const std::byte> file, Stretches* stretches = nullptr);
 
 struct WriteOptions {
   OrientationEncoding orientation = OrientationEncoding::xyz;
-  int jobs = 1;  // threads; the output does not depend on it
+  std::span<const Stretch> stretches{};  // [frames x joints], or none
+  int jobs = 1;                          // threads; the output does not depend on it
 };
 
 // Writes to `file`, which must be empty; the caller commits. Deterministic; a clip that was read

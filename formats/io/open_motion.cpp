@@ -1,7 +1,12 @@
 #include "formats/io/open_motion.h"
 
+#include <fmt/format.h>
+
 #include <new>
 
+#include "core/index.h"
+#include "core/numbers.h"
+#include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/io/readers_internal.h"
 
@@ -23,10 +28,26 @@ MotionSummary summary_of(const FrameSource& frames, std::vector<std::string> con
 
 }  // namespace
 
-Result<Clip> read_anim(const InputFile& file, Inputs& /*inputs*/,
-                       const MotionOptions& /*options*/) {
-  auto clip = anim::read(file.bytes());
+Result<Clip> read_anim(const InputFile& file, Inputs& inputs, const MotionOptions& options) {
+  Stretches stretches;
+  auto clip = anim::read(file.bytes(), &stretches);
   if (!clip) return std::move(clip.error()).in_file(file.path());
+  if (options.stretches != nullptr) {
+    *options.stretches = std::move(stretches);
+  } else if (!stretches.empty()) {
+    const LargestStretch worst = largest_stretch(stretches, clip->joint_count());
+    Diagnostic dropped = make_warning(
+        "anim-stretch",
+        fmt::format("joints change scale, {} by up to {}% in frame {}; this is not supported here: "
+                    "they are taken as rigid",
+                    shown(clip->skeleton.names[at(worst.joint)]), readable(100 * worst.size, 3),
+                    worst.frame),
+        "krok-skin and krok-export to glTF keep the scale");
+    dropped.joint = clip->skeleton.names[at(worst.joint)];
+    dropped.frame = worst.frame;
+    dropped.where.file = file.path();
+    inputs.diagnose(std::move(dropped));
+  }
   return clip;
 }
 
@@ -67,7 +88,8 @@ Result<Clip> open_motion(const std::string& path, Inputs& inputs, const MotionOp
 }
 
 Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
-                                    const std::function<Status(const FrameSource& frames)>& use) {
+                                    const std::function<Status(const FrameSource& frames)>& use,
+                                    const MotionOptions& options) {
   const auto file = inputs.open_long_input(path);
   if (!file) return file.error();
   const ChecksumAtEnd checksum(*file, inputs);
@@ -86,7 +108,7 @@ Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
     return summary;
   }
   // A .anim file's own conversions are those of how it was made.
-  const auto clip = open_motion(*file, inputs);
+  const auto clip = open_motion(*file, inputs, options);
   if (!clip) return clip.error();
   const FrameSource frames = frames_of(*clip);
   if (Status status = use(frames); !status) return status.error();

@@ -7,6 +7,7 @@
 #include "formats/io/inputs.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
+#include "scene/stretch.h"
 
 // Motions from any file that holds one: .anim, BVH, AMC with the ASF beside it. Captures are read
 // with their conventions detected, as krok-import reads them without options; what was detected or
@@ -21,6 +22,10 @@ struct MotionOptions {
   // That the first frame looks like a rest pose is a note rather than a warning: for callers that
   // use only a part of the motion, which it is not in.
   bool rest_frame_is_note = false;
+
+  // Gets the stretches of the joints, none for rigid ones. Without it they are dropped with a
+  // warning (code anim-stretch): the one place where an operation on rigid joints says so.
+  Stretches* stretches = nullptr;
 };
 
 Result<Clip> open_motion(const std::string& path, Inputs& inputs,
@@ -39,9 +44,11 @@ struct MotionSummary {
 
 // Passes the frames of a motion to `use`, without holding a long capture in memory. `use` is called
 // a second time where a capture proves damaged on the way, then with what can be read of the file,
-// and has to discard what it did before. The error of `use` is passed on.
+// and has to discard what it did before. The error of `use` is passed on. Stretches that the
+// options ask for are there when `use` is called.
 Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
-                                    const std::function<Status(const FrameSource& frames)>& use);
+                                    const std::function<Status(const FrameSource& frames)>& use,
+                                    const MotionOptions& options = {});
 
 // Takes the checksum of a file opened by open_long_input() at the end of the scope. Both arguments
 // must outlive it.

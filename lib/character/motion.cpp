@@ -19,7 +19,9 @@ namespace {
 
 constexpr double kMaxTransforms = 1e8;
 constexpr std::size_t kFramesAtOnce = 16;
-constexpr double kStretchTold = 1e-3;  // reported from 0.1 %
+constexpr double kStretchReported = 1e-3;  // if it is not kept
+constexpr double kStretchKept = 1e-4;      // if any joint has more in any frame
+constexpr double kStretchNoise = 1e-6;     // less is stored as none
 constexpr double kUsualFieldOfView = kPi / 4;
 
 Error overflow() {
@@ -28,36 +30,37 @@ Error overflow() {
 }
 
 // The deviation of a linear part from a rotation: the largest relative change of an axis.
-struct Stretch {
+struct Deviation {
   double size = 0;
   int joint = -1;
 };
 
-double stretch_of(const Mat3& linear, const Quat& rotation) {
-  const Mat3 rest = linear - rotation.toRotationMatrix();
-  return rest.colwise().norm().maxCoeff();
+double deviation_of(const Mat3& stretch) {
+  return (stretch - Mat3::Identity()).colwise().norm().maxCoeff();
 }
 
-void report_scale(const std::vector<Stretch>& worst_of_frames, const Rig& rig,
+// Whether the stretches are worth keeping.
+bool report_scale(const std::vector<Deviation>& worst_of_frames, const Rig& rig, bool kept,
                   Diagnostics& diagnostics) {
-  Stretch worst;
+  Deviation worst;
   std::size_t frame = 0;
   for (std::size_t f = 0; f < worst_of_frames.size(); ++f) {
     if (!(worst_of_frames[f].size > worst.size * (1 + 1e-6))) continue;
     worst = worst_of_frames[f];
     frame = f;
   }
-  if (worst.size < kStretchTold) return;
+  if (worst.size < (kept ? kStretchKept : kStretchReported)) return false;
   Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
+  diagnostic.severity = kept ? Severity::note : Severity::warning;
   diagnostic.code = "scene-scale";
   diagnostic.joint = rig.skeleton.names[at(worst.joint)];
   diagnostic.frame = static_cast<std::int64_t>(frame);
-  diagnostic.message = fmt::format(
-      "joint scales differ from the bind pose, which a motion cannot store; worst: {} by {}% in "
-      "frame {}; joint positions are kept, scales are dropped",
-      shown(diagnostic.joint), readable(100 * worst.size, 3), frame);
+  diagnostic.message =
+      fmt::format("joint scales differ from the bind pose{}; largest: {} by {}% in frame {}",
+                  kept ? "" : " and are dropped, joint positions are kept", shown(diagnostic.joint),
+                  readable(100 * worst.size, 3), frame);
   diagnostics.push_back(std::move(diagnostic));
+  return true;
 }
 
 // The field of view of a perspective camera at a time of an animation.
@@ -86,7 +89,8 @@ Result<Skeleton> skeleton_in_krok(const Rig& rig, const Conversion& conversion) 
 
 Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
                        const Conversion& conversion, int animation, const Sampling& sampling,
-                       int jobs, Progress* progress, Diagnostics& diagnostics) {
+                       int jobs, Progress* progress, Diagnostics& diagnostics,
+                       Stretches* stretches) {
   auto skeleton = skeleton_in_krok(rig, conversion);
   if (!skeleton) return skeleton.error();
   const double transforms = static_cast<double>(sampling.frames) * rig.joints.count();
@@ -100,22 +104,30 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
   clip.skeleton = std::move(*skeleton);
   clip.rate = sampling.rate;
   clip.resize(sampling.frames);
-  std::vector<Stretch> stretches(at(sampling.frames));
+  if (stretches != nullptr) stretches->assign(clip.positions.size(), Stretch());
+  std::vector<Deviation> deviations(at(sampling.frames));
   std::atomic<bool> finite = true;
-  if (progress != nullptr) progress->begin("reading frames", stretches.size());
-  parallel_for(stretches.size(), kFramesAtOnce, jobs, [&](std::size_t begin, std::size_t end) {
+  if (progress != nullptr) progress->begin("reading frames", deviations.size());
+  parallel_for(deviations.size(), kFramesAtOnce, jobs, [&](std::size_t begin, std::size_t end) {
     nodes::Evaluation state;
     std::vector<Transform> pose(at(rig.joints.count()));
     for (std::size_t frame = begin; frame < end; ++frame) {
       evaluator.place_nodes(animation, sampling.time(static_cast<int>(frame)), state);
-      Stretch& worst = stretches[frame];
+      Deviation& worst = deviations[frame];
       for (int j = 0; j < rig.joints.count(); ++j) {
         const Mat4 placed = rig.joint_to_world(state, j);
         const Transform rigid = nodes::rigid_part(placed);
-        const double stretch = stretch_of(placed.topLeftCorner<3, 3>(), rigid.orientation);
-        if (stretch > worst.size * (1 + 1e-6)) worst = {stretch, j};
+        const Mat3 stretch =
+            rigid.orientation.toRotationMatrix().transpose() * placed.topLeftCorner<3, 3>();
+        const double deviation = deviation_of(stretch);
+        if (deviation > worst.size * (1 + 1e-6)) worst = {deviation, j};
         pose[at(j)] = conversion.pose(rigid);
         if (!pose[at(j)].position.cast<float>().allFinite()) finite = false;
+        if (stretches == nullptr || deviation < kStretchNoise) continue;
+        const Mat3& axes = conversion.reference_axes();
+        Stretch& kept = (*stretches)[frame * pose.size() + at(j)];
+        kept = Stretch::of(axes * stretch * axes.transpose());
+        if (!kept.matrix().allFinite()) finite = false;
       }
       clip.set_pose(static_cast<int>(frame), pose);
     }
@@ -123,7 +135,9 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
   });
   if (progress != nullptr) progress->end();
   if (!finite) return overflow();
-  report_scale(stretches, rig, diagnostics);
+  if (!report_scale(deviations, rig, stretches != nullptr, diagnostics) && stretches != nullptr) {
+    stretches->clear();
+  }
   return clip;
 }
 

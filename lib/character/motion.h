@@ -9,6 +9,7 @@
 #include "core/result.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"
+#include "scene/stretch.h"
 
 // Samples the motions of a scene at even times, in Krok's frame.
 
@@ -17,13 +18,19 @@ namespace krok::character {
 // A rig's skeleton in Krok's frame. An Error (code scene-value) if positions overflow floats.
 Result<Skeleton> skeleton_in_krok(const Rig& rig, const Conversion& conversion);
 
-// The motion of a rig in one of the scene's animations. If joint scales differ from the bind pose,
-// which a clip cannot store, the rigid part is used and one warning gives the worst joint, its
-// frame and the amount (code scene-scale). Errors: scene-too-long (more than 100 million joint
-// transforms), scene-value (positions that overflow).
+// The motion of a rig in one of the scene's animations.
+//
+// Where joint scales or shears differ from the bind pose by more than 1e-4, `stretches` gets them
+// for all joints and frames, and a note gives the worst joint, its frame and the amount (code
+// scene-scale); otherwise it is left empty. Without `stretches` the rigid parts alone are kept,
+// with a warning from 0.1 % on.
+//
+// Errors: scene-too-long (more than 100 million joint transforms), scene-value (positions or scales
+// that overflow).
 Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
                        const Conversion& conversion, int animation, const Sampling& sampling,
-                       int jobs, Progress* progress, Diagnostics& diagnostics);
+                       int jobs, Progress* progress, Diagnostics& diagnostics,
+                       Stretches* stretches = nullptr);
 
 // Whether an animation moves the rig: a joint or an ancestor of one. Animations of cameras and of
 // morph targets do not.

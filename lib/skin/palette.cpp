@@ -23,4 +23,12 @@ void make_palette(std::span<const Transform> reference_to_joint,
   }
 }
 
+SkinMatrix skin_matrix(const Transform& reference_to_joint, const Transform& rigid,
+                       const Stretch& stretch) {
+  SkinMatrix result;
+  const Mat4 whole = joint_to_world(rigid, stretch) * reference_to_joint.matrix();
+  Eigen::Map<Mat4f>(result.elements) = whole.cast<float>();
+  return result;
+}
+
 }  // namespace krok

@@ -5,6 +5,7 @@
 
 #include "math/transform.h"
 #include "scene/skeleton.h"
+#include "scene/stretch.h"
 
 namespace krok {
 
@@ -22,5 +23,9 @@ std::vector<Transform> inverse_reference(const Skeleton& skeleton);
 // rounding. Source: Lewis, Cordner, Fong, Pose Space Deformation (SIGGRAPH 2000), sec. 2.
 void make_palette(std::span<const Transform> reference_to_joint,
                   std::span<const Transform> joint_to_world, std::span<SkinMatrix> palette);
+
+// The palette matrix of one joint that is stretched, [R U | p] C^-1.
+SkinMatrix skin_matrix(const Transform& reference_to_joint, const Transform& joint_to_world,
+                       const Stretch& stretch);
 
 }  // namespace krok

@@ -84,14 +84,18 @@ class SkinPose {
   SkinPose& operator=(SkinPose&&) noexcept;
   ~SkinPose();
 
-  // Both take [joints] elements and allocate nothing: a pose of a clip, or a palette of arbitrary
-  // matrices; their last row is taken as 0 0 0 1.
+  // All take [joints] elements and allocate nothing: a pose of a clip, one with stretches (none for
+  // rigid joints), or a palette of arbitrary matrices; their last row is taken as 0 0 0 1.
   void set(std::span<const Transform> joint_to_world);
+  void set(std::span<const Transform> joint_to_world, std::span<const Stretch> stretches);
   void set_palette(std::span<const SkinMatrix> palette);
 
   const skin_detail::Posed& data() const { return *data_; }  // internal
 
  private:
+  template <typename MatrixOf>
+  void set_matrices(const MatrixOf& matrix_of);
+
   std::unique_ptr<skin_detail::Posed> data_;
 };
 

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cassert>
 
 #include "skin/binding_internal.h"
@@ -56,20 +55,39 @@ void SkinPose::set(std::span<const Transform> joint_to_world) {
   fill_pairs(*data_);
 }
 
-void SkinPose::set_palette(std::span<const SkinMatrix> palette) {
-  assert(palette.size() == data_->palette.size());
-  data_->is_rigid =
-      std::all_of(palette.begin(), palette.end(), [](const SkinMatrix& m) { return is_rigid(m); });
-  if (data_->motions.empty()) {
-    std::copy(palette.begin(), palette.end(), data_->palette.begin());
-    return;
-  }
-  for (std::size_t j = 0; j < palette.size(); ++j) {
-    const auto parts = split(palette[j], data_->binding->joint_to_world[j].position);
+template <typename MatrixOf>
+void SkinPose::set_matrices(const MatrixOf& matrix_of) {
+  data_->is_rigid = true;
+  for (std::size_t j = 0; j < data_->palette.size(); ++j) {
+    const SkinMatrix matrix = matrix_of(j);
+    data_->is_rigid = data_->is_rigid && is_rigid(matrix);
+    if (data_->motions.empty()) {
+      data_->palette[j] = matrix;
+      continue;
+    }
+    const auto parts = split(matrix, data_->binding->joint_to_world[j].position);
     data_->motions[j] = parts.motion;
     data_->palette[j] = parts.deformation;
   }
-  fill_pairs(*data_);
+  if (!data_->motions.empty()) fill_pairs(*data_);
+}
+
+void SkinPose::set_palette(std::span<const SkinMatrix> palette) {
+  assert(palette.size() == data_->palette.size());
+  set_matrices([&](std::size_t j) { return palette[j]; });
+}
+
+void SkinPose::set(std::span<const Transform> joint_to_world, std::span<const Stretch> stretches) {
+  if (stretches.empty()) {
+    set(joint_to_world);
+    return;
+  }
+  const auto& reference_to_joint = data_->binding->reference_to_joint;
+  assert(joint_to_world.size() == reference_to_joint.size());
+  assert(stretches.size() == joint_to_world.size());
+  set_matrices([&](std::size_t j) {
+    return skin_matrix(reference_to_joint[j], joint_to_world[j], stretches[j]);
+  });
 }
 
 }  // namespace krok

@@ -31,7 +31,8 @@ class Container:
             "<8sIIQQI", data, 0)
         require(self.version == 1, "version is not 1")
         require(size == len(data), "size differs from the header's")
-        require(self.flags & ~1 == 0, "unknown flags")
+        known = 3 if self.magic == b"KROKANIM" else 1
+        require(self.flags & ~known == 0, "unknown flags")
         require(count <= 64 and 64 + 32 * count <= len(data), "too many sections")
         self.four_components = self.flags & 1 != 0
         self.record_size = 28 if self.four_components else 24
@@ -108,8 +109,17 @@ def read_anim(container):
     require(math.isfinite(rate) and rate > 0, "impossible rate")
     skeleton = container.skeleton(joints)
     records = container.records("FRAMES", frames * joints)
+    stretched = stretches = None
+    if container.flags & 2:
+        count = len(container.section("SJOINTS")) // 4
+        stretched = [row[0] for row in container.numbers("SJOINTS", "I", 1, count)]
+        require(all(a < b for a, b in zip(stretched, stretched[1:] + [joints])), "SJOINTS")
+        rows = container.numbers("STRETCH", "f", 6, frames * count)
+        require(all(math.isfinite(value) for row in rows for value in row), "a stretch")
+        stretches = [rows[i * count:(i + 1) * count] for i in range(frames)]
     return {"kind": "anim", "rate": rate, "skeleton": skeleton,
-            "frames": [records[i * joints:(i + 1) * joints] for i in range(frames)]}
+            "frames": [records[i * joints:(i + 1) * joints] for i in range(frames)],
+            "stretched_joints": stretched, "stretches": stretches}
 
 
 def read_model(container):

@@ -127,6 +127,14 @@ void read_amc(Bytes input) {
 }
 
 // A checksum that does not match would end the reader before it sees what a fuzzer has changed.
+Result<Clip> read_motion(Bytes input) {
+  Stretches stretches;
+  auto clip = anim::read(input, &stretches);
+  if (!clip) return clip;
+  if (Status status = check(stretches, *clip); !status) fail("stretches that do not hold");
+  return clip;
+}
+
 template <auto read>
 void read_binary(Bytes input) {
   judge_checked(read(input));
@@ -242,7 +250,7 @@ constexpr Target kTargets[] = {
     {"acclaim_motion", read_amc},
     {"acclaim_skeleton", read_asf},
     {"alignment", read_alignment},
-    {"anim", read_binary<anim::read>},
+    {"anim", read_binary<read_motion>},
     {"bvh", read_bvh},
     {"cam", read_binary<cam::read>},
     {"camera_keys", read_page<camera_keys::read>},

@@ -17,7 +17,8 @@ namespace {
 Result<Clip> read_skeleton(const InputFile& input) {
   switch (registry::kind_of_content(input.bytes())) {
     case registry::Kind::anim: {
-      auto clip = anim::read(input.bytes());
+      Stretches stretches;  // a body is made for the reference pose
+      auto clip = anim::read(input.bytes(), &stretches);
       if (!clip) return std::move(clip).error().in_file(input.path());
       return clip;
     }

@@ -136,8 +136,10 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
       warn("import-still",
            fmt::format("{} does not move any joint of the skeleton", shown(chosen.name)));
     }
-    auto clip = character::make_clip(evaluator_, *rig_, conversion_, chosen.animation,
-                                     sampling->sampling, context_.jobs, context_.progress, found);
+    Stretches stretches;
+    auto clip =
+        character::make_clip(evaluator_, *rig_, conversion_, chosen.animation, sampling->sampling,
+                             context_.jobs, context_.progress, found, &stretches);
     if (!clip) return clip.error();
     report_all(found);
     if (const RestPose rest = find_rest_pose(*clip, roles_); rest.first_frame_is_rest) {
@@ -152,9 +154,15 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     if (!path) return path.error();
     if (Status status = check_output_kind(*path, "-o", Kind::anim); !status) return status;
     const Status status = outputs_.add(*path, [&](OutputFile& file) {
-      return anim::write(*clip, {.orientation = options_.orientation, .jobs = context_.jobs}, file);
+      return anim::write(
+          *clip,
+          {.orientation = options_.orientation, .stretches = stretches, .jobs = context_.jobs},
+          file);
     });
     if (!status) return status;
+    if (!stretches.empty()) {
+      facts["largest_stretch"] = largest_stretch(stretches, clip->joint_count()).size;
+    }
     const FrameSource frames = frames_of(*clip);
     facts.update(facts_of(frames, roles_));
     facts["output"] = *path;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
 #include "formats/container/sections.h"
@@ -57,13 +59,21 @@ void add_mesh_size(const Model& model, Description& out) {
 }
 
 Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how, ToolContext&) {
-  const auto clip = anim::read(file.bytes());
+  Stretches stretches;
+  const auto clip = anim::read(file.bytes(), &stretches);
   if (!clip) return clip.error();
   Description out;
   out.what = "a motion (.anim)";
   out.json["kind"] = "anim";
   add_timing(clip->frame_count(), clip->rate, out);
   if (Status status = add_skeleton(clip->skeleton, how, out); !status) return status.error();
+  if (!stretches.empty()) {
+    const LargestStretch worst = largest_stretch(stretches, clip->joint_count());
+    const std::string& joint = clip->skeleton.names[at(worst.joint)];
+    out.add("scale", fmt::format("joints change scale; most: {} by {}% in frame {}", shown(joint),
+                                 readable(100 * worst.size, 3), worst.frame));
+    out.json["largest_stretch"] = {{"joint", joint}, {"frame", worst.frame}, {"size", worst.size}};
+  }
   add_reference_size(clip->skeleton, out);
   add_orientations(file, out);
   add_provenance(clip->provenance, out);

@@ -35,7 +35,8 @@ Status read_and_check(const std::string& ending, const Bytes& bytes) {
     EXPECT_FALSE(value.error().message.empty());
     return value.error();
   };
-  if (ending == ".anim") return judge(anim::read(file));
+  Stretches stretches;
+  if (ending == ".anim") return judge(anim::read(file, &stretches));
   if (ending == ".model") return judge(model::read(file));
   if (ending == ".steps") return judge(steps::read(file));
   return judge(cam::read(file));

@@ -199,6 +199,13 @@ Character character() {
   return character;
 }
 
+Stretches stretches() {
+  Stretches all(6);
+  all[1] = {1.5f, 0.25f, 1, 0.125f, -0.5f, 0};
+  all[4] = {-1, -2, -0.75f, 0, 0.1f, 0.0625f};
+  return all;
+}
+
 std::vector<Sample> all() {
   constexpr auto kXyz = OrientationEncoding::xyz;
   constexpr auto kXyzw = OrientationEncoding::xyzw;
@@ -207,6 +214,8 @@ std::vector<Sample> all() {
        [](OutputFile& file) { return anim::write(clip(), {.orientation = kXyz}, file); }},
       {"motion_xyzw.anim",
        [](OutputFile& file) { return anim::write(clip(), {.orientation = kXyzw}, file); }},
+      {"motion_stretched.anim",
+       [](OutputFile& file) { return anim::write(clip(), {.stretches = stretches()}, file); }},
       {"full.model",
        [](OutputFile& file) { return model::write(model(), {.orientation = kXyz}, file); }},
       {"plain_xyzw.model",

@@ -14,6 +14,7 @@
 #include "scene/clip.h"
 #include "scene/material.h"
 #include "scene/model.h"
+#include "scene/stretch.h"
 
 // Tiny scenes that use every feature of the formats, with values that are exact in floats or chosen
 // to be awkward. The frozen files under tests/golden/v1 hold them.
@@ -23,6 +24,9 @@ namespace krok::samples {
 // Three joints, the last an end site; a name in UTF-8 with a space; two frames, 29.97 a second; w
 // positive, negative, zero and tiny; a provenance with every field.
 Clip clip();
+
+// Of clip(): its second joint is scaled, sheared and mirrored, the others are rigid.
+Stretches stretches();
 
 // Bound to the skeleton of clip(): four vertices with normals, texture coordinates and tangents,
 // three influences each, two triangles in two parts.
