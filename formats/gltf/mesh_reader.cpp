@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <utility>
 
+#include "core/numbers.h"
 #include "formats/gltf/reader_words_internal.h"
 #include "formats/gltf/used_vertices_internal.h"
 
@@ -95,13 +99,21 @@ Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
 // bound to its first joint, as in common viewers.
 void normalize_weights(Primitive& primitive, const std::string& name, Diagnostics& diagnostics) {
   const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
-  std::size_t without = 0;
+  // Bytes may be off by this much in sum without the exporter's fault.
+  constexpr double kRounding = 0.02;
+  std::size_t without = 0, unnormalized = 0;
+  double least = std::numeric_limits<double>::max(), most = 0;
   for (std::size_t v = 0; v < primitive.vertex_count(); ++v) {
     const std::span<float> weights(&primitive.influence_weights[v * per_vertex], per_vertex);
     double sum = 0;
     for (float& weight : weights) {
       weight = std::max(weight, 0.0f);
       sum += static_cast<double>(weight);
+    }
+    if (sum > 0 && std::abs(sum - 1) > kRounding) {
+      ++unnormalized;
+      least = std::min(least, sum);
+      most = std::max(most, sum);
     }
     if (sum > 0) {
       for (float& weight : weights) weight = static_cast<float>(static_cast<double>(weight) / sum);
@@ -110,6 +122,12 @@ void normalize_weights(Primitive& primitive, const std::string& name, Diagnostic
       ++without;
     }
   }
+  if (unnormalized > 0) {
+    warn(diagnostics, "gltf-mesh-weights",
+         fmt::format("{}: the weights of {} sum to {} to {} instead of 1; they are normalised",
+                     name, counted(static_cast<long long>(unnormalized), "vertex", "vertices"),
+                     readable(least, 3), readable(most, 3)));
+  }
   if (without > 0) {
     warn(diagnostics, "gltf-mesh-weights",
          fmt::format("{}: {} vertices have no weights and are bound to their first joint", name,
@@ -117,21 +135,34 @@ void normalize_weights(Primitive& primitive, const std::string& name, Diagnostic
   }
 }
 
+// What is not kept of vertices with too many influences.
+struct DroppedInfluences {
+  std::size_t vertices = 0;
+  double largest = 0;  // sum of the weights of one vertex
+
+  template <typename Weight>
+  void add(std::span<const std::size_t> places, const Weight& weight) {
+    double sum = 0;
+    for (const std::size_t k : places) sum += static_cast<double>(std::max(weight(k), 0.0f));
+    if (sum > 0) ++vertices;
+    largest = std::max(largest, sum);
+  }
+};
+
 Status read_influences(const tinygltf::Primitive& source, Accessors& accessors,
                        const std::string& name, Primitive& primitive, Diagnostics& diagnostics) {
-  constexpr std::array kJoints = {"JOINTS_0", "JOINTS_1"};
-  constexpr std::array kWeights = {"WEIGHTS_0", "WEIGHTS_1"};
-  std::array<std::vector<std::uint32_t>, 2> joints;
-  std::array<std::vector<float>, 2> weights;
+  // [sets], four influences of each vertex in each.
+  std::vector<std::vector<std::uint32_t>> joints;
+  std::vector<std::vector<float>> weights;
   const std::size_t vertices = primitive.vertex_count();
-  std::size_t sets = 0;
-  for (; sets < 2; ++sets) {
-    const int joint_accessor = attribute(source.attributes, kJoints[sets]);
-    const int weight_accessor = attribute(source.attributes, kWeights[sets]);
+  for (std::size_t set = 0;; ++set) {
+    const std::string joints_name = fmt::format("JOINTS_{}", set);
+    const std::string weights_name = fmt::format("WEIGHTS_{}", set);
+    const int joint_accessor = attribute(source.attributes, joints_name.c_str());
+    const int weight_accessor = attribute(source.attributes, weights_name.c_str());
     if (joint_accessor == -1 && weight_accessor == -1) break;
     if (joint_accessor == -1 || weight_accessor == -1) {
-      return bad_mesh(name,
-                      fmt::format("has only one of {} and {}", kJoints[sets], kWeights[sets]));
+      return bad_mesh(name, fmt::format("has only one of {} and {}", joints_name, weights_name));
     }
     auto set_joints = accessors.integers(joint_accessor, TINYGLTF_TYPE_VEC4);
     if (!set_joints) return set_joints.error();
@@ -141,28 +172,40 @@ Status read_influences(const tinygltf::Primitive& source, Accessors& accessors,
       return bad_mesh(name, fmt::format("{} joints and {} weights for {} vertices",
                                         set_joints->size() / 4, set_weights->size() / 4, vertices));
     }
-    joints[sets] = std::move(*set_joints);
-    weights[sets] = std::move(*set_weights);
+    joints.push_back(std::move(*set_joints));
+    weights.push_back(std::move(*set_weights));
   }
-  if (attribute(source.attributes, "JOINTS_2") != -1) {
-    warn(diagnostics, "gltf-mesh-influences",
-         fmt::format("{}: more than 8 influences per vertex; the first 8 are used", name));
-  }
-  if (sets == 0 || vertices == 0) return {};
+  if (joints.empty() || vertices == 0) return {};
 
-  const std::size_t per_vertex = 4 * sets;
+  const std::size_t all = 4 * joints.size();
+  const std::size_t per_vertex = std::min<std::size_t>(all, Primitive::kMaxInfluences);
   if (auto taken = accessors.reserve(vertices * per_vertex * 6); !taken) return taken;
   primitive.influences_per_vertex = static_cast<int>(per_vertex);
   primitive.influence_joints.resize(vertices * per_vertex);
   primitive.influence_weights.resize(vertices * per_vertex);
+  DroppedInfluences dropped;
+  std::vector<std::size_t> order(all);
   for (std::size_t v = 0; v < vertices; ++v) {
+    const auto weight = [&](std::size_t k) { return weights[k / 4][v * 4 + k % 4]; };
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    if (all > per_vertex) {
+      std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
+        return std::max(weight(a), 0.0f) > std::max(weight(b), 0.0f);
+      });
+      dropped.add(std::span(order).subspan(per_vertex), weight);
+    }
     for (std::size_t k = 0; k < per_vertex; ++k) {
-      const std::size_t from = v * 4 + k % 4;
-      const std::uint32_t joint = joints[k / 4][from];
+      const std::uint32_t joint = joints[order[k] / 4][v * 4 + order[k] % 4];
       if (joint > 0xFFFF) return bad_mesh(name, fmt::format("joint {} is out of range", joint));
       primitive.influence_joints[v * per_vertex + k] = static_cast<std::uint16_t>(joint);
-      primitive.influence_weights[v * per_vertex + k] = weights[k / 4][from];
+      primitive.influence_weights[v * per_vertex + k] = weight(order[k]);
     }
+  }
+  if (dropped.vertices > 0) {
+    warn(diagnostics, "gltf-mesh-influences",
+         fmt::format("{}: {} vertices have more than 8 influences; the 8 largest are kept, what is "
+                     "dropped is up to {}% of a vertex's weight",
+                     name, dropped.vertices, readable(100 * dropped.largest, 3)));
   }
   normalize_weights(primitive, name, diagnostics);
   return {};

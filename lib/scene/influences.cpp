@@ -1,5 +1,6 @@
 #include "scene/influences.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -61,6 +62,35 @@ void normalize_influences(Model& model) {
       weights[k] = used ? static_cast<float>(influences[k].weight / sum) : 0.0f;
     }
   }
+}
+
+int used_influences(const Model& model) {
+  const auto places = static_cast<std::size_t>(model.influences_per_vertex);
+  std::size_t most = 1;
+  for (std::size_t i = 0; i < model.influence_weights.size(); ++i) {
+    if (model.influence_weights[i] > 0) most = std::max(most, i % places + 1);
+  }
+  return static_cast<int>(most);
+}
+
+int limit_influences(Model& model, int count) {
+  const auto before = static_cast<std::size_t>(model.influences_per_vertex);
+  const auto kept = static_cast<std::size_t>(count);
+  if (kept >= before) return 0;
+  const std::size_t vertices = model.positions.size();
+  int changed = 0;
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if (model.influence_weights[v * before + kept] > 0) ++changed;
+    for (std::size_t k = 0; k < kept; ++k) {
+      model.influence_joints[v * kept + k] = model.influence_joints[v * before + k];
+      model.influence_weights[v * kept + k] = model.influence_weights[v * before + k];
+    }
+  }
+  model.influences_per_vertex = count;
+  model.influence_joints.resize(vertices * kept);
+  model.influence_weights.resize(vertices * kept);
+  if (changed > 0) normalize_influences(model);
+  return changed;
 }
 
 }  // namespace krok

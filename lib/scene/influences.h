@@ -11,4 +11,12 @@ namespace krok {
 // arrays must have the lengths that Model documents.
 void normalize_influences(Model& model);
 
+// The most influences with a weight above 0 that a vertex has; at least 1.
+int used_influences(const Model& model);
+
+// Keeps the `count` largest influences of each vertex, normalised; influences_per_vertex becomes
+// `count` where it is more. Weights are in decreasing order, as Model documents. Returns how many
+// vertices lost influences.
+int limit_influences(Model& model, int count);
+
 }  // namespace krok

@@ -253,6 +253,54 @@ TEST(GltfReader, ReadsNormalisedIntegersAndTwoSetsOfInfluences) {
   EXPECT_FLOAT_EQ(primitive.influence_weights[8] + primitive.influence_weights[12], 1.0f);
 }
 
+// The first eight may be the smallest.
+TEST(GltfReader, OfMoreThanEightInfluencesTheLargestAreKept) {
+  GlbBuilder builder = test::rig();
+  Json& attributes = primitive_of(builder)["attributes"];
+  for (std::size_t set = 0; set < 3; ++set) {
+    std::vector<float> weights;
+    std::vector<std::uint8_t> joints;
+    for (std::size_t i = 0; i < 16; ++i) {
+      weights.push_back(set == 2 ? 0.2f : 0.025f);  // 8 x 0.025 + 4 x 0.2 = 1
+      joints.push_back(set == 2 ? 1 : 0);
+    }
+    attributes["WEIGHTS_" + std::to_string(set)] = builder.add(weights, "VEC4");
+    attributes["JOINTS_" + std::to_string(set)] = builder.add(joints, "VEC4");
+  }
+  const nodes::Scene asset = read_good(builder);
+  const nodes::Primitive& primitive = asset.meshes.at(0).primitives.at(0);
+  ASSERT_EQ(primitive.influences_per_vertex, 8);
+  for (std::size_t k = 0; k < 8; ++k) {
+    EXPECT_EQ(primitive.influence_joints[k], k < 4 ? 1 : 0);
+    EXPECT_NEAR(primitive.influence_weights[k], (k < 4 ? 0.2 : 0.025) / 0.9, 1e-6);
+  }
+  ASSERT_EQ(asset.diagnostics.size(), 1u);
+  EXPECT_EQ(asset.diagnostics[0].code, "gltf-mesh-influences");
+  EXPECT_NE(asset.diagnostics[0].message.find("4 vertices"), std::string::npos);
+  EXPECT_NE(asset.diagnostics[0].message.find("10%"), std::string::npos);
+}
+
+TEST(GltfReader, WhatIsNotReadIsSaidOnceWithItsCount) {
+  GlbBuilder builder = test::rig();
+  Json& attributes = primitive_of(builder)["attributes"];
+  attributes["COLOR_0"] = builder.add(std::vector<float>(12, 1.0f), "VEC3");
+  attributes["TEXCOORD_1"] = builder.add(std::vector<float>(8, 0.0f), "VEC2");
+  builder.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = Json::object();
+  attributes["WEIGHTS_0"] = builder.add(std::vector<float>(16, 0.5f), "VEC4");  // sum to 2
+  const nodes::Scene asset = read_good(builder);
+  ASSERT_EQ(asset.diagnostics.size(), 2u);
+  EXPECT_EQ(asset.diagnostics[0].code, "gltf-mesh-weights");
+  EXPECT_NE(asset.diagnostics[0].message.find("4 vertices sum to 2 to 2"), std::string::npos)
+      << asset.diagnostics[0].message;
+  const Diagnostic& unread = asset.diagnostics[1];
+  EXPECT_EQ(unread.code, "gltf-unread");
+  EXPECT_EQ(unread.severity, Severity::note);
+  for (const char* what : {"COLOR_0 of 1 primitive", "TEXCOORD_1 of 1 primitive",
+                           "EXT_mesh_gpu_instancing of 1 node"}) {
+    EXPECT_NE(unread.message.find(what), std::string::npos) << unread.message;
+  }
+}
+
 TEST(GltfReader, ReadsSparseValuesOverZerosAndOverAView) {
   GlbBuilder builder = test::baked_rig();
   const auto sparse = [&](int count) {
