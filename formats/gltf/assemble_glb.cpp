@@ -16,12 +16,16 @@ std::size_t append_aligned(std::span<const std::byte> bytes, std::vector<std::by
   return begin;
 }
 
-Result<std::vector<std::byte>> assemble_glb(OrderedJson& json, std::span<const std::byte> data) {
+Result<std::vector<std::byte>> assemble_glb(OrderedJson& json, std::span<const std::byte> data,
+                                            std::span<const OrderedJson> more_buffers) {
   if (data.size() > std::numeric_limits<std::uint32_t>::max() / 2) {
     return Error("gltf-too-large",
                  fmt::format("{} bytes exceed the size limit of a GLB", data.size()));
   }
-  if (!data.empty()) json["buffers"] = OrderedJson::array({{{"byteLength", data.size()}}});
+  if (!data.empty()) {
+    json["buffers"] = OrderedJson::array({{{"byteLength", data.size()}}});
+    for (const OrderedJson& buffer : more_buffers) json["buffers"].push_back(buffer);
+  }
   std::string text = json_text(json);
   while (text.size() % kAlignment != 0) text += ' ';
   constexpr std::uint32_t kHeader = 12, kChunk = 8;

@@ -43,6 +43,11 @@ std::vector<double> as_list(const Vector& values) {
   return {values.data(), values.data() + values.size()};
 }
 
+void set_rest(const JointTrack& track, tinygltf::Node& node) {
+  if (!track.rest_translation.isZero(0)) node.translation = as_list(track.rest_translation);
+  if (track.rest_rotation.w() != 1.0f) node.rotation = as_list(track.rest_rotation.coeffs());
+}
+
 }  // namespace
 
 Document::Document(const WriteOptions& options) : options_(options) {
@@ -126,6 +131,34 @@ int Document::add_floats(std::span<const float> values, int type, Use use, bool 
   return accessor;
 }
 
+int Document::add_strided(std::span<const std::byte> bytes, std::size_t stride, int component,
+                          int type, bool normalized) {
+  const int index = add_accessor(bytes, component, stride / 4, TINYGLTF_TYPE_VEC4, Use::vertices);
+  tinygltf::Accessor& accessor = gltf.accessors[static_cast<std::size_t>(index)];
+  accessor.type = type;
+  accessor.normalized = normalized;
+  return index;
+}
+
+int Document::add_short_rotations(std::span<const Quatf> rotations) {
+  std::vector<std::int16_t> shorts;
+  for (const Quatf& rotation : rotations) {
+    for (const float component : rotation.normalized().coeffs()) {
+      shorts.push_back(static_cast<std::int16_t>(std::lround(component * 32767.0f)));
+    }
+  }
+  const int index = add_accessor(std::as_bytes(std::span(shorts)), TINYGLTF_COMPONENT_TYPE_SHORT,
+                                 sizeof(std::int16_t), TINYGLTF_TYPE_VEC4, Use::data);
+  gltf.accessors[static_cast<std::size_t>(index)].normalized = true;
+  return index;
+}
+
+int Document::add_rotations(std::span<const Quatf> rotations) {
+  if (options_.quantized) return add_short_rotations(rotations);
+  return add_floats({rotations.data()->coeffs().data(), rotations.size() * 4}, TINYGLTF_TYPE_VEC4,
+                    Use::data, false, Keep::view);
+}
+
 int Document::add_positions(std::span<const Vec3f> values, Use use) {
   return add_floats({values.data()->data(), values.size() * 3}, TINYGLTF_TYPE_VEC3, use, true);
 }
@@ -172,25 +205,38 @@ void Document::add_channel(tinygltf::Animation& animation, int node, const char*
 }
 
 int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
-                           const std::string& name) {
+                           const std::string& name, const Mat4& stored_to_model) {
   const int first = static_cast<int>(gltf.nodes.size());
+  std::vector<int> outer;  // the node that places a joint: itself, or a parent of its own
+  int outer_count = 0;
   std::vector<float> inverse_reference;
   tinygltf::Skin skin;
   for (int j = 0; j < skeleton.joint_count(); ++j) {
     const JointTrack& track = tracks.joints[j];
     tinygltf::Node node;
     node.name = unique_node_name(skeleton.names[j]);
-    if (!track.rest_translation.isZero(0)) node.translation = as_list(track.rest_translation);
-    if (track.rest_rotation.w() != 1.0f) node.rotation = as_list(track.rest_rotation.coeffs());
+    const bool has_outer = !track.inner_rotations.empty();
+    if (!has_outer) set_rest(track, node);
     gltf.nodes.push_back(std::move(node));
+    outer.push_back(has_outer ? first + skeleton.joint_count() + outer_count++ : first + j);
     if (skeleton.parents[j] == Skeleton::kNoParent) {
-      gltf.scenes[0].nodes.push_back(first + j);
+      gltf.scenes[0].nodes.push_back(outer.back());
     } else {
-      gltf.nodes[first + skeleton.parents[j]].children.push_back(first + j);
+      gltf.nodes[first + skeleton.parents[j]].children.push_back(outer.back());
     }
-    const Mat4f inverse = skeleton.reference[j].inverse().matrix().cast<float>();
+    const Mat4 to_joint = skeleton.reference[j].inverse().matrix();
+    const Mat4f inverse =
+        (options_.quantized ? Mat4(to_joint * stored_to_model) : to_joint).cast<float>();
     inverse_reference.insert(inverse_reference.end(), inverse.data(), inverse.data() + 16);
     skin.joints.push_back(first + j);
+  }
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    if (outer[j] == first + j) continue;
+    tinygltf::Node node;
+    node.name = unique_node_name(skeleton.names[j] + "_stretch");
+    set_rest(tracks.joints[j], node);
+    node.children.push_back(first + j);
+    gltf.nodes.push_back(std::move(node));
   }
   skin.name = name;
   skin.skeleton = first;
@@ -216,15 +262,23 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
       const JointTrack& track = tracks.joints[j];
       if (!track.translations.empty()) {
         const int input = times(track.translation_frames);
-        add_channel(animation, first + j, "translation", input,
+        add_channel(animation, outer[j], "translation", input,
                     add_floats({track.translations.data()->data(), track.translations.size() * 3},
                                TINYGLTF_TYPE_VEC3, Use::data, false, Keep::view));
       }
       if (!track.rotations.empty()) {
         const int input = times(track.rotation_frames);
-        const std::span values(track.rotations.data()->coeffs().data(), track.rotations.size() * 4);
-        add_channel(animation, first + j, "rotation", input,
-                    add_floats(values, TINYGLTF_TYPE_VEC4, Use::data, false, Keep::view));
+        add_channel(animation, outer[j], "rotation", input, add_rotations(track.rotations));
+      }
+      if (!track.scales.empty()) {
+        const int input = times({});
+        add_channel(animation, outer[j], "scale", input,
+                    add_floats({track.scales.data()->data(), track.scales.size() * 3},
+                               TINYGLTF_TYPE_VEC3, Use::data, false, Keep::view));
+      }
+      if (!track.inner_rotations.empty()) {
+        const int input = times({});
+        add_channel(animation, first + j, "rotation", input, add_rotations(track.inner_rotations));
       }
     }
     // A character that stays in its reference pose still has an animation of some duration.
@@ -239,30 +293,41 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
 }
 
 Result<int> Document::add_mesh(const Model& model, const std::map<std::string, int>& attributes,
-                               const std::string& name) {
+                               const std::string& name, bool own_vertices) {
   if (Status status = check(options_.materials); !status) return status.error();
   tinygltf::Mesh mesh;
   mesh.name = name;
-  const auto largest = static_cast<std::uint32_t>(model.positions.size() - 1);
   const std::uint32_t* indices = model.triangles.empty() ? nullptr : model.triangles[0].data();
+  std::vector<VertexRange> ranges;
+  if (own_vertices) ranges = part_ranges(model);
   for (const Model::Part& part : model.parts) {
     if (part.triangle_count == 0) continue;
     tinygltf::Primitive primitive;
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
+    VertexRange range{0, model.positions.size()};
+    if (!ranges.empty()) range = ranges[mesh.primitives.size()];
     primitive.attributes = attributes;
     const auto material = add_material(part.material, attributes);
     if (!material) return material.error();
     primitive.material = *material;
-    primitive.indices = add_integers(
-        {indices + std::size_t{3} * part.first_triangle, std::size_t{3} * part.triangle_count},
-        TINYGLTF_TYPE_SCALAR, largest, Use::indices);
+    const std::uint32_t* first = indices + std::size_t{3} * part.first_triangle;
+    std::vector<std::uint32_t> corners(first, first + std::size_t{3} * part.triangle_count);
+    for (std::uint32_t& corner : corners) corner -= static_cast<std::uint32_t>(range.first);
+    primitive.indices = add_integers(corners, TINYGLTF_TYPE_SCALAR,
+                                     static_cast<std::uint32_t>(range.count - 1), Use::indices);
     mesh.primitives.push_back(std::move(primitive));
   }
   if (mesh.primitives.empty()) {
     return Error("gltf-empty-mesh", "the model has no triangles; glTF does not allow empty meshes");
   }
+  // Copies first: the first primitive's are the accessors themselves.
+  for (std::size_t p = ranges.size(); p-- > 0;) {
+    mesh.primitives[p].attributes = attributes_of(attributes, ranges[p], p == 0);
+  }
+  const int index = static_cast<int>(gltf.meshes.size());
+  if (!ranges.empty()) ranges_[index] = std::move(ranges);
   gltf.meshes.push_back(std::move(mesh));
-  return static_cast<int>(gltf.meshes.size()) - 1;
+  return index;
 }
 
 int Document::add_mesh_node(int mesh, int skin, const std::string& name) {

@@ -37,12 +37,20 @@ class Document {
   int add_vectors(std::span<const Vec3f> values, Use use = Use::vertices);
   int add_integers(std::span<const std::uint32_t> values, int type, std::uint32_t largest, Use use);
 
+  // Vertex values of a fixed number of bytes each, the last of them padding if they are fewer.
+  int add_strided(std::span<const std::byte> bytes, std::size_t stride, int component, int type,
+                  bool normalized);
+  // Unit quaternions as normalised numbers of 16 bits.
+  int add_short_rotations(std::span<const Quatf> rotations);
+
   // `wanted`, with a number appended if another node has that name.
   std::string unique_node_name(const std::string& wanted);
 
   // Adds nodes for all joints, the first as a scene root; a skin with the inverse bind matrices; an
   // animation, if there are times. The tracks must outlive write(). Returns the skin.
-  int add_skeleton(const Skeleton& skeleton, const JointTracks& tracks, const std::string& name);
+  // `stored_to_model` transforms the vertices of the mesh, if it is quantized.
+  int add_skeleton(const Skeleton& skeleton, const JointTracks& tracks, const std::string& name,
+                   const Mat4& stored_to_model = Mat4::Identity());
 
   // The material of this name from WriteOptions::materials, or a default one; added once, as are
   // its images. Textures are left out for meshes without texture coordinates, normal textures also
@@ -53,9 +61,11 @@ class Document {
   // Eye nodes as children of the joints from add_skeleton(). Code: gltf-structure.
   Status add_eyes(const Skeleton& skeleton, int skin, std::span<const Character::Eye> eyes);
 
-  // One primitive per part of the model, all with the same attributes.
+  // One primitive per part of the model, all with the same attributes. With `own_vertices`, each
+  // gets a range of them, if no two parts share a vertex and the parts follow each other: then
+  // loaders do not load all vertices for each part. (part_vertices.cpp)
   Result<int> add_mesh(const Model& model, const std::map<std::string, int>& attributes,
-                       const std::string& name);
+                       const std::string& name, bool own_vertices = false);
 
   // A scene root with a mesh; skin -1 for none. Returns the node.
   int add_mesh_node(int mesh, int skin, const std::string& name);
@@ -99,6 +109,17 @@ class Document {
     std::span<const std::byte> bytes() const { return own.empty() ? view : own; }
   };
 
+  struct VertexRange {
+    std::size_t first = 0, count = 0;
+  };
+  // The ranges of the parts that have triangles, or none.
+  std::vector<VertexRange> part_ranges(const Model& model) const;
+  // The attributes of a range of the vertices; `in_place` changes the accessors themselves.
+  std::map<std::string, int> attributes_of(const std::map<std::string, int>& whole,
+                                           const VertexRange& range, bool in_place);
+  void find_bounds(tinygltf::Accessor& accessor) const;
+  std::span<const std::byte> bytes_from(std::size_t offset) const;
+
   void put(std::span<const std::byte> bytes, Keep keep);
   Result<int> add_image(const EncodedImage& image);
   Result<int> add_texture(const Texture& texture);
@@ -108,6 +129,9 @@ class Document {
   int add_accessor_of(std::size_t bytes, int component, std::size_t component_size, int type,
                       Use use);
   std::vector<std::byte>& own_part();
+  // The whole file with its buffer views encoded (compress.cpp).
+  Status write_compressed(OutputFile& file);
+  int add_rotations(std::span<const Quatf> rotations);
   Status begin_binary();
   Status begin_text();
   Status append_encoded(std::span<const std::byte> bytes);
@@ -118,9 +142,10 @@ class Document {
 
   const WriteOptions& options_;
   std::vector<Part> parts_;
-  std::uint64_t size_ = 0;      // bytes of the parts and the streamed data
-  std::uint64_t promised_ = 0;  // bytes of the streamed data
-  std::size_t bounds_ = 0;      // bounds that are not filled in yet
+  std::map<int, std::vector<VertexRange>> ranges_;  // of the primitives of a mesh
+  std::uint64_t size_ = 0;                          // bytes of the parts and the streamed data
+  std::uint64_t promised_ = 0;                      // bytes of the streamed data
+  std::size_t bounds_ = 0;                          // bounds that are not filled in yet
   OutputFile* file_ = nullptr;
   std::string json_;                  // with space reserved for the bounds
   std::vector<std::byte> unencoded_;  // the last bytes, fewer than one Base64 group

@@ -1,12 +1,17 @@
 #include "formats/gltf/gltf_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "core/file.h"
+#include "core/numbers.h"
 #include "core/path_inside.h"
+#include "core/text.h"
 #include "formats/gltf/accessors_internal.h"
 #include "formats/gltf/animation_reader_internal.h"
 #include "formats/gltf/buffers_internal.h"
@@ -155,6 +160,34 @@ Status Builder::check_instances() {
   return {};
 }
 
+// Notes what of the meshes is not read, once for each kind with its count.
+void report_unread(const ParsedJson& parsed, Scene& scene) {
+  constexpr std::array kRead = {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0"};
+  std::map<std::string, long long> unread;
+  for (const tinygltf::Mesh& mesh : parsed.model.meshes) {
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      for (const auto& [name, accessor] : primitive.attributes) {
+        const bool influence = name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
+        if (!influence && std::ranges::find(kRead, name) == kRead.end()) ++unread[name];
+      }
+    }
+  }
+  std::vector<std::string> words;
+  constexpr std::size_t kMaxListed = 12;
+  for (const auto& [name, count] : unread) {
+    if (words.size() == kMaxListed) break;
+    words.push_back(fmt::format("{} of {}", shown(name), counted(count, "primitive")));
+  }
+  if (unread.size() > kMaxListed) words.emplace_back("others");
+  if (parsed.instanced_nodes > 0) {
+    words.push_back(fmt::format("EXT_mesh_gpu_instancing of {}, shown once",
+                                counted(parsed.instanced_nodes, "node")));
+  }
+  if (words.empty()) return;
+  warn(scene.diagnostics, "gltf-unread", fmt::format("not read: {}", fmt::join(words, "; ")));
+  scene.diagnostics.back().severity = Severity::note;
+}
+
 // Limit on unpacked data: glTF's smallest encoding grows by at most a factor of 16; the constant
 // part allows for sparse and empty accessors.
 std::uint64_t unpacking_limit(std::uint64_t input_bytes) {
@@ -198,6 +231,7 @@ Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options)
   Accessors accessors(parsed->model, buffers->views, unpacking_limit(input_bytes));
   auto scene = Builder(*parsed, accessors).build();
   if (!scene) return scene;
+  report_unread(*parsed, *scene);
   for (const SideFile& file : buffers->files) {
     if (file.file) scene->files.push_back(file.path);
   }

@@ -8,6 +8,7 @@
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/mesh_shape_internal.h"
 #include "formats/gltf/morph_targets_internal.h"
+#include "formats/gltf/quantize_internal.h"
 #include "scene/influences.h"
 #include "scene/tangents.h"
 
@@ -26,6 +27,7 @@ void add_influences(Document& document, const Model& model,
   bound.influence_joints = model.influence_joints;
   bound.influence_weights = model.influence_weights;
   normalize_influences(bound);
+  limit_influences(bound, used_influences(bound));
 
   const auto count = static_cast<std::size_t>(bound.vertex_count());
   const int places = bound.influences_per_vertex;
@@ -95,14 +97,26 @@ Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptio
   if (Status status = check_morphs(model, options); !status) return status;
   assert(tracks.joints.size() == model.skeleton.names.size());
   Document document(options);
-  const int skin = document.add_skeleton(model.skeleton, tracks, options.name);
+  const PositionGrid grid = options.quantized ? PositionGrid::of(model.positions) : PositionGrid();
+  const int skin = document.add_skeleton(model.skeleton, tracks, options.name, grid.to_model());
   if (Status status = document.add_eyes(model.skeleton, skin, options.eyes); !status) return status;
   MeshShape shape{model.positions, model.normals, model.tangents};
   const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
   if (!tangents.empty()) shape.tangents = tangents;
-  auto attributes = add_shape(document, model, shape);
-  add_influences(document, model, attributes);
-  const auto mesh = document.add_mesh(model, attributes, mesh_name(options));
+  std::map<std::string, int> attributes;
+  if (options.quantized) {
+    Model stored = model;
+    if (!tangents.empty()) stored.tangents = tangents;
+    normalize_influences(stored);
+    limit_influences(stored, used_influences(stored));
+    attributes = add_quantized_shape(document, stored, grid);
+    document.gltf.extensionsUsed.emplace_back("KHR_mesh_quantization");
+    document.gltf.extensionsRequired.emplace_back("KHR_mesh_quantization");
+  } else {
+    attributes = add_shape(document, model, shape);
+    add_influences(document, model, attributes);
+  }
+  const auto mesh = document.add_mesh(model, attributes, mesh_name(options), true);
   if (!mesh) return mesh.error();
   const int node = document.add_mesh_node(*mesh, skin, mesh_name(options));
   Status status = add_morphs(document, model, attributes, *mesh, node, options);
@@ -118,7 +132,7 @@ Status write_mesh(const Model& model, const MeshShape& given, const WriteOptions
   const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
   if (!tangents.empty()) shape.tangents = tangents;
   const auto attributes = add_shape(document, model, shape);
-  const auto mesh = document.add_mesh(model, attributes, mesh_name(options));
+  const auto mesh = document.add_mesh(model, attributes, mesh_name(options), true);
   if (!mesh) return mesh.error();
   const int node = document.add_mesh_node(*mesh, -1, mesh_name(options));
   Status status = add_morphs(document, model, attributes, *mesh, node, options);

@@ -36,6 +36,12 @@ struct WriteOptions {
   std::span<const Character::Eye> eyes{};
   // For write_rig and write_mesh: morph targets of the model and their weights over time (constant
   // if one frame), in the same animation as the joints. Code: gltf-morphs.
+  // For write_rig: vertices as integers of 16 bits (directions of 8; KHR_mesh_quantization) and
+  // rotations of 16, see quantize.h; tracks should have been through round_rotations().
+  bool quantized = false;
+  // For a GLB: buffer views encoded by meshoptimizer (EXT_meshopt_compression), without loss. Best
+  // after order_for_compression().
+  bool compressed = false;
   const MorphSet* morphs = nullptr;
   const MorphWeights* weights = nullptr;  // of `morphs`, in its order
 };
@@ -56,6 +62,10 @@ Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
                       const WriteOptions& options, OutputFile& file);
 Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
                  OutputFile& file);
+
+// Reorders triangles within parts and vertices so that compression finds neighbours near each
+// other; `morphs` may have no targets.
+void order_for_compression(Model& model, MorphSet& morphs);
 
 // A mesh without a skeleton: triangles, texture coordinates and parts of `model`, vertices of
 // `shape`, which must be the model's own shape if there are morph targets.

@@ -5,6 +5,7 @@
 #include "core/result.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
+#include "scene/stretch.h"
 
 // Converts a clip's joint_to_world transforms to glTF animation tracks: float transforms relative
 // to the parent, from which a viewer rebuilds the clip's joint positions.
@@ -21,6 +22,11 @@ struct JointTrack {
   std::vector<Vec3f> translations;
   std::vector<Quatf> rotations;
 
+  // Of stretched joints: [frames], or empty for 1. Where a stretch is not along the axes of any one
+  // node, the joint is the child of a node with the values above, and has this rotation itself.
+  std::vector<Vec3f> scales;
+  std::vector<Quatf> inner_rotations;
+
   // After reduce_tracks(), for tracks with fewer keys than frames: the keys' frames, increasing.
   std::vector<int> translation_frames, rotation_frames;
 };
@@ -28,6 +34,8 @@ struct JointTrack {
 struct JointTracks {
   std::vector<float> times;        // [frames], seconds, strictly increasing from 0
   std::vector<JointTrack> joints;  // [joints]
+
+  bool are_stretched() const;  // whether a joint has scales
 };
 
 // The tracks of `clip` for a skeleton of the same structure, whose reference pose the nodes get.
@@ -46,6 +54,13 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double 
 // with release().
 Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
                                  double tolerance = 1e-6);
+
+// As above for joints that are stretched, [frames x joints]; with none, the same. Nodes inherit the
+// scales of their parents, so that joints below a flattened one can only be where it puts them;
+// `largest_error` gets the largest difference of a transform from the clip's, which is 1e-4 or less
+// otherwise (of its matrix: metres, and metres at a metre from the joint).
+Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip,
+                                 std::span<const Stretch> stretches, double& largest_error);
 
 // Only the rest transforms, no times.
 JointTracks rest_tracks(const Skeleton& rest);

@@ -364,6 +364,7 @@ Result<ParsedJson> parse_json(const Container& container) {
   result.buffers = std::move(*buffers);
   for (const Json& node : entries_of(json, "nodes")) {
     result.lights.push_back(extension_of(node, "KHR_lights_punctual") != nullptr);
+    if (extension_of(node, "EXT_mesh_gpu_instancing") != nullptr) ++result.instanced_nodes;
   }
   auto views = read_packed_views(json);
   if (!views) return views.error();

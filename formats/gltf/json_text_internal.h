@@ -62,6 +62,7 @@ struct ParsedJson {
   std::vector<bool> lights;  // [nodes], whether they carry a light (KHR_lights_punctual)
   std::vector<PackedView> packed_views;
   std::vector<PackedPrimitive> packed_primitives;
+  int instanced_nodes = 0;  // EXT_mesh_gpu_instancing
 };
 
 // A string member; empty if there is none.

@@ -5,6 +5,7 @@
 
 #include "formats/gltf/joint_tracks.h"
 #include "formats/gltf/morph_targets_internal.h"
+#include "formats/gltf/quantize_internal.h"
 
 namespace krok::gltf {
 
@@ -51,6 +52,10 @@ Status add_morphs(Document& document, const Model& model,
   std::vector<std::map<std::string, int>> targets(morphs.names.size());
   for (int t = 0; t < morphs.target_count(); ++t) {
     auto& target = targets[static_cast<std::size_t>(t)];
+    if (options.quantized) {
+      target = add_quantized_target(document, model, morphs, t, PositionGrid::of(model.positions));
+      continue;
+    }
     target["POSITION"] =
         document.add_positions(displacements(morphs.target_positions(t), model.positions));
     // In glTF a target may only have attributes that the mesh has.
@@ -69,15 +74,6 @@ Status add_morphs(Document& document, const Model& model,
     document.add_weight_keys(node, *times, weights.values, options.name);
   }
   return {};
-}
-
-void Document::set_targets(int mesh, const std::vector<std::map<std::string, int>>& targets,
-                           std::span<const std::string> names) {
-  tinygltf::Mesh& changed = gltf.meshes[static_cast<std::size_t>(mesh)];
-  for (tinygltf::Primitive& primitive : changed.primitives) primitive.targets = targets;
-  tinygltf::Value::Array list;
-  for (const std::string& name : names) list.emplace_back(name);
-  changed.extras = tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(list)}});
 }
 
 void Document::add_weight_keys(int node, std::span<const float> times,

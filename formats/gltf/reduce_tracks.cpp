@@ -56,6 +56,9 @@ void lengthen(const JointTracks& tracks, int last, std::vector<KeptFrames>& join
 
 Result<Reduction> reduce_tracks(const Skeleton& rest, const ReduceOptions& options, int jobs,
                                 JointTracks& tracks) {
+  if (tracks.are_stretched()) {
+    return Error("reduce-stretch", "keys of joints that change scale cannot be reduced");
+  }
   const std::vector<double> times(tracks.times.begin(), tracks.times.end());
   // A translation key takes 12 bytes, a rotation key 16, its time 4 unless the track shares the
   // times of all frames, and the JSON of a time accessor some 120.

@@ -61,6 +61,7 @@ int Document::promise_positions(std::size_t count) {
 
 Status Document::write(OutputFile& file) {
   assert(promised_ == 0);
+  if (options_.compressed && options_.binary && size_ > 0) return write_compressed(file);
   if (Status status = begin(file); !status) return status;
   return end({});
 }

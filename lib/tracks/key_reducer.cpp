@@ -139,7 +139,7 @@ void Reducer::place(std::size_t f, std::size_t joint) {
 
 double Reducer::error(std::size_t f, std::size_t joint) const {
   const std::size_t at = f * joints_ + joint;
-  return shell_error(world_[at], reduced_world_[at], task_.options.shell_distance);
+  return shell_error(world_[at], reduced_world_[at], task_.shell_of(joint));
 }
 
 // Updates the joint's descendants at a frame, up to the first whose error exceeds the tolerance.

@@ -28,6 +28,11 @@ struct ReductionTask {
   std::vector<Keep> keep;               // [tracks]
   std::vector<std::vector<int>> below;  // [joints]: the joint and its descendants, increasing
   ReduceOptions options;
+
+  double shell_of(std::size_t joint) const {
+    return options.shell_distances.empty() ? options.shell_distance
+                                           : options.shell_distances[joint];
+  }
 };
 
 struct StretchResult {

@@ -55,7 +55,8 @@ std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::s
     deepest = std::max(deepest, depth[j]);
   }
   // Upper bound of the reach of a joint's rotation: the longest chain of bones below it.
-  std::vector<double> reach(joints, task.options.shell_distance), longest(joints, 0);
+  std::vector<double> reach(joints), longest(joints, 0);
+  for (std::size_t j = 0; j < joints; ++j) reach[j] = task.shell_of(j);
   for (std::size_t f = 0; f < frames; ++f) {
     for (std::size_t j = 0; j < joints; ++j) {
       longest[j] = std::max(longest[j], task.local[f * joints + j].position.norm());

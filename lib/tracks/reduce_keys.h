@@ -16,6 +16,8 @@ namespace krok {
 struct ReduceOptions {
   double tolerance = 1e-4;       // metres, > 0
   double shell_distance = 0.03;  // metres from a joint to the skin around it, >= 0
+  // Instead of it, one for each joint, or none.
+  std::span<const double> shell_distances{};
   // Tracks that would keep more than this fraction keep all their keys, for formats where separate
   // times per track cost more than a few values; 1 gives the fewest keys.
   double most_kept = 1;

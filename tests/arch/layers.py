@@ -68,7 +68,7 @@ ALLOWED = {
     "formats/cam": BASE | {"formats/container", "formats/registry"},
     "formats/steps": BASE | {"lib/contacts", "lib/parametric", "lib/rbf", "formats/container",
                              "formats/registry"},
-    "formats/gltf": BASE | {"lib/nodes", "lib/tracks"},
+    "formats/gltf": BASE | {"lib/nodes", "lib/skin", "lib/tracks"},
     "formats/assimp": BASE | {"lib/nodes", "formats/registry"},
     "formats/csv": BASE,
     "formats/obj": BASE,

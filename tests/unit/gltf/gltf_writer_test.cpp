@@ -69,6 +69,57 @@ TEST(GltfWriter, TheSameInputGivesTheSameBytes) {
   EXPECT_EQ(rig(model, motion()).bytes, rig(model, motion()).bytes);
 }
 
+// Loaders upload the vertices of each primitive: with shared ones, a character of many parts takes
+// as many times the memory as it has parts.
+TEST(GltfWriter, PartsHaveVerticesOfTheirOwn) {
+  Model model = test::tube_model(turned_human());
+  const auto triangles = static_cast<std::uint32_t>(model.triangles.size());
+  const std::uint32_t tube = 2 * 5 * 8;  // triangles of a bone, whose vertices are its own
+  model.parts = {{"a", "", 0, tube}, {"none", "", tube, 0}, {"b", "", tube, triangles - tube}};
+  MorphSet morphs;
+  morphs.names = {"smile"};
+  morphs.vertex_count = model.vertex_count();
+  morphs.positions = model.positions;
+  morphs.positions.back().y() += 1;
+  for (const bool quantized : {false, true}) {
+    gltf::WriteOptions options;
+    options.morphs = &morphs;
+    options.quantized = quantized;
+    const auto glb = rig(model, motion(), options);
+    const auto& accessors = glb.json["accessors"];
+    const auto& primitives = glb.json["meshes"][0]["primitives"];
+    ASSERT_EQ(primitives.size(), 2u);
+    std::size_t first = 0;
+    for (const auto& primitive : primitives) {
+      const auto& positions = accessors[primitive["attributes"]["POSITION"].get<std::size_t>()];
+      const std::size_t count = positions["count"];
+      EXPECT_EQ(count, first == 0 ? 48u : model.positions.size() - 48);
+      for (const auto& [name, accessor] : primitive["attributes"].items()) {
+        EXPECT_EQ(accessors[accessor.get<std::size_t>()]["count"], count) << name;
+      }
+      const auto& target = accessors[primitive["targets"][0]["POSITION"].get<std::size_t>()];
+      EXPECT_EQ(target["count"], count);
+      EXPECT_EQ(target["max"][1].get<double>() > 0, first > 0);
+      if (!quantized) {
+        float highest = -100;
+        for (std::size_t v = first; v < first + count; ++v) {
+          highest = std::max(highest, model.positions[v].y());
+        }
+        EXPECT_EQ(positions["max"][1].get<float>(), highest);
+      }
+      first += count;
+    }
+    EXPECT_EQ(first, model.positions.size());
+  }
+  // Parts that share a vertex share them all.
+  model.parts = {{"a", "", 0, tube - 1}, {"b", "", tube - 1, triangles - tube + 1}};
+  const auto shared = rig(model, motion());
+  for (const auto& primitive : shared.json["meshes"][0]["primitives"]) {
+    const std::size_t positions = primitive["attributes"]["POSITION"];
+    EXPECT_EQ(shared.json["accessors"][positions]["count"], model.positions.size());
+  }
+}
+
 TEST(GltfWriter, RigHoldsTheMeshItsBoundsAndItsInfluences) {
   for (const int influences : {1, 3, 4, 8}) {
     const Model model = test::tube_model(turned_human(), influences);

@@ -1,0 +1,117 @@
+#include <algorithm>
+#include <cstring>
+
+#include "formats/gltf/document_internal.h"
+
+namespace krok::gltf {
+
+namespace {
+
+// Each part's accessors take some 150 bytes of JSON each; more than this many are not worth it.
+constexpr std::size_t kMaxRanges = 4096;
+
+double component_at(const std::byte* bytes, int component) {
+  const auto value = [&](auto number) {
+    std::memcpy(&number, bytes, sizeof number);
+    return static_cast<double>(number);
+  };
+  if (component == TINYGLTF_COMPONENT_TYPE_SHORT) return value(std::int16_t{});
+  if (component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) return value(std::uint16_t{});
+  return value(float{});
+}
+
+}  // namespace
+
+std::vector<Document::VertexRange> Document::part_ranges(const Model& model) const {
+  struct Used {
+    std::uint32_t first, last;
+    std::size_t primitive;
+  };
+  std::vector<Used> used;
+  for (const Model::Part& part : model.parts) {
+    if (part.triangle_count == 0) continue;
+    Used one{~std::uint32_t{0}, 0, used.size()};
+    for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
+      for (const std::uint32_t corner : model.triangles[part.first_triangle + t]) {
+        one.first = std::min(one.first, corner);
+        one.last = std::max(one.last, corner);
+      }
+    }
+    used.push_back(one);
+  }
+  const std::size_t targets = options_.morphs == nullptr ? 0 : options_.morphs->names.size();
+  if (used.size() < 2 || used.size() * (1 + targets) > kMaxRanges) return {};
+  std::ranges::sort(used, {}, &Used::first);
+  std::vector<VertexRange> ranges(used.size());
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    const bool is_last = i + 1 == used.size();
+    if (!is_last && used[i].last >= used[i + 1].first) return {};
+    // What no triangle uses goes with the part before it.
+    const std::size_t begin = i == 0 ? 0 : used[i].first;
+    const std::size_t end = is_last ? model.positions.size() : used[i + 1].first;
+    ranges[used[i].primitive] = {begin, end - begin};
+  }
+  return ranges;
+}
+
+std::span<const std::byte> Document::bytes_from(std::size_t offset) const {
+  for (const Part& part : parts_) {
+    const auto bytes = part.bytes();
+    if (offset < bytes.size()) return bytes.subspan(offset);
+    offset -= bytes.size();
+  }
+  return {};
+}
+
+void Document::find_bounds(tinygltf::Accessor& accessor) const {
+  const auto& view = gltf.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+  const auto size = static_cast<std::size_t>(
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)));
+  const auto bytes = bytes_from(view.byteOffset + accessor.byteOffset);
+  for (std::size_t i = 0; i < accessor.count; ++i) {
+    for (std::size_t c = 0; c < accessor.minValues.size(); ++c) {
+      const double value =
+          component_at(&bytes[i * view.byteStride + c * size], accessor.componentType);
+      double& least = accessor.minValues[c];
+      double& most = accessor.maxValues[c];
+      least = i == 0 ? value : std::min(least, value);
+      most = i == 0 ? value : std::max(most, value);
+    }
+  }
+}
+
+std::map<std::string, int> Document::attributes_of(const std::map<std::string, int>& whole,
+                                                   const VertexRange& range, bool in_place) {
+  std::map<std::string, int> attributes = whole;
+  for (auto& [name, index] : attributes) {
+    tinygltf::Accessor part = gltf.accessors[static_cast<std::size_t>(index)];
+    const auto& view = gltf.bufferViews[static_cast<std::size_t>(part.bufferView)];
+    part.byteOffset = range.first * view.byteStride;
+    part.count = range.count;
+    if (!part.minValues.empty()) find_bounds(part);
+    if (in_place) {
+      gltf.accessors[static_cast<std::size_t>(index)] = std::move(part);
+    } else {
+      index = static_cast<int>(gltf.accessors.size());
+      gltf.accessors.push_back(std::move(part));
+    }
+  }
+  return attributes;
+}
+
+void Document::set_targets(int mesh, const std::vector<std::map<std::string, int>>& targets,
+                           std::span<const std::string> names) {
+  tinygltf::Mesh& changed = gltf.meshes[static_cast<std::size_t>(mesh)];
+  const auto ranges = ranges_.find(mesh);
+  for (std::size_t p = changed.primitives.size(); p-- > 0;) {
+    auto& own = changed.primitives[p].targets;
+    own = targets;
+    if (ranges == ranges_.end()) continue;
+    for (auto& target : own) target = attributes_of(target, ranges->second[p], p == 0);
+  }
+  tinygltf::Value::Array list;
+  for (const std::string& name : names) list.emplace_back(name);
+  changed.extras = tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(list)}});
+}
+
+}  // namespace krok::gltf
