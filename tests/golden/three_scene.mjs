@@ -12,12 +12,14 @@ globalThis.createImageBitmap ??= async (blob) => (
 
 const THREE = await import('three');
 const {GLTFLoader} = await import('three/addons/loaders/GLTFLoader.js');
+const {MeshoptDecoder} = await import('three/addons/libs/meshopt_decoder.module.js');
 
 export class ThreeScene {
   static async open(path) {
     const bytes = readFileSync(path);
     const data = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-    const gltf = await new GLTFLoader().parseAsync(data, dirname(path) + '/');
+    const loader = new GLTFLoader().setMeshoptDecoder(MeshoptDecoder);
+    const gltf = await loader.parseAsync(data, dirname(path) + '/');
     return new ThreeScene(gltf);
   }
 

@@ -74,18 +74,37 @@ Result<std::optional<Reduction>> reduce(const Options& options, const Skeleton& 
   return std::optional(*std::move(reduction));
 }
 
+Result<gltf::JointTracks> stretched_tracks(const FrameSource& frames, const Stretches& stretches,
+                                           ToolContext& context) {
+  const auto clip = load(frames, context.jobs);
+  if (!clip) return clip.error();
+  double largest_error = 0;
+  auto tracks = gltf::joint_tracks(frames.skeleton, *clip, stretches, largest_error);
+  if (tracks && largest_error > 2e-4) {
+    context.warn("export-stretch",
+                 fmt::format("joints below one that is flattened stand apart from it, which nodes "
+                             "cannot have: they are up to {} mm off",
+                             readable(1e3 * largest_error, 3)));
+  }
+  return tracks;
+}
+
 // Reads the motion, writes it, and returns its summary.
 Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolContext& context,
                                       std::optional<Reduction>& reduction) {
   std::optional<gltf::JointTracks> tracks;
-  const auto facts =
-      io::stream_motion(options.input, context, [&](const FrameSource& frames) -> Status {
+  Stretches stretches;
+  const auto facts = io::stream_motion(
+      options.input, context,
+      [&](const FrameSource& frames) -> Status {
         if (frames.skeleton.empty()) return empty_error(options.input);
-        auto made = gltf::joint_tracks(frames.skeleton, frames, context.jobs);
+        auto made = stretches.empty() ? gltf::joint_tracks(frames.skeleton, frames, context.jobs)
+                                      : stretched_tracks(frames, stretches, context);
         if (!made) return made.error();
         tracks = *std::move(made);
         return {};
-      });
+      },
+      {.stretches = &stretches});
   if (!facts) return facts.error();
   auto reduced = reduce(options, facts->skeleton, context.jobs, *tracks);
   if (!reduced) return reduced.error();

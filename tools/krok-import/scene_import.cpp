@@ -47,6 +47,11 @@ Result<int> import_scene(const InputFile& input, const Options& options, ToolCon
   if (Status status = check_strict(options, *scene); !status) {
     return std::move(status.error()).in_file(input.path());
   }
+  if (!options.model.empty() || !options.character.empty()) {
+    for (Diagnostic& diagnostic : scene->diagnostics) {
+      if (diagnostic.code == "gltf-unread") diagnostic.severity = Severity::warning;
+    }
+  }
   context.diagnose(scene->diagnostics);
   // Axes from the user replace a rotation given by the file.
   if ((how->up || how->forward) && character::rotation_to_apply(scene->space) != Mat4::Identity()) {

@@ -85,6 +85,28 @@ void declare(CommandOptions& command, Options& options) {
              "Up axis of a point cache: y as in the written OBJ and glTF files, or z as in Blender "
              "and 3ds Max",
              "AXIS", "y");
+  add_choice(command, "--influences", options.influences,
+             {{"all", Influences::all}, {"4", Influences::four}, {"8", Influences::eight}},
+             "Keep the N largest influences of each vertex, normalised; the error over the motion "
+             "is measured on the mesh. More than 4 need a second set of joints and weights in "
+             "glTF, which some viewers do not read",
+             "N", "all");
+  command.add_option("--reduce", options.reduce,
+                     "For --as rig: remove keys while no vertex moves by more than a tolerance, "
+                     "such as 0.1mm, at any frame or half-way between two");
+  command.add_flag("--quantize", options.quantize,
+                   "For --as rig: vertices and rotations of 16 bits, normals of 8 "
+                   "(KHR_mesh_quantization); the error is measured on the mesh");
+  command.add_flag("--compress", options.compress,
+                   "For --as rig as .glb: compress meshes and keys without further loss "
+                   "(EXT_meshopt_compression); reorders vertices");
+}
+
+Result<double> reduce_tolerance(const Options& options) {
+  const auto tolerance = parse_length(options.reduce);
+  if (!tolerance) return at_option("--reduce", tolerance.error());
+  if (*tolerance > 0) return *tolerance;
+  return Error("usage", fmt::format("--reduce {} is not more than 0", options.reduce));
 }
 
 // Options without effect are errors.
@@ -113,6 +135,12 @@ Status check(const Options& options) {
   if (options.as == As::rig && options.method != SkinMethod::linear) {
     return Error("usage", "--method is not for --as rig, which leaves skinning to the viewer",
                  "use --as clip to bake the mesh with this method");
+  }
+  if (options.as != As::rig && (!options.reduce.empty() || options.quantize || options.compress)) {
+    return Error("usage", "--reduce, --quantize and --compress are for --as rig");
+  }
+  if (!options.reduce.empty()) {
+    if (const auto tolerance = reduce_tolerance(options); !tolerance) return tolerance.error();
   }
   if (pose && !(options.from.empty() && options.to.empty() && options.every == 1)) {
     return Error("usage", "--from, --to and --every are not for --as pose", "use --time");

@@ -12,6 +12,8 @@
 
 namespace krok::cli::skin {
 
+enum class Influences { all = 0, four = 4, eight = 8 };
+
 enum class As { clip, pose, rig, frames };
 
 // Command-line options.
@@ -21,12 +23,18 @@ struct Options {
   std::string morphs;   // --morph, empty: none
   std::string weights;  // --weights, empty: none
   As as = As::clip;
-  SkinMethod method = SkinMethod::linear;  // always for --as rig
-  std::string time;                        // --as pose; a ClipTime, empty: the start
-  std::string from, to;                    // time range; ClipTimes, empty: the ends; not --as pose
-  int every = 1;                           // frame step; not --as pose
-  pc2::Up up = pc2::Up::y;                 // of a point cache
+  SkinMethod method = SkinMethod::linear;   // always for --as rig
+  std::string time;                         // --as pose; a ClipTime, empty: the start
+  std::string from, to;                     // time range; ClipTimes, empty: the ends; not --as pose
+  int every = 1;                            // frame step; not --as pose
+  pc2::Up up = pc2::Up::y;                  // of a point cache
+  Influences influences = Influences::all;  // per vertex at most
+  std::string reduce;                       // --as rig: the tolerance, empty: all keys
+  bool quantize = false, compress = false;  // --as rig
 };
+
+// The tolerance of --reduce, metres.
+Result<double> reduce_tolerance(const Options& options);
 
 // Whether a path is a character, not a model.
 bool is_character(const std::string& path);

@@ -12,6 +12,7 @@
 #include "formats/pc2/pc2.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-skin/posed_mesh.h"
+#include "tools/krok-skin/small_rig.h"
 
 namespace krok::cli::skin {
 
@@ -173,13 +174,17 @@ Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up
   });
 }
 
-Status write_rig(const Subject& subject, ToolContext& context) {
+Status write_rig(const Options& chosen, const Subject& subject, ToolContext& context) {
+  const auto rig = small_rig(chosen, subject, context);
+  if (!rig) return rig.error();
   return write_output(context, context.output, [&](OutputFile& file) {
     gltf::WriteOptions options = write_options(subject, context);
     options.eyes = subject.eyes;
-    if (subject.morphs.target_count() > 0) options.morphs = &subject.morphs;
+    if (rig->morphs.target_count() > 0) options.morphs = &rig->morphs;
     if (subject.changes_shape()) options.weights = &subject.weights;
-    return gltf::write_rig(subject.model, subject.clip, options, file);
+    options.quantized = chosen.quantize;
+    options.compressed = chosen.compress;
+    return gltf::write_rig(rig->model, rig->tracks, options, file);
   });
 }
 

@@ -21,7 +21,7 @@ Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up
                   ToolContext& context);
 
 // Joints, weights and animation tracks.
-Status write_rig(const Subject& subject, ToolContext& context);
+Status write_rig(const Options& options, const Subject& subject, ToolContext& context);
 
 // One file per frame, written in parallel; all appear or none. Returns their names for display:
 // "walk_0000.glb to walk_0119.glb".

@@ -18,16 +18,25 @@ PosedMesh::PosedMesh(const Subject& subject, const SkinBinding& binding, int job
 
 void PosedMesh::at_frame(int frame, const SkinnedSurface& out) {
   subject_.clip.get_pose(frame, joints_);
-  skin(frame, out);
+  std::span<const Stretch> stretches = subject_.stretches;
+  if (!stretches.empty()) {
+    stretches = stretches.subspan(static_cast<std::size_t>(frame) * joints_.size(), joints_.size());
+  }
+  skin(frame, stretches, out);
 }
 
 void PosedMesh::at_time(double seconds, const SkinnedSurface& out) {
   sample(subject_.clip, seconds, joints_, scratch_);
-  skin(seconds * subject_.clip.rate, out);
+  const double frame = seconds * subject_.clip.rate;
+  if (!subject_.stretches.empty()) {
+    stretches_.resize(joints_.size());
+    sample(subject_.stretches, frame, stretches_);
+  }
+  skin(frame, stretches_, out);
 }
 
-void PosedMesh::skin(double frame, const SkinnedSurface& out) {
-  pose_.set(joints_);
+void PosedMesh::skin(double frame, std::span<const Stretch> stretches, const SkinnedSurface& out) {
+  pose_.set(joints_, stretches);
   krok::skin(binding_, pose_, shape_at(frame, out), out, jobs_);
 }
 

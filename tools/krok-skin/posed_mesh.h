@@ -18,7 +18,7 @@ class PosedMesh {
   void at_time(double seconds, const SkinnedSurface& out);
 
  private:
-  void skin(double frame, const SkinnedSurface& out);
+  void skin(double frame, std::span<const Stretch> stretches, const SkinnedSurface& out);
   // The surface before skinning: the model's or, with morph targets, that of `frame`.
   SkinSurface shape_at(double frame, const SkinnedSurface& out);
 
@@ -27,6 +27,7 @@ class PosedMesh {
   SkinPose pose_;
   int jobs_;
   std::vector<Transform> joints_, scratch_;
+  std::vector<Stretch> stretches_;
   std::vector<float> weights_;
   std::vector<Vec3f> positions_, normals_;
 };

@@ -4,6 +4,7 @@
 
 #include "core/numbers.h"
 #include "tools/krok-skin/outputs.h"
+#include "tools/krok-skin/small_rig.h"
 #include "tools/krok-skin/subject.h"
 
 namespace krok::cli::skin {
@@ -27,7 +28,7 @@ Result<std::string> write(const Options& options, const Subject& subject, ToolCo
     if (subject.clip.frame_count() == 0) {
       context.warn("skin-no-frames", "the motion has no frames; the rig is not animated");
     }
-    if (Status status = write_rig(subject, context); !status) return status.error();
+    if (Status status = write_rig(options, subject, context); !status) return status.error();
     return context.output;
   }
   const SkinBinding binding(subject.model, options.method);
@@ -49,7 +50,7 @@ Result<std::string> write(const Options& options, const Subject& subject, ToolCo
 Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check(options); !status) return status.error();
   if (Status status = check_output(options.as, context.output); !status) return status.error();
-  const auto subject = load(options, context);
+  auto subject = load(options, context);
   if (!subject) return subject.error();
   const bool every_frame = options.as == As::clip || options.as == As::frames;
   if (subject->clip.frame_count() == 0 && every_frame) {
@@ -59,6 +60,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   const int frames = options.as == As::pose ? 1 : subject->clip.frame_count();
   context.report.result = result_of(*subject, frames);
+  apply_influence_limit(options, *subject, context);
   const auto written = write(options, *subject, context);
   if (!written) return written.error();
   context.log(options.as == As::frames

@@ -118,7 +118,7 @@ class Loader {
       clip.set_pose(0, clip.skeleton.reference);
       return {};
     }
-    auto read = io::open_motion(options_.motion, context_);
+    auto read = io::open_motion(options_.motion, context_, {.stretches = &subject_.stretches});
     if (!read) return read.error();
     clip = std::move(*read);
     auto bound = bind_to(std::move(subject_.model), clip.skeleton);
@@ -142,6 +142,10 @@ class Loader {
     if (!needed) return Error(needed.error()).in_file(options_.weights);
     if (clip.frame_count() == 1 && *needed > 1) {
       clip = hold(clip, *needed);
+      const Stretches still = subject_.stretches;
+      for (int frame = 1; frame < *needed; ++frame) {
+        subject_.stretches.insert(subject_.stretches.end(), still.begin(), still.end());
+      }
     } else if (const double over = weights_->curves.duration() - clip.duration();
                over > 1 / clip.rate) {
       context_.diagnose(
@@ -160,6 +164,7 @@ class Loader {
     if (!range) return Error(range.error()).in_file(options_.motion);
     if (!*range) return {};
     const auto [first, last, every] = **range;
+    subject_.stretches = cut(subject_.stretches, subject_.clip.joint_count(), first, last, every);
     subject_.clip = cut(subject_.clip, first, last, every);
     subject_.first_frame = first;
     subject_.every = every;

@@ -6,6 +6,7 @@
 #include "scene/material.h"
 #include "scene/model.h"
 #include "scene/morph_set.h"
+#include "scene/stretch.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-skin/options.h"
 
@@ -15,6 +16,7 @@ namespace krok::cli::skin {
 struct Subject {
   Model model;                     // on the motion's skeleton, with triangles
   Clip clip;                       // the selected range
+  Stretches stretches;             // of the joints in `clip`; none if they are rigid
   int first_frame = 0, every = 1;  // of the motion as read, for file names
 
   std::vector<Material> materials;   // of the model's parts; for characters

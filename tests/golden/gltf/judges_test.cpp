@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <nlohmann/json.hpp>
+
 #include "golden/gltf/judges.h"
 #include "support/test_scenes.h"
 
@@ -46,6 +49,65 @@ TEST_F(GltfJudges, RigShowsWhatTheBakeShows) {
   judge("three_bounds.mjs", "rig.glb --against clip.glb --tolerance 1e-5");
   judge("three_bounds.mjs", "rig.gltf --against clip.glb --tolerance 1e-5");
   judge("three_bounds.mjs", "rig.glb --joints joints.csv --tolerance 2e-6");
+}
+
+// What --reduce and --quantize lose is measured by Krok alone; three.js has to see no more.
+TEST_F(GltfJudges, SmallRigsShowTheBakeWithinTheirTolerance) {
+  write_clip(test::swinging_clip(human(), 61, 30));
+  write_model(test::tube_model(human()));
+  tool("krok-skin in.model in.anim -o clip.glb");
+  tool("krok-skin in.model in.anim --as rig -o rig.glb");
+  tool("krok-skin in.model in.anim --as rig --reduce 0.5mm -o reduced.glb");
+  tool("krok-skin in.model in.anim --as rig --reduce 0.5mm --quantize -o quantized.glb");
+  tool("krok-skin in.model in.anim --as rig --reduce 0.5mm --quantize --compress -o small.glb");
+  valid("reduced.glb quantized.glb");
+  judge("three_bounds.mjs", "clip.glb --every 1 --against reduced.glb --tolerance 5.1e-4");
+  judge("three_bounds.mjs", "clip.glb --every 1 --against reduced.glb --tolerance 1e-4", 1);
+  judge("three_bounds.mjs", "clip.glb --every 1 --against quantized.glb --tolerance 5.5e-4");
+  // Compression reorders vertices: by the nearest.
+  tool("krok-diff rig.glb small.glb --match nearest --tolerance 0.6mm");
+  judge("three_bounds.mjs", "small.glb --write-bounds");
+  EXPECT_LT(content("quantized.glb").size(), 0.6 * content("reduced.glb").size());
+  EXPECT_LT(content("small.glb").size(), 0.7 * content("quantized.glb").size());
+  tool("krok-skin in.model in.anim --as rig --compress -o small.gltf", 2);
+  tool("krok-skin in.model in.anim --reduce 1mm -o small.glb", 2);
+  tool("krok-skin in.model in.anim --as rig --reduce 0mm -o small.glb", 2);
+}
+
+// three.js reads no second set of influences: with four, it has to show what Krok shows.
+TEST_F(GltfJudges, FourInfluencesAreTheLargest) {
+  Model model = test::tube_model(human());
+  const auto joints = static_cast<std::uint16_t>(model.skeleton.joint_count());
+  model.influences_per_vertex = 6;
+  model.influence_joints.clear();
+  model.influence_weights.clear();
+  for (int v = 0; v < model.vertex_count(); ++v) {
+    for (int k = 0; k < 6; ++k) {
+      model.influence_joints.push_back(static_cast<std::uint16_t>((v + 3 * k) % joints));
+      model.influence_weights.push_back(std::array{0.4f, 0.3f, 0.1f, 0.1f, 0.06f, 0.04f}[k]);
+    }
+  }
+  write_clip(test::swinging_clip(human(), 11, 30));
+  write_model(model);
+  tool("krok-skin in.model in.anim --as rig -o six.glb --json=six.json");
+  EXPECT_THAT(content("six.json"), testing::HasSubstr("skin-influences"));
+  tool("krok-skin in.model in.anim --as rig --influences 4 -o four.glb --json=four.json");
+  EXPECT_THAT(content("four.json"), testing::Not(testing::HasSubstr("skin-influences")));
+  tool("krok-skin in.model in.anim --influences 4 -o four_clip.glb");
+  tool("krok-skin in.model in.anim -o six_clip.glb");
+  valid("six.glb four.glb");
+  judge("three_bounds.mjs", "four.glb --against four_clip.glb --tolerance 1e-5");
+  // The error in the report is what the bakes are apart by.
+  const auto report = nlohmann::json::parse(content("four.json"));
+  const double error = report["result"]["influences"]["largest_error"];
+  EXPECT_GT(error, 1e-3);
+  const auto within = [&](double tolerance, int exit_code) {
+    judge("three_bounds.mjs",
+          fmt::format("four_clip.glb --every 1 --against six_clip.glb --tolerance {}", tolerance),
+          exit_code);
+  };
+  within(1.001 * error + 1e-6, 0);
+  within(0.999 * error - 1e-6, 1);
 }
 
 TEST_F(GltfJudges, PosesAndFramesShowTheBake) {
