@@ -132,6 +132,23 @@ void MeshBuilder::report_what_is_left() {
   left_out(elsewhere_, "no joint moves them");
   left_out(other_skeleton_, "they are bound to another skeleton");
   left_out(without_triangles_, "they have points or lines but no triangles");
+  NameList outside;
+  for (const nodes::Node& node : scene_.nodes) {
+    if (node.mesh < 0 || node.in_scene) continue;
+    outside.add(label("mesh", node.mesh, scene_.meshes[at(node.mesh)].name));
+  }
+  left_out(outside, "their nodes are not in the displayed scene");
+  if (!options_.with_morphs) return;
+  long long tangents = 0;
+  for (const nodes::Instance& instance : wanted_) {
+    for (const nodes::MorphTarget& target : evaluator_.primitive(instance).targets) {
+      if (target.tangents) ++tangents;
+    }
+  }
+  if (tangents > 0) {
+    tell(diagnostics_, Severity::warning, "scene-morph-tangents",
+         fmt::format("the tangents of {} are left out", counted(tangents, "morph target")));
+  }
 }
 
 void MeshBuilder::look_at_attributes() {
