@@ -143,7 +143,8 @@ int Document::add_strided(std::span<const std::byte> bytes, std::size_t stride, 
 int Document::add_short_rotations(std::span<const Quatf> rotations) {
   std::vector<std::int16_t> shorts;
   for (const Quatf& rotation : rotations) {
-    for (const float component : rotation.normalized().coeffs()) {
+    const Quatf unit = rotation.normalized();
+    for (const float component : unit.coeffs()) {
       shorts.push_back(static_cast<std::int16_t>(std::lround(component * 32767.0f)));
     }
   }

@@ -94,8 +94,11 @@ struct PolarParts {
 // The polar decomposition; `before` is the rotation where there is none, as for a scale of 0.
 PolarParts polar(const Mat3& linear, const Mat3& before) {
   PolarParts parts{before, Mat3::Zero()};
-  if (linear.norm() < 1e-12) return parts;
-  parts.turn = nearest_rotation(linear.determinant() < 0 ? Mat3(-linear) : linear);
+  const double size = linear.norm();
+  if (size < 1e-12) return parts;
+  // A flattened one has no sign, but for rounding.
+  const bool mirrors = linear.determinant() < -1e-9 * size * size * size;
+  parts.turn = nearest_rotation(mirrors ? Mat3(-linear) : linear);
   parts.stretch = parts.turn.transpose() * linear;
   return parts;
 }

@@ -110,6 +110,7 @@ class Chooser {
     }
     join_trees();
     take_bare_nodes();
+    leave_stretches_out();
     return order_joints();
   }
 
@@ -122,6 +123,7 @@ class Chooser {
   int top_of_joints() const;
   void join_trees();
   void take_bare_nodes();
+  void leave_stretches_out();
   bool link(Joints& joints) const;
   Result<Joints> order_joints();
   std::string skin_label(int skin) const {
@@ -303,6 +305,21 @@ void Chooser::take_bare_nodes() {
   }
 }
 
+// Nodes that only stretch a joint below them, as krok-skin writes them, are no joints.
+void Chooser::leave_stretches_out() {
+  std::vector<char> in_skin(taken_.size(), 0);
+  for (const nodes::Skin& skin : scene_.skins) {
+    for (const int joint : skin.joints) in_skin[at(joint)] = 1;
+  }
+  for (const int node : order_) {
+    const nodes::Node& one = scene_.nodes[at(node)];
+    if (!taken_[at(node)] || in_skin[at(node)] || one.children.size() != 1) continue;
+    const int child = one.children[0];
+    const bool named = one.name == scene_.nodes[at(child)].name + "_stretch";
+    if (named && in_skin[at(child)] && taken_[at(child)]) taken_[at(node)] = 0;
+  }
+}
+
 // Fills the rest of a Joints from its nodes; returns whether parents come before their children.
 bool Chooser::link(Joints& joints) const {
   joints.node_to_joint.assign(scene_.nodes.size(), -1);
@@ -311,7 +328,10 @@ bool Chooser::link(Joints& joints) const {
     if (joints.nodes[j] >= 0) joints.node_to_joint[at(joints.nodes[j])] = static_cast<int>(j);
   }
   for (std::size_t j = 1; j < joints.nodes.size(); ++j) {
-    const int above = joints.nodes[j] < 0 ? -1 : scene_.nodes[at(joints.nodes[j])].parent;
+    int above = joints.nodes[j] < 0 ? -1 : scene_.nodes[at(joints.nodes[j])].parent;
+    while (above >= 0 && joints.node_to_joint[at(above)] < 0 && !several_trees_) {
+      above = scene_.nodes[at(above)].parent;
+    }
     const int parent = above < 0 ? -1 : joints.node_to_joint[at(above)];
     if (parent >= static_cast<int>(j) || (parent < 0 && !several_trees_)) return false;
     joints.parents[j] = std::max(parent, 0);

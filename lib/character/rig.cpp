@@ -138,6 +138,30 @@ void RigBuilder::mark_ends(const std::vector<char>& weighted) {
   }
 }
 
+// The factor of a matrix that scales all axes alike; 0 for another.
+double uniform_scale(const Mat3& linear) {
+  const double scale = linear.col(0).norm();
+  const bool uniform = (linear.transpose() * linear - scale * scale * Mat3::Identity()).norm() <
+                       1e-6 * scale * scale;
+  return uniform && linear.determinant() > 0 ? scale : 0.0;
+}
+
+// Exporters write any matrix for joints without vertices, which scales nothing that is seen: such a
+// joint is rigid as its node stands without animation.
+void scale_by_nodes(const nodes::Evaluator& evaluator, const std::vector<char>& weighted,
+                    Rig& rig) {
+  nodes::Evaluation rest;
+  evaluator.place_nodes(-1, 0, rest);
+  for (int j = 0; j < rig.joints.count(); ++j) {
+    const int node = rig.joints.nodes[at(j)];
+    if (weighted[at(j)] != 0 || node < 0) continue;
+    const double shown = uniform_scale(rest.node_to_world[at(node)].topLeftCorner<3, 3>());
+    if (shown > 0 && uniform_scale(rig.unscale[at(j)]) > 0) {
+      rig.unscale[at(j)] = Mat3::Identity() / shown;
+    }
+  }
+}
+
 }  // namespace
 
 Mat4 Rig::joint_to_world(const nodes::Evaluation& state, int joint) const {
@@ -155,7 +179,9 @@ Result<Rig> make_rig(const Scene& scene, const nodes::Evaluator& evaluator, Join
   rig.to_axes = rotation_to_apply(scene.space);
   BindPose bind = find_bind_pose(scene, evaluator, rig.joints, rig.to_axes, diagnostics);
   rig.reference = std::move(bind.joint_to_world);
-  return RigBuilder(scene, diagnostics, std::move(rig)).build(bind.weighted);
+  auto built = RigBuilder(scene, diagnostics, std::move(rig)).build(bind.weighted);
+  if (built) scale_by_nodes(evaluator, bind.weighted, *built);
+  return built;
 }
 
 }  // namespace krok::character

@@ -24,7 +24,9 @@ Mat4 matrix_of(const Vec3& translation, const Quat& rotation, const Vec3& scale)
 }
 
 Mat3 rotation_part(const Mat3& linear) {
-  const double sign = linear.determinant() < 0 ? -1.0 : 1.0;
+  // A flattened matrix does not mirror, whatever rounding makes of its determinant.
+  const double volume = linear.col(0).norm() * linear.col(1).norm() * linear.col(2).norm();
+  const double sign = linear.determinant() < -1e-12 * volume ? -1.0 : 1.0;
   Mat3 unit = sign * linear;
   bool vanishes = false;
   for (int c = 0; c < 3; ++c) {

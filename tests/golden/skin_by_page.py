@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Skins a .model in a frame of a .anim by the formulas of formats/model/SPEC.md, with nothing but Python's
-standard library, and prints positions and normals as JSON. It shares no code with Krok, so the tests
-hold the two against each other. Mirrored joints are not supported.
+"""Skins a .model by a .anim by the formulas of formats/model/SPEC.md, with nothing but Python's standard
+library, and prints as JSON, for each method and frame, the position and normal of each vertex. It shares
+no code with Krok, so the tests hold the two against each other. Mirrored joints are not supported.
 
-    skin_by_page.py MODEL ANIM FRAME linear|rigid|dual-quaternion
+    skin_by_page.py MODEL ANIM
 """
 
 import json
@@ -145,24 +145,26 @@ def dual_quaternion(influences, p, n, stretched):
 METHODS = {"linear": linear, "rigid": rigid, "dual-quaternion": dual_quaternion}
 
 
-def main():
-    if len(sys.argv) != 5 or sys.argv[4] not in METHODS:
-        print(__doc__, file=sys.stderr)
-        return 2
-    model, anim = read_krok_files.read(sys.argv[1]), read_krok_files.read(sys.argv[2])
-    frame = int(sys.argv[3])
+def skinned(model, anim, frame, method):
     transforms = skinning_transforms(model, anim, frame)
     stretched = anim["stretches"] is not None and any(
         row != [1, 1, 1, 0, 0, 0] for row in anim["stretches"][frame])
-    positions, normals = [], []
+    vertices = []
     for v, p in enumerate(model["positions"]):
         influences = [(w, transforms[j]) for w, j in zip(model["weights"][v], model["joints"][v])
                       if w > 0]
-        position, normal = METHODS[sys.argv[4]](influences, p, model["normals"][v],
-                                                 stretched)
-        positions.append(position)
-        normals.append(normal)
-    print(json.dumps({"positions": positions, "normals": normals}))
+        vertices.append(method(influences, p, model["normals"][v], stretched))
+    return vertices
+
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__, file=sys.stderr)
+        return 2
+    model, anim = read_krok_files.read(sys.argv[1]), read_krok_files.read(sys.argv[2])
+    print(json.dumps({name: [skinned(model, anim, frame, method)
+                             for frame in range(len(anim["frames"]))]
+                      for name, method in METHODS.items()}))
     return 0
 
 

@@ -478,25 +478,25 @@ TEST(SkinningFromSpecification, GivesTheVerticesOfTheLibrary) {
                                file);
                          }))
                   .ok());
+  const json found = run_python("skin_by_page.py '" + stem + ".model' '" + stem + ".anim'");
+  ASSERT_FALSE(found.is_null());
   for (const auto& [name, method] : {std::pair{"linear", SkinMethod::linear},
                                      {"rigid", SkinMethod::rigid},
                                      {"dual-quaternion", SkinMethod::dual_quaternion}}) {
     const SkinBinding binding(model, method);
-    for (int frame = 0; frame < 3; ++frame) {
+    for (std::size_t frame = 0; frame < 3; ++frame) {
       SCOPED_TRACE(std::string(name) + ", frame " + std::to_string(frame));
-      const json found = run_python("skin_by_page.py '" + stem + ".model' '" + stem + ".anim' " +
-                                    std::to_string(frame) + " " + name);
-      ASSERT_FALSE(found.is_null());
       std::vector<Transform> pose(3);
-      clip.get_pose(frame, pose);
+      clip.get_pose(static_cast<int>(frame), pose);
       SkinPose posed(binding);
-      posed.set(pose, std::span(stretches).subspan(3 * static_cast<std::size_t>(frame), 3));
+      posed.set(pose, std::span(stretches).subspan(3 * frame, 3));
       std::vector<Vec3f> positions(4), normals(4);
       skin(binding, posed, {model.positions, model.normals, {}}, {positions, normals, {}});
       for (std::size_t v = 0; v < 4; ++v) {
-        for (int c = 0; c < 3; ++c) {
-          EXPECT_NEAR(positions[v][c], found["positions"][v][static_cast<std::size_t>(c)], 2e-6);
-          EXPECT_NEAR(normals[v][c], found["normals"][v][static_cast<std::size_t>(c)], 2e-6);
+        const json& vertex = found[name][frame][v];
+        for (std::size_t c = 0; c < 3; ++c) {
+          EXPECT_NEAR(positions[v].data()[c], vertex[0][c], 2e-6);
+          EXPECT_NEAR(normals[v].data()[c], vertex[1][c], 2e-6);
         }
       }
     }

@@ -260,7 +260,7 @@ TEST(ReduceKeys, RefusesTolerancesThatAreNone) {
   for (const ReduceOptions& options :
        {ReduceOptions{0, 0.03}, ReduceOptions{-1, 0.03}, ReduceOptions{std::nan(""), 0.03},
         ReduceOptions{1e-3, -1}, ReduceOptions{1e-3, std::nan("")},
-        ReduceOptions{1e-3, 0.03, -1}}) {
+        ReduceOptions{.tolerance = 1e-3, .most_kept = -1}}) {
     const auto result = reduce_keys(clip, options);
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, "reduce-tolerance");
