@@ -300,6 +300,29 @@ Result<Shared<Vec3f>> Accessors::vectors3(int index) {
   return cached(index, TINYGLTF_TYPE_VEC3, vectors3_);
 }
 
+Result<Shared<Vec4f>> Accessors::colours(int index) {
+  if (const auto known = colours_.find(index); known != colours_.end()) return known->second;
+  const bool has_alpha = index >= 0 && static_cast<std::size_t>(index) < model_.accessors.size() &&
+                         model_.accessors[static_cast<std::size_t>(index)].type ==
+                             TINYGLTF_TYPE_VEC4;
+  std::vector<Vec4f> colours;
+  if (has_alpha) {
+    const auto read = vectors4(index);
+    if (!read) return read.error();
+    for (std::size_t i = 0; i < read->size(); i += 4) {
+      colours.emplace_back(Eigen::Map<const Vec4f>(&(*read)[i]));
+    }
+  } else {
+    const auto read = vectors3(index);
+    if (!read) return read.error();
+    for (const Vec3f& colour : **read) colours.emplace_back(colour.x(), colour.y(), colour.z(), 1);
+  }
+  if (auto taken = reserve(colours.size() * sizeof(Vec4f)); !taken) return taken.error();
+  const Shared<Vec4f> shared = std::make_shared<const std::vector<Vec4f>>(std::move(colours));
+  colours_.emplace(index, shared);
+  return shared;
+}
+
 Result<Shared<float>> Accessors::flat(int index, int components) {
   if (components == 1) return scalars(index);
   const int type = components == 4 ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3;

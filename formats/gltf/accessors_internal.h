@@ -42,6 +42,9 @@ class Accessors {
   // Unsigned integers, contiguous. `type`: TINYGLTF_TYPE_SCALAR (indices) or _VEC4 (joints).
   Result<std::vector<std::uint32_t>> integers(int index, int type);
 
+  // Colours of VEC3 or VEC4; alpha is 1 where there is none. Repeated calls share memory.
+  Result<Shared<Vec4f>> colours(int index);
+
   // VEC4 values, contiguous.
   Result<std::vector<float>> vectors4(int index);
 
@@ -68,6 +71,7 @@ class Accessors {
   std::map<int, Shared<float>> scalars_;
   std::map<int, Shared<Vec2f>> vectors2_;
   std::map<int, Shared<Vec3f>> vectors3_;
+  std::map<int, Shared<Vec4f>> colours_;
 };
 
 }  // namespace krok::gltf

@@ -42,6 +42,8 @@ Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index
   Channel channel;
   channel.node = from.target_node;
   const Node& node = scene_.nodes[static_cast<std::size_t>(channel.node)];
+  const Node& holder =  // of the mesh
+      node.instances.empty() ? node : scene_.nodes[static_cast<std::size_t>(node.instances[0])];
   if (from.target_path == "translation") {
     channel.path = Path::translation;
   } else if (from.target_path == "rotation") {
@@ -52,7 +54,7 @@ Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index
   } else if (from.target_path == "weights") {
     channel.path = Path::weights;
     const std::size_t targets =
-        node.mesh < 0 ? 0 : scene_.meshes[static_cast<std::size_t>(node.mesh)].target_count();
+        holder.mesh < 0 ? 0 : scene_.meshes[static_cast<std::size_t>(holder.mesh)].target_count();
     if (targets == 0) {
       return Error("gltf-animation",
                    fmt::format("{} animates weights of a node without morph targets", name));
@@ -71,6 +73,13 @@ Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index
   if (node.has_matrix && channel.path != Path::weights) {
     warn(scene_.diagnostics, "gltf-animation-matrix",
          fmt::format("{} animates a node with a matrix; the matrix is decomposed", name));
+  }
+  if (channel.path == Path::weights) {
+    for (const int instance : node.instances) {
+      channel.node = instance;
+      animation.channels.push_back(channel);
+    }
+    if (!node.instances.empty()) return {};
   }
   animation.channels.push_back(std::move(channel));
   return {};

@@ -69,7 +69,7 @@ Status write_coloured(std::span<const ColouredMesh> meshes, const std::string& m
     if (coloured.positions.empty()) continue;
     if (Status status = check_coloured(coloured); !status) return status;
     tinygltf::Mesh mesh;
-    mesh.name = coloured.name;
+    mesh.name = coloured.mesh_name.empty() ? coloured.name : coloured.mesh_name;
     mesh.primitives.push_back(primitive_of(coloured, document));
     document.gltf.meshes.push_back(std::move(mesh));
     document.add_mesh_node(static_cast<int>(document.gltf.meshes.size()) - 1, -1, coloured.name);

@@ -19,6 +19,7 @@ struct ColouredMesh {
   std::span<const Vec3f> normals;                           // [vertices] or empty
   std::span<const Vec3f> colours;                           // [vertices], linear RGB, 0 .. 1
   std::span<const std::array<std::uint32_t, 3>> triangles;  // empty: drawn as points
+  std::string mesh_name{};                                  // if not that of the node
 };
 
 // Writes static meshes with vertex colours (COLOR_0) and a white, rough, lit material called

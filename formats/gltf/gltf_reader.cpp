@@ -22,6 +22,7 @@
 #include "formats/gltf/mesh_reader_internal.h"
 #include "formats/gltf/node_reader_internal.h"
 #include "formats/gltf/reader_words_internal.h"
+#include "math/quaternion.h"
 
 namespace krok::gltf {
 
@@ -30,6 +31,7 @@ using namespace nodes;
 namespace {
 
 constexpr double kUsualFieldOfView = kPi / 4;
+constexpr std::size_t kMaxInstances = 100'000;
 
 // Builds a scene from tinygltf's structures.
 class Builder {
@@ -40,8 +42,10 @@ class Builder {
   Result<Scene> build() {
     scene_.generator = model_.asset.generator;
     scene_.space = {1.0, Quat::Identity()};  // section 3.4
+    scene_.not_shown = parsed_.not_shown;
     for (auto step : {&Builder::read_cameras, &Builder::read_nodes, &Builder::read_all_meshes,
-                      &Builder::read_skins, &Builder::check_instances, &Builder::read_animations}) {
+                      &Builder::read_skins, &Builder::check_instances, &Builder::place_instances,
+                      &Builder::read_animations}) {
       if (auto done = (this->*step)(); !done) return done.error();
     }
     return std::move(scene_);
@@ -53,6 +57,7 @@ class Builder {
   Status read_all_meshes();
   Status read_skins();
   Status check_instances();
+  Status place_instances();
   Status read_animations() { return gltf::read_animations(model_, accessors_, scene_); }
 
   const ParsedJson& parsed_;
@@ -160,15 +165,96 @@ Status Builder::check_instances() {
   return {};
 }
 
+// The places of EXT_mesh_gpu_instancing, relative to their node.
+struct InstancePlaces {
+  std::size_t count = 0;
+  Shared<Vec3f> translations, scales;
+  std::vector<float> rotations;  // xyzw of each
+};
+
+Result<InstancePlaces> read_places(const InstancedNode& instanced, Accessors& accessors,
+                                   const std::string& name) {
+  InstancePlaces places;
+  std::size_t least = SIZE_MAX;
+  for (const auto& [attribute, accessor] : instanced.attributes) {
+    std::size_t size = 0;
+    if (attribute == "TRANSLATION" || attribute == "SCALE") {
+      auto read = accessors.vectors3(accessor);
+      if (!read) return read.error();
+      size = (*read)->size();
+      (attribute == "SCALE" ? places.scales : places.translations) = std::move(*read);
+    } else if (attribute == "ROTATION") {
+      auto read = accessors.vectors4(accessor);
+      if (!read) return read.error();
+      size = read->size() / 4;
+      places.rotations = std::move(*read);
+    } else {
+      continue;
+    }
+    places.count = std::max(places.count, size);
+    least = std::min(least, size);
+  }
+  if (places.count > 0 && least != places.count) {
+    return Error("gltf-node", fmt::format("{} has {} and {} values for its instances", name, least,
+                                          places.count));
+  }
+  return places;
+}
+
+// Instances become children of their node, which hands its mesh on to them.
+Status Builder::place_instances() {
+  for (const InstancedNode& instanced : parsed_.instanced) {
+    const Node source = scene_.nodes[instanced.node];
+    const std::string name = label("node", instanced.node, source.name);
+    if (source.mesh < 0) continue;
+    if (source.skin >= 0) {
+      warn(scene_.diagnostics, "gltf-instancing",
+           fmt::format("{} has a skin, so its instances are ignored", name));
+      continue;
+    }
+    const auto places = read_places(instanced, accessors_, name);
+    if (!places) return places.error();
+    if (places->count > kMaxInstances) {
+      return Error("gltf-too-large", fmt::format("{} has {} instances", name, places->count));
+    }
+    if (auto taken = accessors_.reserve(places->count * sizeof(Node)); !taken) return taken;
+    scene_.nodes[instanced.node].mesh = -1;
+    scene_.nodes[instanced.node].weights.clear();
+    for (std::size_t i = 0; i < places->count; ++i) {
+      const int index = static_cast<int>(scene_.nodes.size());
+      Node& node = scene_.nodes.emplace_back();
+      node.name = source.name;
+      node.parent = static_cast<int>(instanced.node);
+      node.mesh = source.mesh;
+      node.weights = source.weights;
+      node.in_scene = source.in_scene;
+      node.visible = source.visible;
+      if (places->translations) node.translation = (*places->translations)[i].cast<double>();
+      if (places->scales) node.scale = (*places->scales)[i].cast<double>();
+      if (!places->rotations.empty()) {
+        const float* q = &places->rotations[4 * i];
+        node.rotation = normalized_or_identity(Quatf(q[3], q[0], q[1], q[2]).cast<double>());
+      }
+      Node& parent = scene_.nodes[instanced.node];
+      parent.children.push_back(index);
+      parent.instances.push_back(index);
+    }
+  }
+  return {};
+}
+
 // Notes what of the meshes is not read, once for each kind with its count.
 void report_unread(const ParsedJson& parsed, Scene& scene) {
-  constexpr std::array kRead = {"POSITION", "NORMAL", "TANGENT", "TEXCOORD_0"};
+  constexpr std::array kRead = {"POSITION", "NORMAL", "TANGENT", "COLOR_0"};
+  constexpr std::array kReadSets = {"TEXCOORD_", "JOINTS_", "WEIGHTS_"};
   std::map<std::string, long long> unread;
   for (const tinygltf::Mesh& mesh : parsed.model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
       for (const auto& [name, accessor] : primitive.attributes) {
-        const bool influence = name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
-        if (!influence && std::ranges::find(kRead, name) == kRead.end()) ++unread[name];
+        const bool read =
+            std::ranges::find(kRead, name) != kRead.end() ||
+            std::ranges::any_of(kReadSets, [&](const char* set) { return name.starts_with(set); });
+        if (!read) ++unread[name];
       }
     }
   }
@@ -179,10 +265,6 @@ void report_unread(const ParsedJson& parsed, Scene& scene) {
     words.push_back(fmt::format("{} of {}", shown(name), counted(count, "primitive")));
   }
   if (unread.size() > kMaxListed) words.emplace_back("others");
-  if (parsed.instanced_nodes > 0) {
-    words.push_back(fmt::format("EXT_mesh_gpu_instancing of {}, shown once",
-                                counted(parsed.instanced_nodes, "node")));
-  }
   if (words.empty()) return;
   warn(scene.diagnostics, "gltf-unread", fmt::format("not read: {}", fmt::join(words, "; ")));
   scene.diagnostics.back().severity = Severity::note;

@@ -9,6 +9,8 @@
 #include <tuple>
 
 #include "core/json_internal.h"
+#include "core/numbers.h"
+#include "core/text.h"
 
 namespace krok::gltf {
 
@@ -92,6 +94,9 @@ Status check_asset(const Json& json) {
   return {};
 }
 
+constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
+constexpr std::string_view kVisibility = "KHR_node_visibility";
+constexpr std::string_view kPointer = "KHR_animation_pointer";
 constexpr std::string_view kMeshopt = "EXT_meshopt_compression";
 constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
 
@@ -101,6 +106,7 @@ bool is_supported(std::string_view extension) {
                                     "MSFT_texture_",  "KHR_lights_",          "EXT_lights_",
                                     "KHR_xmp",        "KHR_techniques_webgl", "MSFT_lod"};
   return extension == "KHR_mesh_quantization" || extension == kMeshopt || extension == kDraco ||
+         extension == kInstancing || extension == kVisibility ||
          std::any_of(kPrefixes.begin(), kPrefixes.end(),
                      [&](const char* prefix) { return extension.starts_with(prefix); });
 }
@@ -188,6 +194,74 @@ Result<std::vector<PackedPrimitive>> read_packed_primitives(const Json& json) {
         if (id.is_number_unsigned()) packed.attributes[name] = id.get<std::uint64_t>();
       }
     }
+  }
+  return all;
+}
+
+std::vector<InstancedNode> read_instanced(const Json& json) {
+  std::vector<InstancedNode> all;
+  const auto nodes = entries_of(json, "nodes");
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const Json* source = extension_of(nodes[i], kInstancing);
+    if (source == nullptr) continue;
+    InstancedNode& instanced = all.emplace_back();
+    instanced.node = i;
+    const auto attributes = source->find("attributes");
+    if (attributes == source->end() || !attributes->is_object()) continue;
+    for (const auto& [name, accessor] : attributes->items()) {
+      const bool fits =
+          accessor.is_number_unsigned() && accessor.get<std::uint64_t>() <= 0x7FFFFFFFu;
+      instanced.attributes[name] = fits ? accessor.get<int>() : -1;
+    }
+  }
+  return all;
+}
+
+// Extensions whose data is read. Those of materials are read where they are on materials.
+bool is_shown(std::string_view extension) {
+  constexpr std::array kOthers = {"KHR_mesh_quantization", "KHR_texture_transform",
+                                  "KHR_lights_punctual",  // counted as lights
+                                  "KHR_animation_pointer"};
+  const auto is_it = [&](std::string_view other) { return extension == other; };
+  return is_it(kMeshopt) || is_it(kDraco) || is_it(kInstancing) || is_it(kVisibility) ||
+         std::ranges::any_of(kOthers, is_it) ||
+         (extension.starts_with("KHR_materials_") && extension != "KHR_materials_variants");
+}
+
+std::vector<std::string> read_not_shown(const Json& json, const std::vector<bool>& lights) {
+  std::vector<std::string> all;
+  const auto add = [&](std::int64_t count, const char* one, const char* many) {
+    if (count > 0) all.push_back(counted(count, one, many));
+  };
+  add(std::ranges::count(lights, true), "light", "lights");
+  std::int64_t cameras = 0, pointers = 0, attributes = 0;
+  for (const Json& node : entries_of(json, "nodes")) {
+    cameras += node.is_object() && node.contains("camera") ? 1 : 0;
+  }
+  for (const Json& animation : entries_of(json, "animations")) {
+    for (const Json& channel : entries_of(animation, "channels")) {
+      const auto target = channel.is_object() ? channel.find("target") : channel.end();
+      if (!channel.is_object() || target == channel.end()) continue;
+      pointers += extension_of(*target, kPointer) != nullptr ? 1 : 0;
+    }
+  }
+  for (const Json& mesh : entries_of(json, "meshes")) {
+    for (const Json& primitive : entries_of(mesh, "primitives")) {
+      const auto named = primitive.is_object() ? primitive.find("attributes") : primitive.end();
+      if (!primitive.is_object() || named == primitive.end() || !named->is_object()) continue;
+      for (const auto& [name, accessor] : named->items()) {
+        const bool more_colours = name.starts_with("COLOR_") && name != "COLOR_0";
+        attributes += name.starts_with('_') || more_colours ? 1 : 0;
+      }
+    }
+  }
+  add(cameras, "camera", "cameras");
+  add(pointers, "animation channel of KHR_animation_pointer",
+      "animation channels of KHR_animation_pointer");
+  add(attributes, "vertex attribute of other names", "vertex attributes of other names");
+  for (const Json& extension : entries_of(json, "extensionsUsed")) {
+    if (!extension.is_string() || is_shown(extension.get_ref<const std::string&>())) continue;
+    all.push_back("extension " + shown(extension.get<std::string>()));
   }
   return all;
 }
@@ -364,8 +438,11 @@ Result<ParsedJson> parse_json(const Container& container) {
   result.buffers = std::move(*buffers);
   for (const Json& node : entries_of(json, "nodes")) {
     result.lights.push_back(extension_of(node, "KHR_lights_punctual") != nullptr);
-    if (extension_of(node, "EXT_mesh_gpu_instancing") != nullptr) ++result.instanced_nodes;
+    const Json* visibility = extension_of(node, kVisibility);
+    result.hidden.push_back(visibility != nullptr && visibility->value("visible", Json()) == false);
   }
+  result.instanced = read_instanced(json);
+  result.not_shown = read_not_shown(json, result.lights);
   auto views = read_packed_views(json);
   if (!views) return views.error();
   result.packed_views = std::move(*views);

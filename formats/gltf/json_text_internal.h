@@ -43,6 +43,12 @@ struct PackedPrimitive {
   std::map<std::string, std::uint64_t> attributes;  // identifiers in the packed mesh
 };
 
+// A node in EXT_mesh_gpu_instancing. Its values are not checked.
+struct InstancedNode {
+  std::size_t node = 0;
+  std::map<std::string, int> attributes;  // accessors; -1 where they are not valid
+};
+
 struct CameraEntry {
   std::string name;
   bool perspective = true;
@@ -60,9 +66,11 @@ struct ParsedJson {
   std::vector<CameraEntry> cameras;
   std::vector<std::vector<std::string>> target_names;  // [meshes], may be empty
   std::vector<bool> lights;  // [nodes], whether they carry a light (KHR_lights_punctual)
+  std::vector<bool> hidden;  // [nodes], by themselves (KHR_node_visibility)
+  std::vector<InstancedNode> instanced;
+  std::vector<std::string> not_shown;  // as nodes::Scene::not_shown
   std::vector<PackedView> packed_views;
   std::vector<PackedPrimitive> packed_primitives;
-  int instanced_nodes = 0;  // EXT_mesh_gpu_instancing
 };
 
 // A string member; empty if there is none.

@@ -50,7 +50,9 @@ class MaterialReader {
     const auto list = parsed_.look.find("materials");
     if (list == parsed_.look.end() || !list->is_array()) return;
     for (std::size_t m = 0; m < list->size(); ++m) {
+      parameters_.clear();
       scene_.materials.push_back(read_material((*list)[m]));
+      scene_.material_parameters.push_back(std::move(parameters_));
       scene_.materials.back().name = parsed_.material_names[m];
     }
     nodes::make_names_unique(scene_.materials);
@@ -63,6 +65,7 @@ class MaterialReader {
     Material material;
     if (!json.is_object()) return material;
     read_surface(json, material);
+    read_parameters(json);
     const Json& normal = object_in(json, "normalTexture");
     material.normal_texture = texture(normal);
     material.normal_scale = factor(normal, "scale", 1, -kMaxNormalScale, kMaxNormalScale);
@@ -102,23 +105,89 @@ class MaterialReader {
     material.metallic_roughness_texture = texture(object_in(surface, "metallicRoughnessTexture"));
   }
 
+  // What Material has no members for: texture coordinate sets, texture transforms, extensions.
+  void read_parameters(const Json& json) {
+    const Json& surface = object_in(json, "pbrMetallicRoughness");
+    for (const auto& [holder, name] :
+         {std::pair(&surface, "baseColorTexture"), {&surface, "metallicRoughnessTexture"},
+          {&json, "normalTexture"}, {&json, "occlusionTexture"}, {&json, "emissiveTexture"}}) {
+      const Json& info = object_in(*holder, name);
+      if (set_of(info) != 0) parameters_.push_back({name, {}, texture_of(info)});
+      read_coordinates(name, info);
+    }
+    for (const auto& [extension, properties] : object_in(json, "extensions").items()) {
+      if (extension == "KHR_materials_unlit" || !properties.is_object()) continue;
+      for (const auto& [key, value] : properties.items()) {
+        read_parameter(shown(extension) + ", " + shown(key), value);
+      }
+    }
+  }
+
+  void read_parameter(const std::string& name, const Json& value) {
+    const auto is_number = [](const Json& one) { return one.is_number(); };
+    if (value.is_number()) {
+      parameters_.push_back({name, {value.get<double>()}});
+    } else if (value.is_array() && !value.empty() && std::ranges::all_of(value, is_number)) {
+      parameters_.push_back({name, value.get<std::vector<double>>()});
+    } else if (value.is_object() && value.contains("index")) {
+      parameters_.push_back({name, {}, texture_of(value)});
+      read_coordinates(name, value);
+      for (const auto& [key, member] : value.items()) {
+        if (key != "index" && key != "texCoord" && member.is_number()) {
+          parameters_.push_back({name + ", " + shown(key), {member.get<double>()}});
+        }
+      }
+    } else {
+      parameters_.push_back({name, {}, {}, json_text(value)});
+    }
+  }
+
+  void read_coordinates(const std::string& name, const Json& info) {
+    if (const Json set = set_of(info); set != 0 && set.is_number()) {
+      parameters_.push_back({name + ", set", {set.get<double>()}});
+    }
+    const std::string before = name + ", KHR_texture_transform, ";
+    for (const auto& [key, value] :
+         object_in(object_in(info, "extensions"), "KHR_texture_transform").items()) {
+      if (key != "texCoord") read_parameter(before + shown(key), value);
+    }
+  }
+
+  // The texture coordinate set of a texture.
+  static Json set_of(const Json& info) {
+    const Json& transform = object_in(object_in(info, "extensions"), "KHR_texture_transform");
+    const Json& holder = transform.contains("texCoord") ? transform : info;
+    return holder.value("texCoord", Json(0));
+  }
+
   Texture texture(const Json& info) {
     Texture texture;
     if (info.empty()) return texture;
-    const Json& transform = object_in(object_in(info, "extensions"), "KHR_texture_transform");
-    const auto coordinates = transform.contains("texCoord") ? transform : info;
-    if (const auto set = coordinates.find("texCoord"); set != coordinates.end() && *set != 0) {
+    if (set_of(info) != 0) {
       ++of_other_coordinates_;
       return texture;
     }
-    if (!transform.empty()) left_aside_.insert("KHR_texture_transform");
-    const Json* entry = entry_of(parsed_.look, "textures", info.value("index", Json()));
-    const auto source = entry == nullptr ? kNothing.end() : entry->find("source");
-    if (entry == nullptr || source == entry->end() || !source->is_number_unsigned()) {
+    if (!object_in(object_in(info, "extensions"), "KHR_texture_transform").empty()) {
+      left_aside_.insert("KHR_texture_transform");
+    }
+    if (!has_image(info)) {
       ++without_image_;
       return texture;
     }
-    texture.image = images_.get(source->get<std::size_t>(), scene_.diagnostics);
+    return texture_of(info);
+  }
+
+  bool has_image(const Json& info) const {
+    const Json* entry = entry_of(parsed_.look, "textures", info.value("index", Json()));
+    return entry != nullptr && entry->value("source", Json()).is_number_unsigned();
+  }
+
+  // The image and sampler of a texture; empty without a usable image.
+  Texture texture_of(const Json& info) {
+    Texture texture;
+    const Json* entry = entry_of(parsed_.look, "textures", info.value("index", Json()));
+    if (!has_image(info)) return texture;
+    texture.image = images_.get(entry->at("source").get<std::size_t>(), scene_.diagnostics);
     const Json* sampler = entry_of(parsed_.look, "samplers", entry->value("sampler", Json()));
     if (sampler == nullptr || !texture) return texture;
     texture.wrap_u = wrap(*sampler, "wrapS");
@@ -185,13 +254,16 @@ class MaterialReader {
     left_out(of_other_coordinates_, "with a texture coordinate set other than 0");
     left_out(without_image_, "without a usable image");
     if (out_of_range_ > 0) {
-      warn(fmt::format("{} of materials out of range: clamped", counted(out_of_range_, "factor")));
+      gltf::warn(
+          scene_.diagnostics, "gltf-material-range",
+          fmt::format("{} of materials out of range: clamped", counted(out_of_range_, "factor")));
     }
   }
 
   const ParsedJson& parsed_;
   nodes::Scene& scene_;
   Images images_;
+  std::vector<MaterialParameter> parameters_;  // of the material that is read
   std::set<std::string> left_aside_;
   int of_other_coordinates_ = 0, without_image_ = 0, out_of_range_ = 0;
 };

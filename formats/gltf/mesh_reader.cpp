@@ -60,6 +60,41 @@ Status read_texture_coordinates(const tinygltf::Primitive& source, Accessors& ac
   return {};
 }
 
+// Further texture coordinates and vertex colours. A damaged one is left out: nothing depends on it.
+Status read_more(const tinygltf::Primitive& source, Accessors& accessors, const std::string& name,
+                 Primitive& primitive, Diagnostics& diagnostics) {
+  const std::size_t vertices = primitive.vertex_count();
+  const auto left_out = [&](const std::string& what, const std::string& why) {
+    warn(diagnostics, "gltf-mesh-attribute",
+         fmt::format("{}: {} is left out: {}", name, what, why));
+  };
+  constexpr int kMaxSets = 16;
+  for (int set = 1; set < kMaxSets; ++set) {
+    const std::string what = fmt::format("TEXCOORD_{}", set);
+    const int accessor = attribute(source.attributes, what.c_str());
+    if (accessor == -1) continue;
+    auto read = accessors.vectors2(accessor);
+    if (!read || (*read)->size() != vertices) {
+      left_out(what, read ? fmt::format("it has {} values for {} vertices", (*read)->size(), vertices)
+                          : read.error().message);
+      continue;
+    }
+    primitive.more_texture_coordinates.resize(static_cast<std::size_t>(set));
+    primitive.more_texture_coordinates.back() = std::move(*read);
+  }
+  const int accessor = attribute(source.attributes, "COLOR_0");
+  if (accessor == -1) return {};
+  auto colours = accessors.colours(accessor);
+  if (!colours || (*colours)->size() != vertices) {
+    left_out("COLOR_0", colours ? fmt::format("it has {} values for {} vertices",
+                                              (*colours)->size(), vertices)
+                                : colours.error().message);
+    return {};
+  }
+  primitive.colours = std::move(*colours);
+  return {};
+}
+
 // Normalises tangents, as the specification requires; w is the sign. A zero tangent stays zero.
 Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
                      const std::string& name, Primitive& primitive, Diagnostics& diagnostics) {
@@ -292,6 +327,7 @@ Result<Primitive> read_vertices(const tinygltf::Primitive& source,
   for (const Status& read : {read_vectors(source.attributes, "NORMAL", primitive.vertex_count(),
                                           accessors, name, primitive.normals),
                              read_texture_coordinates(source, accessors, name, primitive),
+                             read_more(source, accessors, name, primitive, diagnostics),
                              read_tangents(source, accessors, name, primitive, diagnostics),
                              read_influences(source, accessors, name, primitive, diagnostics),
                              read_targets(source, target_names, accessors, name, primitive)}) {

@@ -53,6 +53,7 @@ Status take_nodes(const ParsedJson& parsed, Scene& scene) {
     node.camera = source.camera;
     node.weights = source.weights;
     node.fixture = i < parsed.lights.size() && parsed.lights[i];
+    node.visible = i >= parsed.hidden.size() || !parsed.hidden[i];
     const std::string name = label("node", i, node.name);
     if (node.mesh != -1 && !exists(node.mesh, model.meshes.size())) {
       return Error("gltf-node",
@@ -102,6 +103,13 @@ Status link_nodes(std::vector<Node>& nodes) {
   for (std::size_t k = 0; k < reached.size(); ++k) {
     const Node& node = nodes[static_cast<std::size_t>(reached[k])];
     reached.insert(reached.end(), node.children.begin(), node.children.end());
+  }
+  // Parents come before their children.
+  for (const int index : reached) {
+    Node& node = nodes[static_cast<std::size_t>(index)];
+    if (node.parent >= 0 && !nodes[static_cast<std::size_t>(node.parent)].visible) {
+      node.visible = false;
+    }
   }
   if (reached.size() != nodes.size()) {
     return Error("gltf-node",

@@ -45,6 +45,10 @@ Primitive with_used_vertices(const Primitive& whole,
   part.normals = picked(whole.normals, used);
   part.tangents = picked(whole.tangents, used);
   part.texture_coordinates = picked(whole.texture_coordinates, used);
+  for (const Shared<Vec2f>& set : whole.more_texture_coordinates) {
+    part.more_texture_coordinates.push_back(picked(set, used));
+  }
+  part.colours = picked(whole.colours, used);
   part.influences_per_vertex = whole.influences_per_vertex;
   part.influence_joints = picked_rows(whole.influence_joints, each, used);
   part.influence_weights = picked_rows(whole.influence_weights, each, used);
@@ -63,7 +67,8 @@ Primitive with_used_vertices(const Primitive& whole,
 
 std::size_t bytes_of(const Primitive& primitive) {
   const auto influences = static_cast<std::size_t>(primitive.influences_per_vertex);
-  const std::size_t each = 3 * sizeof(Vec4f) +
+  const std::size_t each = 4 * sizeof(Vec4f) +
+                           primitive.more_texture_coordinates.size() * sizeof(Vec2f) +
                            influences * (sizeof(std::uint16_t) + sizeof(float)) +
                            3 * sizeof(Vec3f) * primitive.targets.size();
   return primitive.vertex_count() * each;

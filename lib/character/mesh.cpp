@@ -138,6 +138,20 @@ void MeshBuilder::report_what_is_left() {
     outside.add(label("mesh", node.mesh, scene_.meshes[at(node.mesh)].name));
   }
   left_out(outside, "their nodes are not in the displayed scene");
+  long long coloured = 0, more_texture = 0;
+  for (const nodes::Instance& instance : wanted_) {
+    const nodes::Primitive& shape = evaluator_.primitive(instance);
+    coloured += shape.colours ? 1 : 0;
+    more_texture += shape.more_texture_coordinates.empty() ? 0 : 1;
+  }
+  const auto no_place = [&](long long count, const char* what) {
+    if (count == 0) return;
+    tell(diagnostics_, Severity::warning, "scene-mesh-attributes",
+         fmt::format("a model does not hold {}: those of {} are left out", what,
+                     counted(count, "mesh part")));
+  };
+  no_place(coloured, "vertex colours");
+  no_place(more_texture, "further sets of texture coordinates");
   if (!options_.with_morphs) return;
   long long tangents = 0;
   for (const nodes::Instance& instance : wanted_) {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -19,6 +21,15 @@ template <int N>
 std::string text_of(const Eigen::Matrix<float, N, 1>& values) {
   std::string text;
   for (const float value : values) text += (text.empty() ? "" : ", ") + text_of(value);
+  return text;
+}
+
+std::string text_of(std::span<const double> values) {
+  if (values.empty()) return "none";
+  std::string text;
+  for (const double value : values) {
+    text += (text.empty() ? "" : ", ") + text_of(static_cast<float>(value));
+  }
   return text;
 }
 
@@ -69,10 +80,10 @@ class Comparison {
     if (first != second) say(fmt::format("{} {} and {}", what, word_of(first), word_of(second)));
   }
 
-  void texture(const char* what, const Texture& first, const Texture& second) {
+  void texture(std::string_view what, const Texture& first, const Texture& second) {
     if (!first && !second) return;
     if (!first || !second) {
-      const char* const article = *what == 'o' || *what == 'e' ? "an" : "a";
+      const char* const article = what.starts_with('o') || what.starts_with('e') ? "an" : "a";
       say(fmt::format("only the {} has {} {} texture", first ? "first" : "second", article, what));
     } else if (!same_image(*first.image, *second.image)) {
       say(fmt::format("another {} texture", what));
@@ -80,6 +91,20 @@ class Comparison {
                first.smooth != second.smooth) {
       say(fmt::format("the {} texture has another sampler", what));
     }
+  }
+
+  // Numbers of an extension's property.
+  void numbers(const std::string& what, std::span<const double> first,
+               std::span<const double> second) {
+    bool same = first.size() == second.size();
+    for (std::size_t i = 0; same && i < first.size(); ++i) {
+      same = std::abs(first[i] - second[i]) <= tolerance_;
+    }
+    if (!same) say(fmt::format("{} {} and {}", what, text_of(first), text_of(second)));
+  }
+
+  void text(const std::string& what, const std::string& first, const std::string& second) {
+    if (first != second) say(fmt::format("another {}", what));
   }
 
   std::vector<std::string> result() && { return std::move(phrases_); }
@@ -91,7 +116,77 @@ class Comparison {
   std::vector<std::string> phrases_;
 };
 
+// The value of a property that a file does not have. Source: the specifications of the extensions.
+std::optional<double> default_of(std::string_view name) {
+  struct Default {
+    std::string_view property;
+    double value;
+  };
+  constexpr auto kDefaults = std::to_array<Default>({
+      {"clearcoatFactor", 0},
+      {"clearcoatRoughnessFactor", 0},
+      {"transmissionFactor", 0},
+      {"diffuseTransmissionFactor", 0},
+      {"diffuseTransmissionColorFactor", 1},
+      {"sheenColorFactor", 0},
+      {"sheenRoughnessFactor", 0},
+      {"specularFactor", 1},
+      {"specularColorFactor", 1},
+      {"ior", 1.5},
+      {"iridescenceFactor", 0},
+      {"iridescenceIor", 1.3},
+      {"iridescenceThicknessMinimum", 100},
+      {"iridescenceThicknessMaximum", 400},
+      {"emissiveStrength", 1},
+      {"thicknessFactor", 0},
+      {"attenuationColor", 1},
+      {"anisotropyStrength", 0},
+      {"anisotropyRotation", 0},
+      {"dispersion", 0},
+      {"diffuseFactor", 1},
+      {"glossinessFactor", 1},
+      {"offset", 0},  // KHR_texture_transform
+      {"rotation", 0},
+      {"scale", 1},
+      {"set", 0},  // of a texture's coordinates
+  });
+  const std::size_t comma = name.rfind(", ");
+  const std::string_view property = comma == name.npos ? name : name.substr(comma + 2);
+  for (const Default& one : kDefaults) {
+    if (one.property == property) return one.value;
+  }
+  return std::nullopt;
+}
+
+// The parameter of a name; if there is none, one with the default values.
+MaterialParameter parameter_of(std::span<const MaterialParameter> parameters,
+                               const MaterialParameter& other) {
+  const auto found = std::ranges::find(parameters, other.name, &MaterialParameter::name);
+  if (found != parameters.end()) return *found;
+  const auto usual = default_of(other.name);
+  MaterialParameter none{other.name, {}};
+  if (usual) none.values.assign(other.values.size(), *usual);
+  return none;
+}
+
 }  // namespace
+
+std::vector<std::string> differences(std::span<const MaterialParameter> first,
+                                     std::span<const MaterialParameter> second, double tolerance) {
+  Comparison comparison(tolerance);
+  const auto add = [&](const MaterialParameter& a, const MaterialParameter& b) {
+    comparison.texture(a.name, a.texture, b.texture);
+    comparison.numbers(a.name, a.values, b.values);
+    comparison.text(a.name, a.text, b.text);
+  };
+  for (const MaterialParameter& one : first) add(one, parameter_of(second, one));
+  for (const MaterialParameter& one : second) {
+    if (std::ranges::find(first, one.name, &MaterialParameter::name) == first.end()) {
+      add(parameter_of(first, one), one);
+    }
+  }
+  return std::move(comparison).result();
+}
 
 std::vector<std::string> differences(const Material& first, const Material& second,
                                      double tolerance) {

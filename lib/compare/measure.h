@@ -37,7 +37,8 @@ struct ValueLocation {
   int target = -1;     // morph target
   int animation = -1;  // among several
   int frame = -1;
-  double time = 0;         // seconds, if frame is set
+  bool after_frame = false;  // the time is between that frame and the next
+  double time = 0;           // seconds, if frame is set
   bool in_second = false;  // mesh and vertex are in the second, not the first
 };
 

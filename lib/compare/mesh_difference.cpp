@@ -60,7 +60,24 @@ void add_angles_of(std::span<const Vector> first, std::span<const Vector> second
   }
 }
 
+// The largest difference of the channels of each.
+template <typename Vector>
+void add_channels_of(std::span<const Vector> first, std::span<const Vector> second,
+                     ValueLocation place, Measure& measure) {
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    place.vertex = static_cast<int>(i);
+    const auto apart = first[i].template cast<double>() - second[i].template cast<double>();
+    measure.add(apart.cwiseAbs().maxCoeff(), place);
+  }
+}
+
 }  // namespace
+
+std::vector<Triangle> reversed(std::span<const Triangle> triangles) {
+  std::vector<Triangle> list(triangles.begin(), triangles.end());
+  for (Triangle& t : list) std::swap(t[1], t[2]);
+  return list;
+}
 
 std::string difference_in_triangles(std::span<const Triangle> first,
                                     std::span<const Triangle> second) {
@@ -123,11 +140,12 @@ void add_angles(std::span<const Vec3f> first, std::span<const Vec3f> second, Val
 
 void add_coordinate_differences(std::span<const Vec2f> first, std::span<const Vec2f> second,
                                 ValueLocation place, Measure& measure) {
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    place.vertex = static_cast<int>(i);
-    const Vec2 apart = first[i].cast<double>() - second[i].cast<double>();
-    measure.add(apart.cwiseAbs().maxCoeff(), place);
-  }
+  add_channels_of(first, second, place, measure);
+}
+
+void add_colour_differences(std::span<const Vec4f> first, std::span<const Vec4f> second,
+                            ValueLocation place, Measure& measure) {
+  add_channels_of(first, second, place, measure);
 }
 
 bool on_other_sides(const Vec4& first, const Vec4& second) {

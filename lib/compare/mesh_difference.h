@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "compare/measure.h"
 #include "math/types.h"
@@ -18,6 +19,9 @@ using Triangle = std::array<std::uint32_t, 3>;
 // triangles in any order, starting at any corner. A triangle with reversed winding differs.
 std::string difference_in_triangles(std::span<const Triangle> first,
                                     std::span<const Triangle> second);
+
+// The same triangles wound the other way.
+std::vector<Triangle> reversed(std::span<const Triangle> triangles);
 
 // Skin influences of a mesh's vertices, shape [vertices x per_vertex].
 struct Influences {
@@ -45,6 +49,8 @@ void add_angles(std::span<const Vec3f> first, std::span<const Vec3f> second, Val
                 Measure& measure);
 void add_coordinate_differences(std::span<const Vec2f> first, std::span<const Vec2f> second,
                                 ValueLocation place, Measure& measure);
+void add_colour_differences(std::span<const Vec4f> first, std::span<const Vec4f> second,
+                            ValueLocation place, Measure& measure);
 
 // Whether two tangents have opposite handedness (sign of w). A zero tangent, or one between corners
 // that disagree (|w| < 0.5), has none.

@@ -40,9 +40,12 @@ struct Search {
   const std::vector<Facet>& facets;
   Vec3 point;
   double touching;
+  double near;
   double margin;
   double nearest = std::numeric_limits<double>::infinity();
   std::vector<FoundFacet>& found;
+
+  double reach() const { return std::max(nearest + touching, near); }
 };
 
 bool look_at(RTCPointQueryFunctionArguments* arguments) {
@@ -54,12 +57,11 @@ bool look_at(RTCPointQueryFunctionArguments* arguments) {
   Vec3 place = Vec3::Zero();
   for (std::size_t k = 0; k < 3; ++k) place += one.shares[k] * corners[k];
   one.distance = (place - search.point).norm();
-  if (one.distance > search.nearest + search.touching) return false;
+  if (one.distance > search.reach()) return false;
   search.found.push_back(one);
   if (one.distance >= search.nearest) return false;
   search.nearest = one.distance;
-  arguments->query->radius =
-      static_cast<float>((search.nearest + search.touching) * (1 + kMargin) + search.margin);
+  arguments->query->radius = static_cast<float>(search.reach() * (1 + kMargin) + search.margin);
   return true;
 }
 
@@ -138,12 +140,13 @@ bool FacetTree::build() {
   return rtcGetDeviceError(embree_->device) == RTC_ERROR_NONE;
 }
 
-void FacetTree::find(const Vec3& point, std::vector<FoundFacet>& found) const {
+void FacetTree::find(const Vec3& point, std::vector<FoundFacet>& found, double near) const {
   found.clear();
   const Vec3 from = point - centre_;
   // Allows for float rounding of points far away from everything, too.
   const double margin = 4 * kMargin * (size_ + from.norm());
-  Search search{facets_, point, touching_, margin, std::numeric_limits<double>::infinity(), found};
+  Search search{facets_, point, touching_, near, margin, std::numeric_limits<double>::infinity(),
+                found};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   RTCPointQuery query;
@@ -154,7 +157,7 @@ void FacetTree::find(const Vec3& point, std::vector<FoundFacet>& found) const {
   query.radius = std::numeric_limits<float>::infinity();
   rtcPointQuery(embree_->scene, &query, &context, look_at, &search);
   std::erase_if(found,
-                [&](const FoundFacet& one) { return one.distance > search.nearest + touching_; });
+                [&](const FoundFacet& one) { return one.distance > search.reach(); });
   std::sort(found.begin(), found.end(),
             [](const FoundFacet& a, const FoundFacet& b) { return a.facet < b.facet; });
 }

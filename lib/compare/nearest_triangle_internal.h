@@ -44,9 +44,11 @@ class FacetTree {
   // box.
   double touching() const { return touching_; }
 
+  double size() const { return size_; }  // of the bounding box of all facets
+
   // Fills `found` with the facet nearest to `point` and all facets at most touching() farther away,
-  // sorted by index.
-  void find(const Vec3& point, std::vector<FoundFacet>& found) const;
+  // or at most `near` away, sorted by index.
+  void find(const Vec3& point, std::vector<FoundFacet>& found, double near = 0) const;
 
  private:
   struct Embree;

@@ -18,7 +18,8 @@ namespace krok::compare {
 struct Moment {
   int first_animation = -1;
   int second_animation = -1;
-  int frame = -1;
+  int frame = -1;            // the first's last key time up to here
+  bool after_frame = false;  // it is earlier
   double first_time = 0;
   double second_time = 0;  // equal to first_time within the tolerance
 };
@@ -35,6 +36,7 @@ struct SceneComparison {
   std::vector<SurfaceGroup> groups{};    // meshes compared by nearest points
   std::vector<SurfaceMatch> surfaces{};  // of the groups, in both directions
   std::vector<Moment> moments{};
+  Placement first_placement{}, second_placement{};  // at the first of the moments
   std::set<std::pair<const Material*, const Material*>> materials{};  // already compared
 
   void say(std::string sentence) { result.structure.push_back(std::move(sentence)); }
@@ -56,9 +58,16 @@ std::vector<std::string> names_of(const std::vector<Item>& items) {
 void match_scene_joints(SceneComparison& comparison);
 void match_scene_meshes(SceneComparison& comparison);
 
-// Compares static data of two meshes with corresponding vertices: triangles, texture coordinates,
-// morph targets, weights, materials.
-void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh);
+// Compares static data of `meshes`: triangles, texture coordinates, colours, morph targets, weights,
+// materials.
+void compare_shapes(SceneComparison& comparison);
+
+// Reports what differs in the materials of two meshes, once for each pair of materials.
+void compare_materials(SceneComparison& comparison, const SceneMesh& first, const SceneMesh& second,
+                       const std::string& name);
+
+// A number for each mesh of a scene; those that are not given are 1.
+int winding_of(const std::vector<int>& windings, int mesh);
 
 bool has_normal_texture(const SceneMesh& mesh);
 

@@ -1,39 +1,71 @@
 #include "compare/scene_difference.h"
 
+#include <limits>
+
 #include "compare/scene_comparison_internal.h"
 
 namespace krok::compare {
 
 namespace {
 
-void set_tolerances(const Tolerance& tolerance, SceneDifference& result) {
+void set_tolerances(const SceneOptions& options, SceneDifference& result) {
+  const Tolerance& tolerance = options.tolerance;
   result.positions = result.target_positions = Measure(tolerance.length);
   result.normals = result.tangents = Measure(tolerance.of_normals());
   result.joint_positions = Measure(tolerance.of_joint_positions());
   result.joint_orientations = Measure(tolerance.of_joint_orientations());
   result.target_normals = result.target_tangents = Measure(tolerance.ratio);
   result.texture_coordinates = result.weights = Measure(tolerance.ratio);
+  result.colours =
+      Measure(options.materials ? tolerance.ratio : std::numeric_limits<double>::infinity());
   result.times = Measure(tolerance.time);
 }
 
+void place_meshes(SceneComparison& comparison) {
+  const Moment& moment = comparison.moments.front();
+  if (comparison.first.place) {
+    comparison.first_placement =
+        comparison.first.place(moment.first_animation, moment.first_time);
+  }
+  if (comparison.second.place) {
+    comparison.second_placement =
+        comparison.second.place(moment.second_animation, moment.second_time);
+  }
+}
+
+void add_last_notes(SceneComparison& comparison) {
+  const Measure& colours = comparison.result.colours;
+  if (!comparison.options.materials && colours.largest > comparison.options.tolerance.ratio) {
+    comparison.note("vertex colours differ, which counts with materials only");
+  }
+}
+
 }  // namespace
+
+int winding_of(const std::vector<int>& windings, int mesh) {
+  const auto i = static_cast<std::size_t>(mesh);
+  return i < windings.size() ? windings[i] : 1;
+}
 
 bool SceneDifference::same() const {
   return structure.empty() && positions.within() && normals.within() && tangents.within() &&
          tangent_sides.within() && joint_positions.within() && joint_orientations.within() &&
          target_positions.within() && target_normals.within() && target_tangents.within() &&
-         texture_coordinates.within() && weights.within();
+         texture_coordinates.within() && colours.within() && weights.within();
 }
 
 Result<SceneDifference> difference(const Scene& first, const Scene& second,
                                    const SceneOptions& options, int jobs, Progress& progress) {
   SceneComparison comparison{first, second, options};
-  set_tolerances(options.tolerance, comparison.result);
+  set_tolerances(options, comparison.result);
   match_scene_joints(comparison);
   match_scene_meshes(comparison);
   if (Status status = choose_moments(comparison); !status) return status.error();
+  place_meshes(comparison);
+  compare_shapes(comparison);
   if (Status status = match_surfaces(comparison, jobs); !status) return status.error();
   if (Status status = compare_moments(comparison, jobs, progress); !status) return status.error();
+  add_last_notes(comparison);
   return std::move(comparison.result);
 }
 

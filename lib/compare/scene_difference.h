@@ -33,7 +33,7 @@ struct MomentValue {
 
 struct MomentDifference {
   int animation = -1;  // in the first; -1 for the pose without animation
-  int frame = -1;      // from 0 in each animation; -1 for the pose without animation
+  int frame = -1;      // the first's last key time up to here; -1 without animation
   double time = 0;     // seconds
   MomentValue positions, normals, tangents, joint_positions, joint_orientations;
 };
@@ -62,7 +62,9 @@ struct SceneDifference {
   Measure target_positions;     // metres: morph target displacements, where both have them
   Measure target_normals;       // length of the difference of displacements, no unit
   Measure target_tangents;      // the same of tangents
-  Measure texture_coordinates;  // max of u and v
+  Measure texture_coordinates;  // max of u and v, of all sets that both have
+  Measure colours;  // max of the channels of vertex colours; within any tolerance unless
+                    // SceneOptions::materials is set
   Measure weights;              // skin weights, where both have a skin
   Measure times;                // seconds: key times matched to each other
 
@@ -79,17 +81,23 @@ struct SceneDifference {
 
 // Compares each pair of animations (by name if all names of both are unique and the same set,
 // otherwise by index) at the key times of both, for as long as both last; times within the
-// tolerance are merged. Where one has steps or splines between keys, also at quarters of the way
-// from time to time. Without animations, compares the static pose. A skinned scene can be
+// tolerance are merged. Between key times, also at the ends of the parts of KeyGap, and just before
+// steps. Without animations, compares the static pose. A skinned scene can be
 // compared with one without joints; joints are then skipped. Normals or texture coordinates that
 // only one mesh has are a difference of structure; so are tangents if both materials have a normal
-// texture, otherwise they are a note. Deterministic for any number of jobs. Codes: compare-value if
+// texture, and further texture coordinates if a texture uses them, otherwise they are a note.
+// Different numbers of morph targets are a note if one mesh is a bake of the other's motion. Two
+// meshes with the same triangles differ if one shows their backs. Deterministic for any number of jobs. Codes: compare-value if
 // a scene has values that are not finite, compare-too-long for more than a million moments.
 //
 // With Matching::nearest, all meshes of a scene are one surface if they cannot be matched by name.
 // Nearest points are found at the first time compared; after that each moves with its triangle. If
-// several surfaces touch there, the one that stays closest is used. A mesh without triangles is a
-// point cloud. Morph targets and weights themselves are not compared, only their effect.
+// several surfaces touch there, or come within the tolerance (or four times the median distance, in
+// a mesh that is coarser overall), the one that stays closest is used, of those the one with the
+// closest normal, the same side and material, and the closest tangents and texture coordinates. A
+// mesh without triangles is a point cloud. Vertices that lie on the back of the other's triangles,
+// or on another material, are reported with their count. Morph targets and weights themselves are
+// not compared, only their effect.
 Result<SceneDifference> difference(const Scene& first, const Scene& second,
                                    const SceneOptions& options, int jobs, Progress& progress);
 

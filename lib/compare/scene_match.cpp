@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "compare/scene_comparison_internal.h"
 #include "compare/skeleton_match.h"
@@ -41,17 +42,32 @@ void say_partners_missing(SceneComparison& comparison, const ListMatch& match,
   }
 }
 
-// One group per pair of names, or one for everything.
-std::vector<SurfaceGroup> groups_of(const ListMatch& match, std::size_t first, std::size_t second) {
+// The meshes of each name: those of a node belong together, whatever the order of its parts.
+std::map<std::string, std::vector<int>> by_name(const std::vector<SceneMesh>& meshes) {
+  std::map<std::string, std::vector<int>> groups;
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    const std::string& node = meshes[i].node_name;
+    groups[node.empty() ? meshes[i].name : node].push_back(static_cast<int>(i));
+  }
+  return groups;
+}
+
+// One group per name if both scenes have the same names, or one for everything.
+std::vector<SurfaceGroup> groups_of(const std::vector<SceneMesh>& first,
+                                    const std::vector<SceneMesh>& second) {
   std::vector<SurfaceGroup> groups;
-  if (match.by_name) {
-    for (const auto& [i, j] : match.pairs) groups.push_back({{i}, {j}});
+  if (first.empty() || second.empty()) return groups;
+  const auto firsts = by_name(first), seconds = by_name(second);
+  const bool same = std::ranges::equal(firsts, seconds, {}, [](const auto& one) { return one.first; },
+                                       [](const auto& one) { return one.first; });
+  if (same && !firsts.contains("")) {
+    for (const auto& [name, meshes] : firsts) groups.push_back({meshes, seconds.at(name)});
     return groups;
   }
   SurfaceGroup all;
-  for (std::size_t i = 0; i < first; ++i) all.first.push_back(static_cast<int>(i));
-  for (std::size_t i = 0; i < second; ++i) all.second.push_back(static_cast<int>(i));
-  if (first > 0 && second > 0) groups.push_back(std::move(all));
+  for (std::size_t i = 0; i < first.size(); ++i) all.first.push_back(static_cast<int>(i));
+  for (std::size_t i = 0; i < second.size(); ++i) all.second.push_back(static_cast<int>(i));
+  groups.push_back(std::move(all));
   return groups;
 }
 
@@ -75,19 +91,41 @@ void report_tangents_in_groups(SceneComparison& comparison) {
   if (has[0] != has[1]) report_tangents(comparison, "", has[0], textured[0] && textured[1]);
 }
 
-void group_meshes(SceneComparison& comparison, const ListMatch& match) {
+void group_meshes(SceneComparison& comparison) {
   const auto& first = comparison.first.meshes;
   const auto& second = comparison.second.meshes;
-  comparison.groups = groups_of(match, first.size(), second.size());
-  const auto have_normals = [](const std::vector<SceneMesh>& meshes) {
+  comparison.groups = groups_of(first, second);
+  const auto some_have = [](const std::vector<SceneMesh>& meshes, const auto& has) {
     return std::any_of(meshes.begin(), meshes.end(),
-                       [](const SceneMesh& mesh) { return mesh.has_normals || mesh.only_points; });
+                       [&](const SceneMesh& mesh) { return has(mesh) || mesh.only_points; });
   };
-  if (!first.empty() && !second.empty() && have_normals(first) != have_normals(second)) {
-    comparison.say(
-        fmt::format("only the {} has normals", have_normals(first) ? "first" : "second"));
-  }
+  const auto report_missing = [&](const char* what, bool counts, const auto& has) {
+    if (first.empty() || second.empty()) return;
+    const bool first_has = some_have(first, has);
+    if (first_has == some_have(second, has)) return;
+    std::string text = fmt::format("only the {} has {}", first_has ? "first" : "second", what);
+    if (counts) {
+      comparison.say(std::move(text));
+    } else {
+      comparison.note(std::move(text));
+    }
+  };
+  report_missing("normals", true, [](const SceneMesh& mesh) { return mesh.has_normals; });
+  report_missing("texture coordinates", true,
+                 [](const SceneMesh& mesh) { return !mesh.texture_coordinates.empty(); });
+  report_missing("vertex colours", comparison.options.materials,
+                 [](const SceneMesh& mesh) { return !mesh.colours.empty(); });
   report_tangents_in_groups(comparison);
+  const auto any = [&](const auto& has) {
+    return std::any_of(first.begin(), first.end(), has) ||
+           std::any_of(second.begin(), second.end(), has);
+  };
+  if (any([](const SceneMesh& mesh) { return mesh.influences.per_vertex > 0; })) {
+    comparison.note("skin weights are compared by their effect only, with nearest points");
+  }
+  if (any([](const SceneMesh& mesh) { return !mesh.targets.empty(); })) {
+    comparison.note("morph targets are compared by their effect only, with nearest points");
+  }
   if (first.empty() != second.empty()) {
     comparison.say(fmt::format("only the {} has meshes", first.empty() ? "second" : "first"));
   } else if (first.size() != second.size() || vertices_of(first) != vertices_of(second)) {
@@ -143,11 +181,11 @@ void match_scene_meshes(SceneComparison& comparison) {
                                 comparison.first.only_joints ? "second" : "first"));
     return;
   }
-  const ListMatch match = match_lists(first, second, comparison.options.matching);
   if (comparison.options.matching == Matching::nearest) {
-    group_meshes(comparison, match);
+    group_meshes(comparison);
     return;
   }
+  const ListMatch match = match_lists(first, second, comparison.options.matching);
   say_partners_missing(comparison, match, first, second);
   for (const auto& [i, j] : match.pairs) {
     const std::size_t a = comparison.first.meshes[static_cast<std::size_t>(i)].vertex_count;
@@ -157,7 +195,6 @@ void match_scene_meshes(SceneComparison& comparison) {
                                  label("mesh", first[static_cast<std::size_t>(i)], i), a, b));
       continue;
     }
-    compare_shapes(comparison, i, j);
     comparison.meshes.emplace_back(i, j);
   }
 }

@@ -14,9 +14,13 @@ namespace {
 
 constexpr std::size_t kMaxMoments = 1'000'000;
 constexpr double kRounding = 1e-4;  // seconds
-constexpr int kParts = 4;           // from key to key, where an animation is not straight there
+constexpr double kBeforeStep = 1e-6;  // of a gap: the time before its end that still shows it
 
-using Times = std::vector<std::pair<double, double>>;  // of the first, of the second
+struct CommonTime {
+  double first = 0, second = 0;  // in seconds of each
+  int key = -1;                  // the first's key that it is, or -1
+};
+using Times = std::vector<CommonTime>;
 
 // Key times of both, for as long as both last, rising. Times that differ by at most `same` are one
 // moment; each scene uses its own time.
@@ -26,11 +30,11 @@ Times common_times(const std::vector<double>& first, const std::vector<double>& 
   const double begin = std::max(first.front(), second.front()) - same;
   const double end = std::min(first.back(), second.back()) + same;
   const double infinite = std::numeric_limits<double>::infinity();
-  const auto add = [&](double a, double b) {
+  const auto add = [&](double a, double b, int key) {
     if (std::max(a, b) < begin || std::min(a, b) > end) return;
     // Skips keys of several channels that differ only by rounding.
     if (!times.empty() && a - times.back().first <= kRounding) return;
-    times.emplace_back(a, b);
+    times.push_back({a, b, key});
   };
   std::size_t i = 0, j = 0;
   const auto at = [&](const std::vector<double>& list, std::size_t k) {
@@ -43,27 +47,50 @@ Times common_times(const std::vector<double>& first, const std::vector<double>& 
     // The next key of the earlier one may be nearer.
     const double other = a < b ? std::abs(at(first, i + 1) - b) : std::abs(at(second, j + 1) - a);
     if (apart <= same && apart <= other) {
-      add(a, b);
+      add(a, b, static_cast<int>(i));
       ++i, ++j;
     } else {
-      add(std::min(a, b), std::min(a, b));
+      add(std::min(a, b), std::min(a, b), a < b ? static_cast<int>(i) : -1);
       a < b ? ++i : ++j;
     }
   }
   return times;
 }
 
+// The gap of an animation that holds all times from `begin` to `end`, which no key divides.
+KeyGap gap_between(const Scene::Animation& animation, double begin, double end) {
+  const auto& keys = animation.key_times;
+  const double middle = 0.5 * (begin + end);
+  const auto after = std::upper_bound(keys.begin(), keys.end(), middle);
+  if (animation.gaps.empty() || after == keys.begin() || after == keys.end()) return {};
+  KeyGap gap = animation.gaps[static_cast<std::size_t>(after - keys.begin()) - 1];
+  gap.jumps = gap.jumps && *after - end <= kRounding;
+  return gap;
+}
+
 // Steps and splines may agree at all keys and differ between them: moments up to the next key.
-void add_between(SceneComparison& comparison, double first_time, double second_time) {
+void add_between(SceneComparison& comparison, const CommonTime& next) {
   const Moment last = comparison.moments.back();
-  if (first_time - last.first_time < kParts * kRounding) return;
-  for (int part = 1; part < kParts; ++part) {
-    const double share = static_cast<double>(part) / kParts;
+  // Within the tolerance of times, a steep way is as good as a step.
+  const double length = next.first - last.first_time;
+  if (length <= std::max(4 * kRounding, 2 * comparison.options.tolerance.time)) return;
+  const auto animation = [](const Scene& scene, int index) -> const Scene::Animation& {
+    return scene.animations[static_cast<std::size_t>(index)];
+  };
+  const KeyGap a = gap_between(animation(comparison.first, last.first_animation), last.first_time,
+                               next.first);
+  const KeyGap b = gap_between(animation(comparison.second, last.second_animation),
+                               last.second_time, next.second);
+  const auto add = [&](double share) {
     Moment moment = last;
-    moment.first_time += share * (first_time - last.first_time);
-    moment.second_time += share * (second_time - last.second_time);
+    moment.after_frame = true;
+    moment.first_time += share * length;
+    moment.second_time += share * (next.second - last.second_time);
     comparison.moments.push_back(moment);
-  }
+  };
+  const int parts = std::max(a.parts, b.parts);
+  for (int part = 1; part < parts; ++part) add(static_cast<double>(part) / parts);
+  if (a.jumps || b.jumps) add(1 - kBeforeStep);
 }
 
 Status add_moments(SceneComparison& comparison, int first_animation, int second_animation) {
@@ -80,9 +107,10 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
     }
     return {};
   }
-  const std::size_t each = a.straight && b.straight ? 1 : kParts;
-  if (each * (a.key_times.size() + b.key_times.size()) + comparison.moments.size() > kMaxMoments) {
-    return Error("compare-too-long", fmt::format("{} has more than a million key times", name));
+  const Error too_long("compare-too-long",
+                       fmt::format("{} has more than a million times to compare", name));
+  if (a.key_times.size() + b.key_times.size() + comparison.moments.size() > kMaxMoments) {
+    return too_long;
   }
   if (std::abs(a.key_times.back() - b.key_times.back()) > same ||
       std::abs(a.key_times.front() - b.key_times.front()) > same) {
@@ -93,21 +121,25 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
                     readable(b.key_times.front()), readable(b.key_times.back())));
   }
 
-  if (a.straight != b.straight) {
-    comparison.note(fmt::format("{}: only the {} has steps or splines between keys", name,
-                                a.straight ? "second" : "first"));
+  if (a.interpolation != b.interpolation && !a.interpolation.empty() && !b.interpolation.empty()) {
+    comparison.note(fmt::format("{}: {} interpolation in the first, {} in the second", name,
+                                a.interpolation, b.interpolation));
   }
-  int frame = 0;
-  for (const auto& [first_time, second_time] : common_times(a.key_times, b.key_times, same)) {
-    if (frame > 0 && !(a.straight && b.straight)) add_between(comparison, first_time, second_time);
+  int times = 0, frame = 0;
+  for (const CommonTime& time : common_times(a.key_times, b.key_times, same)) {
+    if (times++ > 0) add_between(comparison, time);
+    if (comparison.moments.size() >= kMaxMoments) return too_long;
+    if (time.key >= 0) frame = time.key;
     comparison.moments.push_back(
-        {first_animation, second_animation, frame, first_time, second_time});
-    ValueLocation place{.animation = comparison.first.animations.size() > 1 ? first_animation : -1,
-                        .frame = frame++,
-                        .time = first_time};
-    comparison.result.times.add(std::abs(first_time - second_time), place);
+        {first_animation, second_animation, frame, time.key < 0, time.first, time.second});
+    const ValueLocation place{
+        .animation = comparison.first.animations.size() > 1 ? first_animation : -1,
+        .frame = frame,
+        .after_frame = time.key < 0,
+        .time = time.first};
+    comparison.result.times.add(std::abs(time.first - time.second), place);
   }
-  const auto frames = static_cast<std::size_t>(frame);
+  const auto frames = static_cast<std::size_t>(times);
   if (frames > a.key_times.size() || frames > b.key_times.size()) {
     comparison.note(
         fmt::format("{}: {} key times in the first, {} in the second; compared at {} common times",

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "compare/material_difference.h"
 #include "compare/scene_comparison_internal.h"
 
@@ -8,17 +10,40 @@ namespace krok::compare {
 
 namespace {
 
-void compare_targets(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
+bool share_a_name(const SceneMesh& a, const SceneMesh& b) {
+  return std::ranges::any_of(a.targets, [&](const SceneMesh::Target& one) {
+    return !one.name.empty() &&
+           std::ranges::any_of(b.targets, [&](const SceneMesh::Target& other) {
+             return other.name == one.name;
+           });
+  });
+}
+
+// A mesh that plays its motion by a skin or by morph targets, against one that plays it by other
+// morph targets, made for that: a rig and its bake, or two bakes.
+bool is_bake_of(const SceneMesh& a, const SceneMesh& b) {
+  const bool first_skinned = a.influences.per_vertex > 0;
+  const bool second_skinned = b.influences.per_vertex > 0;
+  if (first_skinned != second_skinned) return true;
+  return a.animates_weights && b.animates_weights && !share_a_name(a, b);
+}
+
+// The displacements of a morph target in world space.
+SceneMesh::Target displaced(const Placement& placement, const SceneMesh& mesh, int mesh_index,
+                            int target, Placement::Memory& memory) {
+  if (placement.displace) return placement.displace(mesh_index, target, memory);
+  return mesh.targets[static_cast<std::size_t>(target)];
+}
+
+void compare_targets(SceneComparison& comparison, std::pair<int, int> meshes,
                      const std::string& name, ValueLocation place) {
+  const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(meshes.first)];
+  const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(meshes.second)];
   if (a.targets.size() != b.targets.size()) {
     std::string text = fmt::format("{}: {} morph targets in the first, {} in the second", name,
                                    a.targets.size(), b.targets.size());
-    // A skinned mesh (possibly with targets) against one without a skin is a rig against its baked
-    // motion.
-    const bool first_skinned = a.influences.per_vertex > 0;
-    const bool second_skinned = b.influences.per_vertex > 0;
-    if (first_skinned != second_skinned) {
-      comparison.note(std::move(text));
+    if (comparison.options.matching != Matching::name && is_bake_of(a, b)) {
+      comparison.note(text + "; compared by their effect only");
     } else {
       comparison.say(std::move(text));
     }
@@ -35,9 +60,10 @@ void compare_targets(SceneComparison& comparison, const SceneMesh& a, const Scen
     comparison.say(
         fmt::format("{}: {} is only in the first", name, label("morph target", target, missing)));
   }
+  Placement::Memory first_memory, second_memory;
   for (const auto& [i, j] : match.pairs) {
-    const SceneMesh::Target& target = a.targets[static_cast<std::size_t>(i)];
-    const SceneMesh::Target& other = b.targets[static_cast<std::size_t>(j)];
+    const auto target = displaced(comparison.first_placement, a, meshes.first, i, first_memory);
+    const auto other = displaced(comparison.second_placement, b, meshes.second, j, second_memory);
     place.target = i;
     add_distances(or_none(target.positions), or_none(other.positions), place,
                   comparison.result.target_positions);
@@ -72,6 +98,78 @@ void say_only_one_has(SceneComparison& comparison, const std::string& name, cons
   comparison.say(fmt::format("{}: only the {} has {}", name, first_has ? "first" : "second", what));
 }
 
+// Vertex colours, and texture coordinates beside the first set.
+void compare_attributes(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
+                        const std::string& name, ValueLocation place) {
+  const auto report = [&](std::string text, bool counts) {
+    if (counts) {
+      comparison.say(std::move(text));
+    } else {
+      comparison.note(std::move(text));
+    }
+  };
+  if (a.colours.empty() != b.colours.empty()) {
+    report(fmt::format("{}: only the {} has vertex colours", name,
+                       a.colours.empty() ? "second" : "first"),
+           comparison.options.materials);
+  } else {
+    add_colour_differences(a.colours, b.colours, place, comparison.result.colours);
+  }
+  const auto set_of = [](const SceneMesh& mesh, std::size_t set) {
+    return set < mesh.more_texture_coordinates.size() ? mesh.more_texture_coordinates[set]
+                                                      : std::span<const Vec2f>();
+  };
+  const auto uses = [](const SceneMesh& mesh, std::size_t set) {
+    return set < mesh.used_coordinates.size() && mesh.used_coordinates[set];
+  };
+  const std::size_t sets =
+      std::max(a.more_texture_coordinates.size(), b.more_texture_coordinates.size());
+  for (std::size_t set = 0; set < sets; ++set) {
+    const auto ours = set_of(a, set), theirs = set_of(b, set);
+    if (ours.empty() != theirs.empty()) {
+      const bool used = uses(a, set + 1) || uses(b, set + 1);
+      report(fmt::format("{}: only the {} has texture coordinates {}{}", name,
+                         ours.empty() ? "second" : "first", set + 1,
+                         used ? "" : ", which no texture uses"),
+             used || comparison.options.materials);
+    } else {
+      add_coordinate_differences(ours, theirs, place, comparison.result.texture_coordinates);
+    }
+  }
+}
+
+// Whether the meshes face the same way, by their triangles and how they are placed.
+void compare_triangles(SceneComparison& comparison, std::pair<int, int> meshes,
+                       const std::string& name) {
+  const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(meshes.first)];
+  const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(meshes.second)];
+  const bool mirrored = winding_of(comparison.first_placement.windings, meshes.first) *
+                            winding_of(comparison.second_placement.windings, meshes.second) <
+                        0;
+  if (!mirrored) {
+    std::string text = difference_in_triangles(a.triangles, b.triangles);
+    if (text.empty()) return;
+    if (difference_in_triangles(a.triangles, reversed(b.triangles)).empty()) {
+      text = "inside out in the second: its triangles are wound the other way";
+    }
+    comparison.say(fmt::format("{}: {}", name, text));
+    return;
+  }
+  const std::string text = difference_in_triangles(a.triangles, reversed(b.triangles));
+  if (text.empty()) return;
+  if (difference_in_triangles(a.triangles, b.triangles).empty()) {
+    comparison.say(fmt::format(
+        "{}: inside out in the second: its triangles are the same, but only one of the nodes "
+        "mirrors",
+        name));
+  } else {
+    comparison.say(fmt::format("{}: {} (with the second's reversed, as only one of the nodes mirrors)",
+                               name, text));
+  }
+}
+
+}  // namespace
+
 // Meshes often share a material; its differences are reported once.
 void compare_materials(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
                        const std::string& name) {
@@ -79,9 +177,13 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
   if (!comparison.materials.emplace(a.material, b.material).second) return;
   std::string text;
   if (a.material != nullptr && b.material != nullptr) {
-    text = fmt::format(
-        "{}",
-        fmt::join(differences(*a.material, *b.material, comparison.options.tolerance.ratio), "; "));
+    const double tolerance = comparison.options.tolerance.ratio;
+    auto found = differences(*a.material, *b.material, tolerance);
+    for (std::string& one :
+         differences(a.material_parameters, b.material_parameters, tolerance)) {
+      found.push_back(std::move(one));
+    }
+    text = fmt::format("{}", fmt::join(found, "; "));
   } else if (a.material != b.material) {
     text = fmt::format("only the {} has one", a.material != nullptr ? "first" : "second");
   }
@@ -93,8 +195,6 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
     comparison.note(std::move(text));
   }
 }
-
-}  // namespace
 
 bool has_normal_texture(const SceneMesh& mesh) {
   return mesh.material != nullptr && mesh.material->normal_texture.image != nullptr;
@@ -112,15 +212,15 @@ void report_tangents(SceneComparison& comparison, const std::string& before, boo
   }
 }
 
-void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh) {
-  const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(first_mesh)];
-  const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(second_mesh)];
-  const std::string name = label("mesh", a.name, first_mesh);
-  const ValueLocation place{.mesh = first_mesh};
+namespace {
+
+void compare_pair(SceneComparison& comparison, std::pair<int, int> meshes) {
+  const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(meshes.first)];
+  const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(meshes.second)];
+  const std::string name = label("mesh", a.name, meshes.first);
+  const ValueLocation place{.mesh = meshes.first};
   if (a.only_points || b.only_points) return;
-  if (std::string text = difference_in_triangles(a.triangles, b.triangles); !text.empty()) {
-    comparison.say(fmt::format("{}: {}", name, text));
-  }
+  compare_triangles(comparison, meshes, name);
   say_only_one_has(comparison, name, "normals", a.has_normals, b.has_normals);
   if (a.has_tangents != b.has_tangents) {
     report_tangents(comparison, name + ": ", a.has_tangents,
@@ -132,9 +232,19 @@ void compare_shapes(SceneComparison& comparison, int first_mesh, int second_mesh
     add_coordinate_differences(a.texture_coordinates, b.texture_coordinates, place,
                                comparison.result.texture_coordinates);
   }
-  compare_targets(comparison, a, b, name, place);
+  if (a.visible != b.visible) {
+    comparison.say(fmt::format("{}: hidden in the {}", name, a.visible ? "second" : "first"));
+  }
+  compare_attributes(comparison, a, b, name, place);
+  compare_targets(comparison, meshes, name, place);
   compare_weights(comparison, a, b, name, place);
   compare_materials(comparison, a, b, name);
+}
+
+}  // namespace
+
+void compare_shapes(SceneComparison& comparison) {
+  for (const auto& pair : comparison.meshes) compare_pair(comparison, pair);
 }
 
 }  // namespace krok::compare

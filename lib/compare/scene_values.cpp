@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
 
 #include "compare/scene_comparison_internal.h"
+#include "core/numbers.h"
 #include "core/parallel.h"
 #include "math/quaternion.h"
 
@@ -136,7 +139,8 @@ class Measuring {
       : comparison_(comparison),
         progress_(progress),
         parts_(parts_of(comparison)),
-        slots_(slots_for(jobs)) {
+        slots_(slots_for(jobs)),
+        turned_(parts_.size(), false) {
     for (Slot& slot : slots_) slot.spreads.resize(parts_.size());
     SceneDifference& result = comparison.result;
     for (const Part& part : parts_) {
@@ -168,12 +172,14 @@ class Measuring {
   PartTotals no_totals() const;
   void measure_part(std::size_t index, ValueLocation place, Slot& slot) const;
   Status take(const Moment& moment, Slot& slot);
+  void take_windings(const Moment& moment, const Slot& slot);
   MomentDifference take_parts(const Slot& slot);
   void take_joints(ValueLocation place, const Slot& slot, MomentDifference& moment);
   void finish();
   ValueLocation place_of(const Moment& moment) const {
     return {.animation = comparison_.first.animations.size() > 1 ? moment.first_animation : -1,
             .frame = moment.frame,
+            .after_frame = moment.after_frame,
             .time = moment.first_time};
   }
 
@@ -181,6 +187,7 @@ class Measuring {
   Progress& progress_;
   const std::vector<Part> parts_;
   std::vector<Slot> slots_;
+  std::vector<bool> turned_;  // [parts], reported already
 };
 
 std::vector<std::vector<float>> Measuring::no_vertices() const {
@@ -282,6 +289,7 @@ Status Measuring::take(const Moment& moment, Slot& slot) {
     return Error("compare-value", "a scene has positions that are NaN or infinite",
                  "its nodes or keys have values that are too large");
   }
+  take_windings(moment, slot);
   MomentDifference found = take_parts(slot);
   take_joints(place_of(moment), slot, found);
   found.animation = moment.first_animation;
@@ -290,6 +298,25 @@ Status Measuring::take(const Moment& moment, Slot& slot) {
   comparison_.result.moments.push_back(found);
   progress_.advance(1);
   return {};
+}
+
+// Meshes face the same way at the first moment, or their difference was reported; this is about
+// nodes that begin to mirror later.
+void Measuring::take_windings(const Moment& moment, const Slot& slot) {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const Part& part = parts_[i];
+    if (part.points != nullptr || turned_[i]) continue;
+    const SceneMesh& mesh = comparison_.first.meshes[static_cast<std::size_t>(part.mesh)];
+    const int begin = winding_of(comparison_.first_placement.windings, part.mesh) *
+                      winding_of(comparison_.second_placement.windings, part.other);
+    const int now = winding_of(slot.first.windings, part.mesh) *
+                    winding_of(slot.second.windings, part.other);
+    if (begin * now >= 0 || mesh.triangles.empty()) continue;
+    turned_[i] = true;
+    comparison_.say(fmt::format("{}: turned inside out in only one of the two at {} s",
+                                label("mesh", mesh.name, part.mesh),
+                                readable(moment.first_time, 4)));
+  }
 }
 
 MomentDifference Measuring::take_parts(const Slot& slot) {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <tuple>
 
+#include "compare/material_difference.h"
 #include "compare/measure.h"
 #include "compare/mesh_difference.h"
 #include "compare/nearest_triangle_internal.h"
@@ -21,6 +23,11 @@ constexpr std::size_t kMaxProbes = 5;    // times used to choose between touchin
 constexpr std::size_t kMaxTried = 1024;  // touching points, to bound the run time
 constexpr double kNoShare = 1e-9;        // smaller coordinates are rounding errors
 constexpr double kSameAngle = 1e-4;      // radians; smaller angles between normals are float noise
+constexpr double kBack = -0.5;           // cosine of the angle to a face seen from behind
+constexpr std::size_t kSampled = 1024;   // vertices, for the median distance
+constexpr double kOfMedian = 4;          // distances at which a point is as good as the nearest
+constexpr double kMaxNear = 1e-3;        // of the size, the same
+constexpr std::size_t kFewOf = 1000;     // a vertex of that many may be damaged: a sliver
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;
@@ -70,8 +77,75 @@ bool same_corners(const SurfacePoint& a, const SurfacePoint& b) {
 struct Fit {
   double distance = 0;  // the largest
   double angle = 0;     // max, of normals; 0 if one has none
-  double tangents = 0;  // max, see tangents_apart(); 0 if both have none
+  bool behind = false;  // at the first moment, see lies_behind()
+  bool other_material = false;
+  double tangents = 0;    // max, see tangents_apart(); 0 if both have none
+  double attributes = 0;  // distance of texture coordinates and colours; 0 if one has none
+
+  auto rank() const { return std::tuple(behind, other_material, tangents + attributes, angle); }
 };
+
+// The mean normal of the triangles at each vertex, by area, of their front faces: 1 long where they
+// are flat, shorter at an edge, and 0 without triangles.
+Points faces_of(const SceneMesh& mesh, const Points& positions, int winding) {
+  Points faces(positions.size(), Vec3::Zero());
+  std::vector<double> areas(positions.size(), 0.0);
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 normal = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
+    for (const std::uint32_t corner : t) {
+      faces[corner] += winding * normal;
+      areas[corner] += normal.norm();
+    }
+  }
+  for (std::size_t v = 0; v < faces.size(); ++v) {
+    if (areas[v] > 0) faces[v] /= areas[v];
+  }
+  return faces;
+}
+
+std::vector<Points> all_faces(const SurfaceMoments& scene) {
+  std::vector<Points> faces;
+  const SceneState& state = scene.states[0];
+  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+    faces.push_back(faces_of(scene.meshes[m], state.positions[m],
+                             winding_of(state.windings, static_cast<int>(m))));
+  }
+  return faces;
+}
+
+// Whether a point is on a front face where the vertex is on a back face. Where the sides are
+// not clear, as at a sharp edge, it is not.
+bool lies_behind(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
+                 std::size_t vertex, const SurfaceMoments& other) {
+  return own.faces[mesh][vertex].dot(value_at(point, other.faces)) < kBack;
+}
+
+const SceneMesh& mesh_of(const SurfacePoint& point, const SurfaceMoments& scene) {
+  return scene.meshes[static_cast<std::size_t>(point.mesh)];
+}
+
+bool look_alike(const SceneComparison& comparison, const SceneMesh& first,
+                const SceneMesh& second) {
+  if (!comparison.first.knows_materials || !comparison.second.knows_materials) return true;
+  if (first.material == nullptr || second.material == nullptr) {
+    return first.material == second.material;
+  }
+  const double tolerance = comparison.options.tolerance.ratio;
+  return differences(*first.material, *second.material, tolerance).empty() &&
+         differences(first.material_parameters, second.material_parameters, tolerance).empty();
+}
+
+using SameMaterials = std::vector<std::vector<bool>>;  // [meshes][meshes of the other]
+
+SameMaterials same_materials(const SceneComparison& comparison, const SurfaceMoments& own,
+                             const SurfaceMoments& other) {
+  SameMaterials table;
+  for (const SceneMesh& mesh : own.meshes) {
+    auto& row = table.emplace_back();
+    for (const SceneMesh& one : other.meshes) row.push_back(look_alike(comparison, mesh, one));
+  }
+  return table;
+}
 
 // Angle between tangents at one moment, plus pi for opposite handedness; pi if only one mesh has
 // tangents, so that coincident meshes with and without tangents are not confused.
@@ -85,10 +159,29 @@ double tangents_apart(const SurfacePoint& point, const SurfaceMoments& own, std:
   return angle_between_directions(a.head<3>(), b.head<3>()) + (on_other_sides(a, b) ? kPi : 0);
 }
 
-Fit fit_of(const SurfacePoint& point, const SurfaceMoments& own, int mesh, std::size_t vertex,
-           const SurfaceMoments& other) {
+// The two surfaces, and what is known of them.
+struct Surfaces {
+  const SurfaceMoments& own;
+  const SurfaceMoments& other;
+  const FacetTree& tree;  // of `other`
+  double near = 0;        // a point at most this far away is as good as the nearest
+  SameMaterials same_materials{};
+};
+
+Fit fit_of(const SurfacePoint& point, const Surfaces& surfaces, int mesh, std::size_t vertex) {
+  const SurfaceMoments& own = surfaces.own;
+  const SurfaceMoments& other = surfaces.other;
   Fit fit;
   const auto m = static_cast<std::size_t>(mesh);
+  fit.behind = lies_behind(point, own, m, vertex, other);
+  fit.other_material = !surfaces.same_materials[m][static_cast<std::size_t>(point.mesh)];
+  const auto add = [&](const auto& ours, const auto& theirs) {
+    if (ours.empty() || theirs.empty()) return;
+    fit.attributes += static_cast<double>((ours[vertex] - value_in(point, theirs)).norm());
+  };
+  const SceneMesh& partner = mesh_of(point, other);
+  add(own.meshes[m].texture_coordinates, partner.texture_coordinates);
+  add(own.meshes[m].colours, partner.colours);
   for (std::size_t k = 0; k < own.states.size(); ++k) {
     const SceneState& a = own.states[k];
     const SceneState& b = other.states[k];
@@ -102,29 +195,27 @@ Fit fit_of(const SurfacePoint& point, const SurfaceMoments& own, int mesh, std::
   return fit;
 }
 
-SurfacePoint choose(const std::vector<SurfacePoint>& points, const SurfaceMoments& own, int mesh,
-                    std::size_t vertex, const SurfaceMoments& other, double touching) {
+SurfacePoint choose(const std::vector<SurfacePoint>& points, const Surfaces& surfaces, int mesh,
+                    std::size_t vertex) {
   if (points.size() == 1) return points.front();
   std::vector<Fit> fits;
   double least = std::numeric_limits<double>::infinity();
   for (const SurfacePoint& point : points) {
-    fits.push_back(fit_of(point, own, mesh, vertex, other));
+    fits.push_back(fit_of(point, surfaces, mesh, vertex));
     least = std::min(least, fits.back().distance);
   }
-  // Keeps the closest points, of those the ones with matching normals; tangents decide at texture
-  // seams, where vertices are otherwise the same.
+  const double most = std::max(least + surfaces.tree.touching(), surfaces.near);
+  // Keeps the closest points, of those the ones with matching normals; the rank decides at seams,
+  // where vertices are otherwise the same.
   double least_angle = std::numeric_limits<double>::infinity();
   for (const Fit& fit : fits) {
-    if (fit.distance <= least + touching) least_angle = std::min(least_angle, fit.angle);
+    if (fit.distance <= most) least_angle = std::min(least_angle, fit.angle);
   }
   std::size_t best = points.size();
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Fit& fit = fits[i];
-    if (fit.distance > least + touching || fit.angle > least_angle + kSameAngle) continue;
-    if (best == points.size() ||
-        std::tie(fit.tangents, fit.angle) < std::tie(fits[best].tangents, fits[best].angle)) {
-      best = i;
-    }
+    if (fit.distance > most || fit.angle > least_angle + kSameAngle) continue;
+    if (best == points.size() || fit.rank() < fits[best].rank()) best = i;
   }
   return points[best];
 }
@@ -186,10 +277,32 @@ std::vector<std::uint32_t> by_place(const Points& vertices) {
   return order;
 }
 
-// For each vertex of a mesh of `own`, the nearest point of `other`, whose facets are in the tree.
-SurfaceMatch match_surface(const SurfaceMoments& own, int mesh, const SurfaceMoments& other,
-                           const FacetTree& tree, int jobs) {
-  const Points& vertices = own.states[0].positions[static_cast<std::size_t>(mesh)];
+// How far a point may be to be as good as the nearest: the right one may be farther, where a mesh is
+// quantised and its edges are hard.
+double near_of(const SurfaceMoments& own, const std::vector<int>& meshes, const FacetTree& tree,
+               double tolerance) {
+  std::vector<double> distances;
+  std::vector<FoundFacet> found;
+  const std::size_t step = 1 + vertices_of(own.meshes, meshes) / kSampled;
+  for (const int mesh : meshes) {
+    const Points& vertices = own.states[0].positions[static_cast<std::size_t>(mesh)];
+    for (std::size_t v = 0; v < vertices.size(); v += step) {
+      tree.find(vertices[v], found);
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const FoundFacet& one : found) nearest = std::min(nearest, one.distance);
+      distances.push_back(nearest);
+    }
+  }
+  if (distances.empty()) return 0;
+  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::nth_element(distances.begin(), middle, distances.end());
+  return std::min(std::max(kOfMedian * *middle, tolerance), kMaxNear * tree.size());
+}
+
+// For each vertex of a mesh, the nearest point of the other surface.
+SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
+  const FacetTree& tree = surfaces.tree;
+  const Points& vertices = surfaces.own.states[0].positions[static_cast<std::size_t>(mesh)];
   SurfaceMatch match;
   match.mesh = mesh;
   match.points.resize(vertices.size());
@@ -201,10 +314,10 @@ SurfaceMatch match_surface(const SurfaceMoments& own, int mesh, const SurfaceMom
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t v = order[i];
       if (i == begin || vertices[v] != vertices[order[i - 1]]) {
-        tree.find(vertices[v], found);
+        tree.find(vertices[v], found, surfaces.near);
         points = distinct_points(tree, vertices[v], found);
       }
-      match.points[v] = choose(points, own, mesh, v, other, tree.touching());
+      match.points[v] = choose(points, surfaces, mesh, v);
     }
   });
   return match;
@@ -229,6 +342,62 @@ void report_tangents_left_out(SceneComparison& comparison) {
   }
 }
 
+// The static data of a mesh at its nearest points: texture coordinates, colours, sides, materials.
+void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
+                     const SurfaceMatch& match) {
+  const SceneMesh& mesh = surfaces.own.meshes[static_cast<std::size_t>(match.mesh)];
+  const std::string name =
+      (match.in_second ? "the second's " : "") + label("mesh", mesh.name, match.mesh);
+  ValueLocation place{.mesh = match.mesh, .in_second = match.in_second};
+  std::map<int, std::size_t> on_mesh;  // vertices by mesh of the other
+  std::size_t behind = 0;
+  for (std::size_t v = 0; v < match.points.size(); ++v) {
+    const SurfacePoint& point = match.points[v];
+    const SceneMesh& other = mesh_of(point, surfaces.other);
+    place.vertex = static_cast<int>(v);
+    ++on_mesh[point.mesh];
+    if (lies_behind(point, surfaces.own, static_cast<std::size_t>(match.mesh), v, surfaces.other)) {
+      ++behind;
+    }
+    const auto add = [&](const auto& ours, const auto& theirs, Measure& measure) {
+      if (ours.empty() || theirs.empty()) return;
+      const auto apart = (ours[v] - value_in(point, theirs)).cwiseAbs().maxCoeff();
+      measure.add(static_cast<double>(apart), place);
+    };
+    add(mesh.texture_coordinates, other.texture_coordinates, comparison.result.texture_coordinates);
+    add(mesh.colours, other.colours, comparison.result.colours);
+  }
+  const std::size_t few = match.points.size() / kFewOf;
+  if (behind > few) {
+    comparison.say(fmt::format("{}: {} of its {} vertices are inside out: they lie on the backs of "
+                               "the other's triangles",
+                               name, behind, match.points.size()));
+  }
+  for (const auto& [index, count] : on_mesh) {
+    const SceneMesh& other = surfaces.other.meshes[static_cast<std::size_t>(index)];
+    if (count <= few) continue;
+    compare_materials(comparison, match.in_second ? other : mesh, match.in_second ? mesh : other,
+                      name);
+    if (other.visible == mesh.visible) continue;
+    comparison.say(fmt::format("{}: hidden in the {}", name,
+                               mesh.visible != match.in_second ? "second" : "first"));
+  }
+}
+
+// Matches the meshes of a group of one scene with the other's, whose facets are in the tree.
+void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bool in_second,
+                 Surfaces surfaces, int jobs) {
+  surfaces.near =
+      near_of(surfaces.own, meshes, surfaces.tree, comparison.options.tolerance.length);
+  surfaces.same_materials = same_materials(comparison, surfaces.own, surfaces.other);
+  for (const int mesh : meshes) {
+    SurfaceMatch match = match_surface(surfaces, mesh, jobs);
+    match.in_second = in_second;
+    compare_surface(comparison, surfaces, match);
+    comparison.surfaces.push_back(std::move(match));
+  }
+}
+
 }  // namespace
 
 Status match_surfaces(SceneComparison& comparison, int jobs) {
@@ -243,8 +412,10 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
     return Error("compare-value", "a scene has positions that are NaN or infinite",
                  "its nodes or keys have values that are too large");
   }
-  const SurfaceMoments a{comparison.first.meshes, first};
-  const SurfaceMoments b{comparison.second.meshes, second};
+  SurfaceMoments a{comparison.first.meshes, first};
+  SurfaceMoments b{comparison.second.meshes, second};
+  a.faces = all_faces(a);
+  b.faces = all_faces(b);
   for (const SurfaceGroup& group : comparison.groups) {
     const std::size_t first_vertices = vertices_of(a.meshes, group.first);
     const std::size_t second_vertices = vertices_of(b.meshes, group.second);
@@ -261,13 +432,8 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
     if (!first_tree || !second_tree) {
       return Error("compare-search", "Embree is not available on this machine");
     }
-    for (const int mesh : group.first) {
-      comparison.surfaces.push_back(match_surface(a, mesh, b, *second_tree, jobs));
-    }
-    for (const int mesh : group.second) {
-      comparison.surfaces.push_back(match_surface(b, mesh, a, *first_tree, jobs));
-      comparison.surfaces.back().in_second = true;
-    }
+    match_group(comparison, group.first, false, {a, b, *second_tree}, jobs);
+    match_group(comparison, group.second, true, {b, a, *first_tree}, jobs);
   }
   report_tangents_left_out(comparison);
   return {};

@@ -38,16 +38,26 @@ struct SurfaceMatch {
 struct SurfaceMoments {
   const std::vector<SceneMesh>& meshes;
   std::span<const SceneState> states;
+  // Mean normals of the triangles' front faces at the first time, [meshes][vertices], 1 long where
+  // they are flat.
+  std::vector<Points> faces{};
 };
 
-// Interpolates a value given per corner, such as positions, normals or tangents
-// ([meshes][vertices]).
+// Interpolates a value given per corner of the point's mesh: [vertices].
+template <typename Vector>
+Vector value_in(const SurfacePoint& point, std::span<const Vector> mesh) {
+  Vector sum = Vector::Zero();
+  using Number = typename Vector::Scalar;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sum += static_cast<Number>(point.shares[k]) * mesh[point.corners[k]];
+  }
+  return sum;
+}
+
+// The same for all meshes, such as positions, normals or tangents: [meshes][vertices].
 template <typename Vector>
 Vector value_at(const SurfacePoint& point, const std::vector<std::vector<Vector>>& values) {
-  const std::vector<Vector>& mesh = values[static_cast<std::size_t>(point.mesh)];
-  Vector sum = Vector::Zero();
-  for (std::size_t k = 0; k < 3; ++k) sum += point.shares[k] * mesh[point.corners[k]];
-  return sum;
+  return value_in(point, std::span<const Vector>(values[static_cast<std::size_t>(point.mesh)]));
 }
 
 }  // namespace krok::compare

@@ -75,20 +75,35 @@ void turn(const Mat3& linear, bool mirrors, Vec4& tangent) {
   if (mirrors) tangent.w() = -tangent.w();
 }
 
+Affine blended_at(const Primitive& primitive, const std::vector<Affine>& palette,
+                  std::size_t vertex) {
+  const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
+  Affine blended = Affine::Zero();
+  for (std::size_t k = vertex * per_vertex; k < (vertex + 1) * per_vertex; ++k) {
+    const auto weight = static_cast<double>(primitive.influence_weights[k]);
+    if (weight != 0) blended += weight * palette[primitive.influence_joints[k]];
+  }
+  return blended;
+}
+
 void skin(const Primitive& primitive, const std::vector<Affine>& palette, const Vertices& out) {
   auto& [positions, normals, tangents] = out;
-  const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    Affine blended = Affine::Zero();
-    for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
-      const auto weight = static_cast<double>(primitive.influence_weights[k]);
-      if (weight != 0) blended += weight * palette[primitive.influence_joints[k]];
-    }
+    const Affine blended = blended_at(primitive, palette, v);
     positions[v] = blended.leftCols<3>() * positions[v] + blended.col(3);
     if (!normals.empty()) normals[v] = blended.leftCols<3>() * normals[v];
     if (tangents.empty()) continue;
     const Mat3 linear = blended.leftCols<3>();
     turn(linear, linear.determinant() < 0, tangents[v]);
+  }
+}
+
+void fill_palette(const Skin& skin, const std::vector<Mat4>& node_to_world,
+                  std::vector<Affine>& palette) {
+  palette.resize(skin.joints.size());
+  for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+    palette[j] = (node_to_world[static_cast<std::size_t>(skin.joints[j])] * skin.inverse_binds[j])
+                     .topRows<3>();
   }
 }
 
@@ -129,6 +144,17 @@ void normalize(std::vector<Vector>& vectors) {
       normal /= length;
     }
   }
+}
+
+// The displacement of a direction that `linear` places, in lengths of the undisplaced one.
+template <typename Vector>
+Vec3f displaced(const Mat3& linear, const Shared<Vector>& directions, std::size_t vertex,
+                const Vec3f& displacement) {
+  const double length =
+      directions ? (linear * (*directions)[vertex].template head<3>().template cast<double>()).norm()
+                 : 0.0;
+  const Vec3 change = linear * displacement.cast<double>();
+  return (length > 0 ? Vec3(change / length) : change).cast<float>();
 }
 
 }  // namespace
@@ -307,19 +333,55 @@ void Evaluator::evaluate_instance(std::size_t index, Evaluation& out) const {
 
   if (node.skin >= 0 && shape.influences_per_vertex > 0) {
     // The joints alone place a skinned mesh; its own node is ignored.
-    const Skin& one = scene_->skins[static_cast<std::size_t>(node.skin)];
-    out.palette.resize(one.joints.size());
-    for (std::size_t j = 0; j < one.joints.size(); ++j) {
-      out.palette[j] =
-          (out.node_to_world[static_cast<std::size_t>(one.joints[j])] * one.inverse_binds[j])
-              .topRows<3>();
-    }
+    fill_palette(scene_->skins[static_cast<std::size_t>(node.skin)], out.node_to_world,
+                 out.palette);
     skin(shape, out.palette, vertices);
   } else {
     place(out.node_to_world[static_cast<std::size_t>(instance.node)], vertices);
   }
   normalize(vertices.normals);
   normalize(vertices.tangents);
+}
+
+int Evaluator::winding(const Instance& instance, const Evaluation& moment) const {
+  const Mat4& matrix = moment.node_to_world[static_cast<std::size_t>(instance.node)];
+  const double determinant = matrix.topLeftCorner<3, 3>().determinant();
+  return determinant > 0 ? 1 : determinant < 0 ? -1 : 0;
+}
+
+bool Evaluator::displace(const Instance& instance, std::size_t target, const Evaluation& moment,
+                         Displacements& out) const {
+  const Primitive& shape = primitive(instance);
+  const Node& node = scene_->nodes[static_cast<std::size_t>(instance.node)];
+  const Mat4& place = moment.node_to_world[static_cast<std::size_t>(instance.node)];
+  const bool skinned = node.skin >= 0 && shape.influences_per_vertex > 0;
+  const Mat3 of_node = place.topLeftCorner<3, 3>();
+  if (!skinned && of_node == Mat3::Identity()) return false;
+  std::vector<Affine> palette;
+  if (skinned) {
+    fill_palette(scene_->skins[static_cast<std::size_t>(node.skin)], moment.node_to_world, palette);
+  }
+  // Normals as evaluate_instance() turns them.
+  const Mat3 normals_of_node = cofactors_of(of_node);
+  const MorphTarget& from = shape.targets[target];
+  const auto size = [](const Shared<Vec3f>& values) { return values ? values->size() : 0; };
+  out.positions.resize(size(from.positions));
+  out.normals.resize(size(from.normals));
+  out.tangents.resize(size(from.tangents));
+  for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
+    const Mat3 linear = skinned ? Mat3(blended_at(shape, palette, v).leftCols<3>()) : of_node;
+    if (from.positions) {
+      out.positions[v] = (linear * (*from.positions)[v].cast<double>()).cast<float>();
+    }
+    if (from.normals) {
+      out.normals[v] = displaced(skinned ? linear : normals_of_node, shape.normals, v,
+                                 (*from.normals)[v]);
+    }
+    if (from.tangents) {
+      out.tangents[v] = displaced(linear, shape.tangents, v, (*from.tangents)[v]);
+    }
+  }
+  return true;
 }
 
 void Evaluator::evaluate(int animation, double time, Evaluation& out) const {

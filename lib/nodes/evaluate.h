@@ -36,6 +36,13 @@ struct Evaluation {
   std::vector<Eigen::Matrix<double, 3, 4>> palette;
 };
 
+// What a morph target at weight 1 adds to the vertices of an instance in world space, [vertices];
+// empty where the target has none.
+struct Displacements {
+  std::vector<Vec3f> positions;          // metres
+  std::vector<Vec3f> normals, tangents;  // in lengths of the undisplaced ones
+};
+
 // Evaluates one scene, which must outlive it. Const functions are thread-safe if each thread has
 // its own Evaluation (which is reused to avoid allocations).
 class Evaluator {
@@ -62,6 +69,16 @@ class Evaluator {
 
   // Same for the nodes alone: fills node_to_world and the node_ members.
   void place_nodes(int animation, double time, Evaluation& out) const;
+
+  // For an instance at a moment from place_nodes() or evaluate(): the sign of the determinant of its
+  // node's global transform; if negative, its front faces are those wound clockwise (glTF 2.0,
+  // section 3.7.4). 0 if it vanishes.
+  int winding(const Instance& instance, const Evaluation& moment) const;
+
+  // Fills `out` for a morph target of an instance at such a moment. False, without filling it, if
+  // the vertices are placed by the identity: the displacements are those of the target itself.
+  bool displace(const Instance& instance, std::size_t target, const Evaluation& moment,
+                Displacements& out) const;
 
   // All nodes, parents before children: depth first through the scene, then those outside of it.
   const std::vector<int>& order() const { return order_; }

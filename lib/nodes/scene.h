@@ -10,6 +10,7 @@
 #include "core/result.h"
 #include "math/types.h"
 #include "scene/material.h"
+#include "scene/material_parameter.h"
 
 // An imported scene: a tree of nodes with meshes, morph targets, skins, cameras and keyframe
 // animations. Its structure is that of glTF 2.0, to which other formats are mapped. Of lights
@@ -35,8 +36,11 @@ struct Node {
   int mesh = -1;
   int skin = -1;
   int camera = -1;
+  // EXT_mesh_gpu_instancing: children that have the mesh in its place, one for each instance.
+  std::vector<int> instances{};
   std::vector<double> weights;  // morph target weights; empty: those of the mesh
   bool in_scene = false;        // part of the displayed scene
+  bool visible = true;          // KHR_node_visibility of the node and of all its ancestors
   bool fixture = false;         // a light, or what a camera is aimed by: never a joint
 };
 
@@ -57,6 +61,8 @@ struct Primitive {
   // As in glTF: xyz unit, or zero if zero in the file; w, 1 or -1, is the handedness.
   Shared<Vec4f> tangents;
   Shared<Vec2f> texture_coordinates;  // the first set
+  std::vector<Shared<Vec2f>> more_texture_coordinates;  // TEXCOORD_1 and so on, null where missing
+  Shared<Vec4f> colours;                                // COLOR_0: linear red, green, blue, alpha
   // [vertices x influences_per_vertex]; joints are indices into the skin's list. 0, 4 or 8 per
   // vertex.
   int influences_per_vertex = 0;
@@ -133,8 +139,12 @@ struct Scene {
   // With unique names, those of the file if they are unique and not empty; images include their
   // bytes. Only if requested.
   std::vector<Material> materials;
+  std::vector<std::vector<MaterialParameter>> material_parameters;  // [materials]
   Space space;
   std::vector<std::string> files;  // paths of other files that were read
+  // What the file has beside that and evaluation does not show, with counts: "2 lights",
+  // "extension KHR_physics_rigid_bodies".
+  std::vector<std::string> not_shown;
   Diagnostics diagnostics;         // what was ignored or is doubtful
 };
 

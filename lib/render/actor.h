@@ -22,7 +22,8 @@ struct Surface {
   std::vector<Vec3f> normals;                    // [vertices], or none for flat shading
   std::shared_ptr<const Triangles> triangles;    // shared by the frames of a character
   std::vector<Colour> colours;                   // [vertices], or one for all of them
-  std::shared_ptr<const Paint> paint = nullptr;  // replaces the colours if set
+  // If set, the colours of vertices multiply it; one for all is replaced.
+  std::shared_ptr<const Paint> paint = nullptr;
 };
 
 // A capsule, or a ball if both ends coincide.

@@ -17,11 +17,20 @@ constexpr int kSamples = kAcross * kAcross;
 constexpr float kReach = 0.16F;        // units; max distance of surfaces that occlude
 constexpr float kShadowReach = 0.35F;  // the same for ground shadows
 constexpr float kShadow = 0.55F;
+constexpr float kBright = 0.75F;  // light above is compressed, to keep the shape of white surfaces
 
 // The rays of one of a pixel's samples; together, the samples cover all directions.
 TracedActor::Rays rays_of(int sample, int directions) {
   const int count = directions / kSamples;
   return {directions, sample * count, count};
+}
+
+// Keeps light below 1, with its hue, and unchanged up to kBright.
+Light compressed(const Light& light) {
+  const float most = light.maxCoeff();
+  if (!(most > kBright)) return light;
+  const float room = 1 - kBright;
+  return light * ((kBright + room * (1 - std::exp((kBright - most) / room))) / most);
 }
 
 // Lights fixed to the camera (right, up, towards it), so that a character is lit the same way from
@@ -52,7 +61,7 @@ class Lights {
       light +=
           lamp.strength * std::max(0.0F, hit.normal.dot(lamp.direction)) * (0.5F + 0.5F * open);
     }
-    return light * hit.colour;
+    return compressed(light * hit.colour);
   }
 
  private:

@@ -255,13 +255,15 @@ Vec3f TracedActor::normal_of(const void* ray_hit, const Sight& sight, Light& col
   const Surface& surface = actor_->surfaces[hit.geomID];
   const auto& corners = (*surface.triangles)[hit.primID];
   const std::array<float, 3> share = {1 - hit.u - hit.v, hit.u, hit.v};
-  if (surface.paint != nullptr) {
-    colour = painted(surface, hit.primID, Vec3f(share[0], share[1], share[2]), sight);
-  } else if (surface.colours.size() == 1) {
-    colour = to_light(surface.colours[0]);
+  if (surface.colours.size() == 1) {
+    colour = surface.paint != nullptr ? Light(Light::Ones()) : to_light(surface.colours[0]);
   } else {
     colour = Light::Zero();
     for (std::size_t k = 0; k < 3; ++k) colour += share[k] * to_light(surface.colours[corners[k]]);
+  }
+  if (surface.paint != nullptr) {
+    const Vec3f shares(share[0], share[1], share[2]);
+    colour = colour.cwiseProduct(painted(surface, hit.primID, shares, sight));
   }
   if (surface.normals.empty()) return flat;
   Vec3f smooth = Vec3f::Zero();

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <optional>
 
@@ -37,11 +38,19 @@ struct Opened {
 Status Opened::read_gltf_scene(const InputFile& file, ToolContext& context) {
   auto read = io::open_scene(file, context, true);
   if (!read) return std::move(read).error();
-  context.diagnose(read->diagnostics);
+  for (const Diagnostic& diagnostic : read->diagnostics) {
+    // What a Material leaves out is compared by its parameters.
+    if (diagnostic.code != "gltf-material") context.diagnose(diagnostic);
+  }
   asset = std::move(*read);
   auto made = scene_of(*asset);
   if (!made) return std::move(made).error();
   scene = std::move(*made);
+  if (!scene.not_compared.empty()) {
+    context.warn("diff-not-compared",
+                 fmt::format("{}: not compared: {}", base_name(file.path()),
+                             fmt::join(scene.not_compared, ", ")));
+  }
   return {};
 }
 
@@ -80,10 +89,14 @@ PlaceNames names_of(const compare::Scene& first, const compare::Scene& second) {
   names.joints = first.joint_names;
   for (const compare::SceneMesh& mesh : first.meshes) {
     names.meshes.push_back(mesh.name);
+    names.first_files.emplace_back(mesh.node_name, mesh.mesh_name);
     auto& targets = names.targets.emplace_back();
     for (const auto& target : mesh.targets) targets.push_back(target.name);
   }
-  for (const compare::SceneMesh& mesh : second.meshes) names.second_meshes.push_back(mesh.name);
+  for (const compare::SceneMesh& mesh : second.meshes) {
+    names.second_meshes.push_back(mesh.name);
+    names.second_files.emplace_back(mesh.node_name, mesh.mesh_name);
+  }
   for (const auto& animation : first.animations) names.animations.push_back(animation.name);
   return names;
 }
@@ -121,6 +134,7 @@ Outcome outcome_of(const Opened& first, const Opened& second,
   outcome.add_row("morph targets' normals", Unit::ratio, found.target_normals);
   outcome.add_row("morph targets' tangents", Unit::ratio, found.target_tangents);
   outcome.add_row("texture coordinates", Unit::ratio, found.texture_coordinates);
+  outcome.add_row("vertex colours", Unit::ratio, found.colours);
   outcome.add_row("weights", Unit::ratio, found.weights);
   // Key times are rounded to float; ignore such differences.
   if (found.times.largest > 1e-6) outcome.add_row("key times", Unit::time, found.times);

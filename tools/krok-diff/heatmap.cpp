@@ -115,9 +115,10 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
   }
   std::vector<gltf::ColouredMesh> meshes;
   for (std::size_t mesh = 0; mesh < first.meshes.size(); ++mesh) {
-    const std::string& name = first.meshes[mesh].name;
-    meshes.push_back({name.empty() ? fmt::format("mesh {}", mesh) : name, colours[mesh].positions,
-                      colours[mesh].normals, colours[mesh].colours, first.meshes[mesh].triangles});
+    const compare::SceneMesh& from = first.meshes[mesh];
+    const std::string name = from.name.empty() ? fmt::format("mesh {}", mesh) : from.name;
+    meshes.push_back({name, colours[mesh].positions, colours[mesh].normals, colours[mesh].colours,
+                      from.triangles, from.mesh_name});
   }
   const std::string legend = legend_of(scale, found.positions.within(), some_not_compared);
   gltf::WriteOptions options;

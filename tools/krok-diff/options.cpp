@@ -30,10 +30,6 @@ Result<Options> parse(const Arguments& arguments) {
   options.tolerance = *tolerance;
   options.matching = arguments.tolerance.matching;
   options.materials = arguments.tolerance.materials;
-  if (options.materials && options.matching == compare::Matching::nearest) {
-    return Error("usage", "--materials compares parts, which --match nearest does not pair",
-                 "compare twice: materials with --match name, positions with --match nearest");
-  }
   options.sheet = arguments.sheet;
   options.plot = arguments.plot;
   options.heatmap = arguments.heatmap;

@@ -86,7 +86,8 @@ std::string to_text(const compare::ValueLocation& place, const PlaceNames& names
     parts.push_back(named("animation", names.animations, place.animation));
   }
   if (place.frame >= 0) {
-    parts.push_back(fmt::format("frame {} ({} s)", place.frame, readable(place.time, 4)));
+    parts.push_back(fmt::format("{}frame {} ({} s)", place.after_frame ? "after " : "", place.frame,
+                                readable(place.time, 4)));
   }
   return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -100,12 +101,18 @@ Json to_json(const compare::ValueLocation& place, const PlaceNames& names) {
   };
   if (place.in_second) json["in"] = "second";
   add("mesh", place.mesh, name_at(mesh_names(place, names), place.mesh));
+  if (place.mesh >= 0) {
+    const auto& files = place.in_second ? names.second_files : names.first_files;
+    const auto i = static_cast<std::size_t>(place.mesh);
+    if (i < files.size() && !files[i].first.empty()) json["node_name"] = files[i].first;
+    if (i < files.size() && !files[i].second.empty()) json["mesh_name"] = files[i].second;
+  }
   if (place.vertex >= 0) json["vertex"] = place.vertex;
   add("target", place.target, name_at(target_names(names, place.mesh), place.target));
   add("joint", place.joint, name_at(names.joints, place.joint));
   add("animation", place.animation, name_at(names.animations, place.animation));
   if (place.frame >= 0) {
-    json["frame"] = place.frame;
+    json[place.after_frame ? "after_frame" : "frame"] = place.frame;
     json["time"] = place.time;
   }
   return json;
@@ -125,6 +132,7 @@ std::string to_text(const Row& row, const PlaceNames& names) {
       fmt::format("{}: largest {} at {}; RMS {}, 95 % {}", row.what,
                   in_unit(measure.largest, row.unit), to_text(measure.where, names),
                   in_unit(measure.rms(), row.unit), in_unit(measure.percentile(0.95), row.unit));
+  if (std::isinf(measure.tolerance)) return text + "; not counted";
   text += measure.over == 0 ? fmt::format("; within in all {}", grouped(measure.count))
                             : fmt::format("; over tolerance in {} of {}", grouped(measure.over),
                                           grouped(measure.count));

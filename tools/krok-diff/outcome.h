@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "compare/measure.h"
@@ -30,6 +31,8 @@ struct Row {
 struct PlaceNames {
   std::vector<std::string> joints, meshes, animations;
   std::vector<std::string> second_meshes;         // for locations in the second
+  // Of the meshes, as the files name them: of the node, of the mesh.
+  std::vector<std::pair<std::string, std::string>> first_files, second_files;
   std::vector<std::vector<std::string>> targets;  // [meshes]
 };
 

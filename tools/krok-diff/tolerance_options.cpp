@@ -79,7 +79,7 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) 
              "How to match meshes and joints: order, by their index in the file; name, by name, "
              "reporting those that only one has; auto, by name if all names are unique and the "
              "same, else by index; nearest, each vertex with the nearest point of the other "
-             "surface, for meshes with different vertices, triangles or parts",
+             "surface, for meshes with different vertices, triangles or parts; skin weights and morph targets are then compared by their effect only",
              "HOW", "auto");
   command
       .add_option("--tolerance LENGTH", arguments.length,
@@ -108,8 +108,8 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) 
                   "motions with different rates: 1ms, 0.02s")
       .default_str(arguments.times);
   command.add_flag("--materials", arguments.materials,
-                   "Count different materials, colours or textures as a difference; by default "
-                   "they are only reported; for glTF");
+                   "Count different materials, colours, textures, vertex colours or unused texture "
+                   "coordinates as a difference; by default they are only reported; for glTF");
 }
 
 Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments) {

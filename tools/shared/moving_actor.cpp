@@ -109,7 +109,7 @@ MovingActor actor_of(const std::string& path, Clip clip, const Body& body, SkinM
 // A node scene, drawn as its meshes or as its joints.
 class SceneActor {
  public:
-  // Textured; without images in its materials, in the default body colour.
+  // Textured or with vertex colours; without both, in the default body colour.
   static Result<std::shared_ptr<const SceneActor>> create(nodes::Scene scene, bool bones,
                                                           const DecodedImages& images) {
     auto actor = std::make_shared<SceneActor>(std::move(scene));
@@ -194,13 +194,15 @@ class SceneActor {
       result.normals.push_back(normal.cast<float>());
     }
     result.triangles = triangles_[instance];
-    result.colours = {looks_[instance]->colour};
+    result.colours = vertex_colours_[instance];
+    if (result.colours.empty()) result.colours = {looks_[instance]->colour};
     result.paint = looks_[instance]->paint;
     return result;
   }
 
   void set_looks(const DecodedImages& images) {
     bool painted = false, drawn = false;
+    vertex_colours_.resize(triangles_.size());
     for (const nodes::Instance& instance : evaluator_->instances()) {
       const nodes::Primitive& primitive = evaluator_->primitive(instance);
       static const Material kUsual;
@@ -209,6 +211,15 @@ class SceneActor {
       looks_.push_back(look_of(material, primitive.texture_coordinates, images));
       drawn = drawn || (looks_.back() && !primitive.triangles.empty());
       painted = painted || (looks_.back() && looks_.back()->paint != nullptr);
+      if (primitive.colours == nullptr || !looks_.back()) continue;
+      painted = true;
+      // A texture has the base colour as its factor.
+      const Vec3f factor = looks_.back()->paint != nullptr ? Vec3f(Vec3f::Ones())
+                                                           : Vec3f(material.base_color.head<3>());
+      for (const Vec4f& colour : *primitive.colours) {
+        vertex_colours_[looks_.size() - 1].push_back(
+            render::to_colour(factor.cwiseProduct(colour.head<3>())));
+      }
     }
     if (!painted || !drawn) looks_.assign(triangles_.size(), SurfaceLook{kBodyColour, nullptr});
   }
@@ -237,6 +248,7 @@ class SceneActor {
   std::unique_ptr<nodes::Evaluator> evaluator_;
   std::vector<std::shared_ptr<const render::Triangles>> triangles_;  // [instances]
   std::vector<std::optional<SurfaceLook>> looks_;  // [instances]; empty: not drawn
+  std::vector<std::vector<render::Colour>> vertex_colours_;  // [instances][vertices] or none
   BoneStyle style_;
   bool bones_ = false;
   double duration_ = 0;
@@ -262,11 +274,16 @@ struct Read {
   DecodedImages images;                       // of all of them
 };
 
-// Warnings about materials matter only if one has an image; otherwise materials are not drawn.
+// Warnings about materials matter only if they are drawn: with images or vertex colours.
 void report_scene(const nodes::Scene& scene, ToolContext& context) {
+  const auto coloured = [](const nodes::Mesh& mesh) {
+    return std::ranges::any_of(mesh.primitives, [](const nodes::Primitive& primitive) {
+      return primitive.colours != nullptr;
+    });
+  };
   const bool pictured = std::ranges::any_of(scene.materials, [](const Material& material) {
     return static_cast<bool>(material.base_color_texture);
-  });
+  }) || std::ranges::any_of(scene.meshes, coloured);
   for (const Diagnostic& diagnostic : scene.diagnostics) {
     if (pictured || diagnostic.code != "gltf-material") context.diagnose(diagnostic);
   }

@@ -62,6 +62,8 @@ TEST_F(KrokDiffHeatmap, ColoursTheVertexThatMovedWhereItMovedMost) {
       << "the legend is said";
   const Glb heat = glb("heat.glb");
   EXPECT_THAT(red_vertices(heat), ElementsAre(2));
+  EXPECT_EQ(heat.json["nodes"][0]["name"], "Body");
+  EXPECT_EQ(heat.json["meshes"][0]["name"], "Square");
   // The rig as it stands at its last key, where corner 2 is at (0, 2, 0).
   const auto& attributes = heat.json["meshes"][0]["primitives"][0]["attributes"];
   const auto positions = heat.values<float>(attributes["POSITION"]);

@@ -106,20 +106,42 @@ TEST_F(KrokDiffMatching, WhatDiffersBetweenKeysIsFound) {
   for (const char* other : {"steps.glb", "spline.glb"}) {
     const auto done = diff({"linear.glb", other});
     EXPECT_EQ(done.exit_code, 1) << other << done.out;
-    EXPECT_THAT(done.out, HasSubstr("only the second has steps or splines between keys"));
+    EXPECT_THAT(done.out, HasSubstr("linear interpolation in the first, "));
     EXPECT_EQ(diff({other, other}).exit_code, 0);
   }
-  // From the last key to just before the next, 45 degrees on: at three quarters 2 sin(33.75 / 2).
+  // From the last key to just before the next, 45 degrees on.
   const auto report = result_of({"linear.glb", "steps.glb"});
-  EXPECT_NEAR(report["measures"][0]["largest"].get<double>(), 2 * std::sin(0.375 * kPi / 4), 1e-3);
+  EXPECT_NEAR(report["measures"][0]["largest"].get<double>(), 2 * std::sin(kPi / 8), 1e-5);
 }
 
-// An option that would have no effect is refused: the same materials would be claimed unseen.
-TEST_F(KrokDiffMatching, NearestPointsAndMaterialsExcludeEachOther) {
-  write("golden.glb", baked());
-  const auto done = diff({"golden.glb", "golden.glb", "--match", "nearest", "--materials"});
-  EXPECT_EQ(done.exit_code, 2);
-  EXPECT_THAT(done.err, HasSubstr("--match nearest"));
+// An option is never skipped: with nearest points, materials are those of the points.
+TEST_F(KrokDiffMatching, MaterialsOfNearestPointsAreCompared) {
+  const auto two = [](double metallic) {
+    test::GlbBuilder builder = test::square();
+    builder.json["materials"] = {{{"pbrMetallicRoughness", {{"metallicFactor", 0.5}}}},
+                                 {{"pbrMetallicRoughness", {{"metallicFactor", metallic}}}}};
+    auto& primitives = builder.json["meshes"][0]["primitives"];
+    primitives[0]["material"] = 0;
+    primitives.push_back(primitives[0]);
+    primitives[1]["material"] = 1;
+    // Above the first.
+    std::vector<float> positions = test::square_positions();
+    for (std::size_t v = 0; v < 4; ++v) positions[3 * v + 2] = 1;
+    primitives[1]["attributes"]["POSITION"] = builder.add(positions, "VEC3");
+    return builder;
+  };
+  test::GlbBuilder swapped = two(0.25);
+  auto& primitives = swapped.json["meshes"][0]["primitives"];
+  std::swap(primitives[0], primitives[1]);
+  write("a.glb", two(0.25));
+  write("b.glb", swapped);
+  write("c.glb", two(0.75));
+  EXPECT_EQ(diff({"a.glb", "b.glb", "--match", "nearest", "--materials"}).exit_code, 0);
+  const auto done = diff({"a.glb", "c.glb", "--match", "nearest", "--materials"});
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_THAT(done.out, HasSubstr("differs: mesh Body, primitive 1, material: metallic 0.25 and "
+                                  "0.75"));
+  EXPECT_EQ(diff({"a.glb", "c.glb", "--match", "nearest"}).exit_code, 0);
 }
 
 TEST_F(KrokDiffMatching, AVertexMovedByATenthOfAMillimetreInFrame37Of600IsFoundAndNamed) {

@@ -115,6 +115,53 @@ TEST_F(PlotTexture, AFactorDarkensTheImage) {
   EXPECT_NEAR(dark.at(0.25, 0.75).red, 0.54 * whole.at(0.25, 0.75).red, 8);
 }
 
+// The square with a colour at each vertex and no image: as krok-diff --heatmap writes.
+TEST_F(PlotTexture, VertexColoursAreShown) {
+  GlbBuilder builder = rig();
+  builder.json.erase("animations");
+  // Red below, blue above.
+  const std::vector<float> colours = {1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1};
+  builder.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      builder.add(colours, "VEC3");
+  const Shot plain = shot(put_glb(builder));
+  const render::Colour below = plain.at(0.5, 0.1), above = plain.at(0.5, 0.9);
+  EXPECT_GT(below.red, 2 * below.blue);
+  EXPECT_GT(above.blue, 2 * above.red);
+  EXPECT_LT(below.green + above.green, 20);
+  // With an image, they multiply it: only what is red of it is left.
+  GlbBuilder textured = painted(png());
+  textured.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] =
+      textured.add(std::vector<float>{1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0}, "VEC3");
+  const Shot both = shot(put_glb(textured));
+  EXPECT_GT(both.at(0.25, 0.75).red, 150);
+  EXPECT_LT(both.at(0.75, 0.75).green, 20);
+  EXPECT_GT(both.at(0.75, 0.25).red, 150);
+  EXPECT_LT(both.at(0.75, 0.25).green + both.at(0.75, 0.25).blue, 20);
+}
+
+// White surfaces with the normals of a ball: towards the light, towards the viewer, away to the
+// right. Each is darker than the one before, and none is the white of paper, where the shape would
+// be lost.
+TEST_F(PlotTexture, WhiteSurfacesKeepTheirShape) {
+  std::vector<int> greys;
+  for (const Vec3f& normal : {Vec3f(-0.464F, 0.649F, 0.603F), Vec3f(0, 0, 1),
+                              Vec3f(0.5F, 0, 0.866F), Vec3f(0.866F, 0, 0.5F)}) {
+    GlbBuilder builder = rig();
+    builder.json.erase("animations");
+    auto& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+    std::vector<float> normals;
+    for (int v = 0; v < 4; ++v) {
+      normals.insert(normals.end(), {normal.x(), normal.y(), normal.z()});
+    }
+    attributes["NORMAL"] = builder.add(normals, "VEC3");
+    attributes["COLOR_0"] = builder.add(std::vector<float>(12, 1.0F), "VEC3");
+    greys.push_back(shot(put_glb(builder)).at(0.5, 0.5).green);
+  }
+  EXPECT_LT(greys[0], 254);
+  EXPECT_GT(greys[3], 150);
+  for (std::size_t i = 1; i < greys.size(); ++i) EXPECT_LT(greys[i], greys[i - 1]) << i;
+}
+
 TEST_F(PlotTexture, FilesWithoutImagesHaveTheColourOfBodies) {
   GlbBuilder builder = painted(png());
   builder.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 1, 0, 1}}};

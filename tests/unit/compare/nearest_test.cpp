@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -309,6 +310,65 @@ TEST(Nearest, NormalsTellEdgesApart) {
   const SceneDifference found = compare_by_place(scene_of(edge, fold(0)), scene_of(other, fold(3)));
   EXPECT_TRUE(found.same());
   EXPECT_GT(found.normals.count, 0);
+}
+
+// A cube of split vertices, and the same with each vertex moved by up to `off`, the faces in reverse
+// order: what quantising and reordering do.
+Scene cube(double off, bool other) {
+  static const auto triangles = [] {
+    std::array<std::vector<Triangle>, 2> lists;
+    for (std::uint32_t face = 0; face < 6; ++face) {
+      const std::uint32_t v = 4 * face;
+      lists[0].push_back({v, v + 1, v + 2});
+      lists[0].push_back({v, v + 2, v + 3});
+    }
+    lists[1].assign(lists[0].rbegin(), lists[0].rend());
+    return lists;
+  }();
+  std::vector<Vec3> positions, normals;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-off, off);
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2;
+    const double side = face % 2 == 0 ? 1 : -1;
+    for (const auto& [x, y] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+      Vec3 place = Vec3::Zero(), normal = Vec3::Zero();
+      place[axis] = side;
+      place[(axis + 1) % 3] = side * x;
+      place[(axis + 2) % 3] = y;
+      normal[axis] = side;
+      positions.push_back(place + Vec3(shift(random), shift(random), shift(random)));
+      normals.push_back(normal);
+    }
+  }
+  Scene scene;
+  SceneMesh mesh;
+  mesh.vertex_count = positions.size();
+  mesh.has_normals = true;
+  mesh.triangles = triangles[other ? 1 : 0];
+  scene.meshes.push_back(mesh);
+  scene.evaluate = [positions, normals](int, double, SceneState& state) {
+    state.positions = {positions};
+    state.normals = {normals};
+  };
+  return scene;
+}
+
+// Would fail if a vertex took the normal of the face that happens to be nearest by a hair. The shift
+// is within the tolerance of 0.1 mm, or beyond that of 0.01 mm, where the normals still fit.
+TEST(Nearest, NormalsAtHardEdgesAreThoseOfTheRightFace) {
+  for (const double tolerance : {1e-4, 1e-5}) {
+    Progress progress;
+    SceneOptions options;
+    options.matching = Matching::nearest;
+    options.tolerance.length = tolerance;
+    const auto found = difference(cube(0, false), cube(5e-5, true), options, 1, progress);
+    ASSERT_TRUE(found.ok());
+    EXPECT_LT(found->normals.largest, 1e-6) << tolerance;
+    EXPECT_LT(found->positions.largest, 1e-4);
+    EXPECT_EQ(found->positions.within(), tolerance > 5e-5);
+    EXPECT_TRUE(found->structure.empty());
+  }
 }
 
 TEST(Nearest, APointCloudIsHeldAgainstASurface) {

@@ -146,7 +146,7 @@ TEST(SceneDifference, SaysWhatDiffersInStructure) {
   const std::vector<Triangle> turned = {{0, 2, 1}};
   other.meshes[0].triangles = turned;
   EXPECT_EQ(compare_scenes(moving_triangle(), other).structure.at(0),
-            "mesh Body: triangle 0 is (0, 1, 2) in the first and (0, 2, 1) in the second");
+            "mesh Body: inside out in the second: its triangles are wound the other way");
   other = moving_triangle();
   other.joint_names = {"Pelvis"};
   EXPECT_NE(
