@@ -302,9 +302,9 @@ Result<Shared<Vec3f>> Accessors::vectors3(int index) {
 
 Result<Shared<Vec4f>> Accessors::colours(int index) {
   if (const auto known = colours_.find(index); known != colours_.end()) return known->second;
-  const bool has_alpha = index >= 0 && static_cast<std::size_t>(index) < model_.accessors.size() &&
-                         model_.accessors[static_cast<std::size_t>(index)].type ==
-                             TINYGLTF_TYPE_VEC4;
+  const bool has_alpha =
+      index >= 0 && static_cast<std::size_t>(index) < model_.accessors.size() &&
+      model_.accessors[static_cast<std::size_t>(index)].type == TINYGLTF_TYPE_VEC4;
   std::vector<Vec4f> colours;
   if (has_alpha) {
     const auto read = vectors4(index);

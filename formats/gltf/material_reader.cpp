@@ -108,9 +108,11 @@ class MaterialReader {
   // What Material has no members for: texture coordinate sets, texture transforms, extensions.
   void read_parameters(const Json& json) {
     const Json& surface = object_in(json, "pbrMetallicRoughness");
-    for (const auto& [holder, name] :
-         {std::pair(&surface, "baseColorTexture"), {&surface, "metallicRoughnessTexture"},
-          {&json, "normalTexture"}, {&json, "occlusionTexture"}, {&json, "emissiveTexture"}}) {
+    for (const auto& [holder, name] : {std::pair(&surface, "baseColorTexture"),
+                                       {&surface, "metallicRoughnessTexture"},
+                                       {&json, "normalTexture"},
+                                       {&json, "occlusionTexture"},
+                                       {&json, "emissiveTexture"}}) {
       const Json& info = object_in(*holder, name);
       if (set_of(info) != 0) parameters_.push_back({name, {}, texture_of(info)});
       read_coordinates(name, info);

@@ -75,8 +75,9 @@ Status read_more(const tinygltf::Primitive& source, Accessors& accessors, const 
     if (accessor == -1) continue;
     auto read = accessors.vectors2(accessor);
     if (!read || (*read)->size() != vertices) {
-      left_out(what, read ? fmt::format("it has {} values for {} vertices", (*read)->size(), vertices)
-                          : read.error().message);
+      left_out(what,
+               read ? fmt::format("it has {} values for {} vertices", (*read)->size(), vertices)
+                    : read.error().message);
       continue;
     }
     primitive.more_texture_coordinates.resize(static_cast<std::size_t>(set));
@@ -86,9 +87,9 @@ Status read_more(const tinygltf::Primitive& source, Accessors& accessors, const 
   if (accessor == -1) return {};
   auto colours = accessors.colours(accessor);
   if (!colours || (*colours)->size() != vertices) {
-    left_out("COLOR_0", colours ? fmt::format("it has {} values for {} vertices",
-                                              (*colours)->size(), vertices)
-                                : colours.error().message);
+    left_out("COLOR_0",
+             colours ? fmt::format("it has {} values for {} vertices", (*colours)->size(), vertices)
+                     : colours.error().message);
     return {};
   }
   primitive.colours = std::move(*colours);

@@ -39,7 +39,7 @@ struct ValueLocation {
   int frame = -1;
   bool after_frame = false;  // the time is between that frame and the next
   double time = 0;           // seconds, if frame is set
-  bool in_second = false;  // mesh and vertex are in the second, not the first
+  bool in_second = false;    // mesh and vertex are in the second, not the first
 };
 
 // Accumulates differences of one quantity. Adding in the same order is bit-reproducible; of equal

@@ -156,8 +156,7 @@ void FacetTree::find(const Vec3& point, std::vector<FoundFacet>& found, double n
   query.time = 0;
   query.radius = std::numeric_limits<float>::infinity();
   rtcPointQuery(embree_->scene, &query, &context, look_at, &search);
-  std::erase_if(found,
-                [&](const FoundFacet& one) { return one.distance > search.reach(); });
+  std::erase_if(found, [&](const FoundFacet& one) { return one.distance > search.reach(); });
   std::sort(found.begin(), found.end(),
             [](const FoundFacet& a, const FoundFacet& b) { return a.facet < b.facet; });
 }

@@ -29,7 +29,7 @@ struct SceneMesh {
   bool has_tangents = false;
   bool only_points = false;  // the file has only positions; missing attributes are not a difference
   std::span<const Triangle> triangles;
-  std::span<const Vec2f> texture_coordinates;  // [vertices] or none
+  std::span<const Vec2f> texture_coordinates;                      // [vertices] or none
   std::vector<std::span<const Vec2f>> more_texture_coordinates{};  // sets 1 and so on, or empty
   std::span<const Vec4f> colours{};  // [vertices] or none: linear red, green, blue, alpha
   bool visible = true;
@@ -87,9 +87,9 @@ struct Scene {
 
   struct Animation {
     std::string name;
-    std::vector<double> key_times;   // seconds, rising
-    std::vector<KeyGap> gaps{};      // [key_times - 1], or empty if all are straight
-    std::string interpolation{};     // "linear and step"; empty if unknown or nothing changes
+    std::vector<double> key_times;  // seconds, rising
+    std::vector<KeyGap> gaps{};     // [key_times - 1], or empty if all are straight
+    std::string interpolation{};    // "linear and step"; empty if unknown or nothing changes
   };
   std::vector<Animation> animations;
 

@@ -36,7 +36,7 @@ struct SceneComparison {
   std::vector<SurfaceGroup> groups{};    // meshes compared by nearest points
   std::vector<SurfaceMatch> surfaces{};  // of the groups, in both directions
   std::vector<Moment> moments{};
-  Placement first_placement{}, second_placement{};  // at the first of the moments
+  Placement first_placement{}, second_placement{};                    // at the first of the moments
   std::set<std::pair<const Material*, const Material*>> materials{};  // already compared
 
   void say(std::string sentence) { result.structure.push_back(std::move(sentence)); }
@@ -58,8 +58,8 @@ std::vector<std::string> names_of(const std::vector<Item>& items) {
 void match_scene_joints(SceneComparison& comparison);
 void match_scene_meshes(SceneComparison& comparison);
 
-// Compares static data of `meshes`: triangles, texture coordinates, colours, morph targets, weights,
-// materials.
+// Compares static data of `meshes`: triangles, texture coordinates, colours, morph targets,
+// weights, materials.
 void compare_shapes(SceneComparison& comparison);
 
 // Reports what differs in the materials of two meshes, once for each pair of materials.

@@ -24,8 +24,7 @@ void set_tolerances(const SceneOptions& options, SceneDifference& result) {
 void place_meshes(SceneComparison& comparison) {
   const Moment& moment = comparison.moments.front();
   if (comparison.first.place) {
-    comparison.first_placement =
-        comparison.first.place(moment.first_animation, moment.first_time);
+    comparison.first_placement = comparison.first.place(moment.first_animation, moment.first_time);
   }
   if (comparison.second.place) {
     comparison.second_placement =

@@ -65,8 +65,8 @@ struct SceneDifference {
   Measure texture_coordinates;  // max of u and v, of all sets that both have
   Measure colours;  // max of the channels of vertex colours; within any tolerance unless
                     // SceneOptions::materials is set
-  Measure weights;              // skin weights, where both have a skin
-  Measure times;                // seconds: key times matched to each other
+  Measure weights;  // skin weights, where both have a skin
+  Measure times;    // seconds: key times matched to each other
 
   std::vector<MomentDifference> moments;  // in order of comparison
   std::vector<PartDifference> parts;      // of the meshes compared
@@ -87,8 +87,9 @@ struct SceneDifference {
 // only one mesh has are a difference of structure; so are tangents if both materials have a normal
 // texture, and further texture coordinates if a texture uses them, otherwise they are a note.
 // Different numbers of morph targets are a note if one mesh is a bake of the other's motion. Two
-// meshes with the same triangles differ if one shows their backs. Deterministic for any number of jobs. Codes: compare-value if
-// a scene has values that are not finite, compare-too-long for more than a million moments.
+// meshes with the same triangles differ if one shows their backs. Deterministic for any number of
+// jobs. Codes: compare-value if a scene has values that are not finite, compare-too-long for more
+// than a million moments.
 //
 // With Matching::nearest, all meshes of a scene are one surface if they cannot be matched by name.
 // Nearest points are found at the first time compared; after that each moves with its triangle. If

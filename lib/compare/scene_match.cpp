@@ -58,8 +58,9 @@ std::vector<SurfaceGroup> groups_of(const std::vector<SceneMesh>& first,
   std::vector<SurfaceGroup> groups;
   if (first.empty() || second.empty()) return groups;
   const auto firsts = by_name(first), seconds = by_name(second);
-  const bool same = std::ranges::equal(firsts, seconds, {}, [](const auto& one) { return one.first; },
-                                       [](const auto& one) { return one.first; });
+  const bool same = std::ranges::equal(
+      firsts, seconds, {}, [](const auto& one) { return one.first; },
+      [](const auto& one) { return one.first; });
   if (same && !firsts.contains("")) {
     for (const auto& [name, meshes] : firsts) groups.push_back({meshes, seconds.at(name)});
     return groups;

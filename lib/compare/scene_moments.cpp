@@ -13,7 +13,7 @@ namespace krok::compare {
 namespace {
 
 constexpr std::size_t kMaxMoments = 1'000'000;
-constexpr double kRounding = 1e-4;  // seconds
+constexpr double kRounding = 1e-4;    // seconds
 constexpr double kBeforeStep = 1e-6;  // of a gap: the time before its end that still shows it
 
 struct CommonTime {
@@ -77,8 +77,8 @@ void add_between(SceneComparison& comparison, const CommonTime& next) {
   const auto animation = [](const Scene& scene, int index) -> const Scene::Animation& {
     return scene.animations[static_cast<std::size_t>(index)];
   };
-  const KeyGap a = gap_between(animation(comparison.first, last.first_animation), last.first_time,
-                               next.first);
+  const KeyGap a =
+      gap_between(animation(comparison.first, last.first_animation), last.first_time, next.first);
   const KeyGap b = gap_between(animation(comparison.second, last.second_animation),
                                last.second_time, next.second);
   const auto add = [&](double share) {
@@ -148,6 +148,10 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
   return {};
 }
 
+bool all_named(const std::vector<std::string>& names) {
+  return std::ranges::none_of(names, [](const std::string& name) { return name.empty(); });
+}
+
 }  // namespace
 
 Status choose_moments(SceneComparison& comparison) {
@@ -160,13 +164,29 @@ Status choose_moments(SceneComparison& comparison) {
                                 comparison.first.only_still ? "second" : "first"));
     return {};
   }
+  const auto first_names = names_of(first), second_names = names_of(second);
+  ListMatch match = match_lists(first_names, second_names, Matching::automatic);
   if (first.size() != second.size()) {
-    comparison.say(fmt::format("{} in the first, {} in the second",
-                               counted(static_cast<long long>(first.size()), "animation"),
-                               second.size()));
+    std::string text =
+        fmt::format("{} in the first, {} in the second",
+                    counted(static_cast<long long>(first.size()), "animation"), second.size());
+    // Where one has lost some, the others keep their names rather than their places.
+    const ListMatch named = match_lists(first_names, second_names, Matching::name);
+    const std::size_t fewer = std::min(first.size(), second.size());
+    if (named.pairs.size() == fewer && all_named(first_names) && all_named(second_names)) {
+      match = named;
+      const bool in_first = first.size() > second.size();
+      const int missing = in_first ? named.only_first.front() : named.only_second.front();
+      text += fmt::format(
+          "; {} is only in the {}",
+          label("animation",
+                (in_first ? first_names : second_names)[static_cast<std::size_t>(missing)],
+                missing),
+          in_first ? "first" : "second");
+    }
+    comparison.say(std::move(text));
   }
-  for (const auto& [i, j] :
-       match_lists(names_of(first), names_of(second), Matching::automatic).pairs) {
+  for (const auto& [i, j] : match.pairs) {
     if (auto added = add_moments(comparison, i, j); !added) return added;
   }
   if (comparison.moments.empty()) comparison.moments.push_back({});

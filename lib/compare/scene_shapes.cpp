@@ -12,10 +12,9 @@ namespace {
 
 bool share_a_name(const SceneMesh& a, const SceneMesh& b) {
   return std::ranges::any_of(a.targets, [&](const SceneMesh::Target& one) {
-    return !one.name.empty() &&
-           std::ranges::any_of(b.targets, [&](const SceneMesh::Target& other) {
-             return other.name == one.name;
-           });
+    return !one.name.empty() && std::ranges::any_of(b.targets, [&](const SceneMesh::Target& other) {
+      return other.name == one.name;
+    });
   });
 }
 
@@ -163,8 +162,8 @@ void compare_triangles(SceneComparison& comparison, std::pair<int, int> meshes,
         "mirrors",
         name));
   } else {
-    comparison.say(fmt::format("{}: {} (with the second's reversed, as only one of the nodes mirrors)",
-                               name, text));
+    comparison.say(fmt::format(
+        "{}: {} (with the second's reversed, as only one of the nodes mirrors)", name, text));
   }
 }
 
@@ -179,8 +178,7 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
   if (a.material != nullptr && b.material != nullptr) {
     const double tolerance = comparison.options.tolerance.ratio;
     auto found = differences(*a.material, *b.material, tolerance);
-    for (std::string& one :
-         differences(a.material_parameters, b.material_parameters, tolerance)) {
+    for (std::string& one : differences(a.material_parameters, b.material_parameters, tolerance)) {
       found.push_back(std::move(one));
     }
     text = fmt::format("{}", fmt::join(found, "; "));

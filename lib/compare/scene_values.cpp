@@ -19,7 +19,8 @@ struct Part {
   int mesh = -1;
   bool in_second = false;
   int other = -1;
-  const std::vector<SurfacePoint>* points = nullptr;
+  const std::vector<SurfacePoint>* points = nullptr;  // for positions
+  const std::vector<SurfacePoint>* fits = nullptr;    // for normals and tangents
   // Whether both have them; for a surface, whether all matched points do.
   bool normals = true;
   bool tangents = false;
@@ -55,18 +56,18 @@ std::vector<Part> parts_of(const SceneComparison& comparison) {
   for (const auto& [i, j] : comparison.meshes) {
     const bool tangents =
         mesh(comparison.first, i).has_tangents && mesh(comparison.second, j).has_tangents;
-    parts.push_back({i, false, j, nullptr, true, tangents});
+    parts.push_back({i, false, j, nullptr, nullptr, true, tangents});
   }
   for (const SurfaceMatch& one : comparison.surfaces) {
     const Scene& own = one.in_second ? comparison.second : comparison.first;
     const Scene& other = one.in_second ? comparison.first : comparison.second;
     const auto all_have = [&](bool SceneMesh::*what) {
-      return std::all_of(one.points.begin(), one.points.end(),
+      return std::all_of(one.fits.begin(), one.fits.end(),
                          [&](const SurfacePoint& point) { return mesh(other, point.mesh).*what; });
     };
     const bool tangents = mesh(own, one.mesh).has_tangents && all_have(&SceneMesh::has_tangents);
-    parts.push_back(
-        {one.mesh, one.in_second, -1, &one.points, all_have(&SceneMesh::has_normals), tangents});
+    parts.push_back({one.mesh, one.in_second, -1, &one.points, &one.fits,
+                     all_have(&SceneMesh::has_normals), tangents});
   }
   return parts;
 }
@@ -111,8 +112,8 @@ void measure_tangents(const Part& part, const SceneState& own, const SceneState&
                       const Gatherer& gatherer) {
   const std::vector<Vec4>& tangents = own.tangents[static_cast<std::size_t>(part.mesh)];
   const auto partner_of = [&](std::size_t i) -> Vec4 {
-    return part.points != nullptr ? value_at((*part.points)[i], other.tangents)
-                                  : other.tangents[static_cast<std::size_t>(part.other)][i];
+    return part.fits != nullptr ? value_at((*part.fits)[i], other.tangents)
+                                : other.tangents[static_cast<std::size_t>(part.other)][i];
   };
   in_blocks(
       tangents.size(),
@@ -259,7 +260,7 @@ void Measuring::measure_part(std::size_t index, ValueLocation place, Slot& slot)
       in_blocks(
           normals.size(),
           [&](std::size_t i) {
-            return angle_between_directions(normals[i], value_at(points[i], other.normals));
+            return angle_between_directions(normals[i], value_at((*part.fits)[i], other.normals));
           },
           gatherer(kNormals));
     }
@@ -309,8 +310,8 @@ void Measuring::take_windings(const Moment& moment, const Slot& slot) {
     const SceneMesh& mesh = comparison_.first.meshes[static_cast<std::size_t>(part.mesh)];
     const int begin = winding_of(comparison_.first_placement.windings, part.mesh) *
                       winding_of(comparison_.second_placement.windings, part.other);
-    const int now = winding_of(slot.first.windings, part.mesh) *
-                    winding_of(slot.second.windings, part.other);
+    const int now =
+        winding_of(slot.first.windings, part.mesh) * winding_of(slot.second.windings, part.other);
     if (begin * now >= 0 || mesh.triangles.empty()) continue;
     turned_[i] = true;
     comparison_.say(fmt::format("{}: turned inside out in only one of the two at {} s",

@@ -91,7 +91,8 @@ Points faces_of(const SceneMesh& mesh, const Points& positions, int winding) {
   Points faces(positions.size(), Vec3::Zero());
   std::vector<double> areas(positions.size(), 0.0);
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 normal = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
+    const Vec3 normal =
+        (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
     for (const std::uint32_t corner : t) {
       faces[corner] += winding * normal;
       areas[corner] += normal.norm();
@@ -195,29 +196,36 @@ Fit fit_of(const SurfacePoint& point, const Surfaces& surfaces, int mesh, std::s
   return fit;
 }
 
-SurfacePoint choose(const std::vector<SurfacePoint>& points, const Surfaces& surfaces, int mesh,
-                    std::size_t vertex) {
-  if (points.size() == 1) return points.front();
+// Of the points at most `most` away, the ones with matching normals, of those the first in rank: it
+// decides at seams, where vertices are otherwise the same.
+std::size_t best_of(const std::vector<Fit>& fits, double most) {
+  double least_angle = std::numeric_limits<double>::infinity();
+  for (const Fit& fit : fits) {
+    if (fit.distance <= most) least_angle = std::min(least_angle, fit.angle);
+  }
+  std::size_t best = fits.size();
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const Fit& fit = fits[i];
+    if (fit.distance > most || fit.angle > least_angle + kSameAngle) continue;
+    if (best == fits.size() || fit.rank() < fits[best].rank()) best = i;
+  }
+  return best;
+}
+
+// The point that stays nearest, and the one whose attributes fit best of those about as near.
+std::pair<SurfacePoint, SurfacePoint> choose(const std::vector<SurfacePoint>& points,
+                                             const Surfaces& surfaces, int mesh,
+                                             std::size_t vertex) {
+  if (points.size() == 1) return {points.front(), points.front()};
   std::vector<Fit> fits;
   double least = std::numeric_limits<double>::infinity();
   for (const SurfacePoint& point : points) {
     fits.push_back(fit_of(point, surfaces, mesh, vertex));
     least = std::min(least, fits.back().distance);
   }
-  const double most = std::max(least + surfaces.tree.touching(), surfaces.near);
-  // Keeps the closest points, of those the ones with matching normals; the rank decides at seams,
-  // where vertices are otherwise the same.
-  double least_angle = std::numeric_limits<double>::infinity();
-  for (const Fit& fit : fits) {
-    if (fit.distance <= most) least_angle = std::min(least_angle, fit.angle);
-  }
-  std::size_t best = points.size();
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Fit& fit = fits[i];
-    if (fit.distance > most || fit.angle > least_angle + kSameAngle) continue;
-    if (best == points.size() || fit.rank() < fits[best].rank()) best = i;
-  }
-  return points[best];
+  const double touching = least + surfaces.tree.touching();
+  return {points[best_of(fits, touching)],
+          points[best_of(fits, std::max(touching, surfaces.near))]};
 }
 
 bool finite(const SceneState& state) {
@@ -277,8 +285,8 @@ std::vector<std::uint32_t> by_place(const Points& vertices) {
   return order;
 }
 
-// How far a point may be to be as good as the nearest: the right one may be farther, where a mesh is
-// quantised and its edges are hard.
+// How far a point may be to be as good as the nearest: the right one may be farther, where a mesh
+// is quantised and its edges are hard.
 double near_of(const SurfaceMoments& own, const std::vector<int>& meshes, const FacetTree& tree,
                double tolerance) {
   std::vector<double> distances;
@@ -306,6 +314,7 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
   SurfaceMatch match;
   match.mesh = mesh;
   match.points.resize(vertices.size());
+  match.fits.resize(vertices.size());
   // Coincident vertices, as at seams or in a collapsed prop, share a search.
   const std::vector<std::uint32_t> order = by_place(vertices);
   parallel_for(order.size(), 1024, jobs, [&](std::size_t begin, std::size_t end) {
@@ -317,7 +326,7 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
         tree.find(vertices[v], found, surfaces.near);
         points = distinct_points(tree, vertices[v], found);
       }
-      match.points[v] = choose(points, surfaces, mesh, v);
+      std::tie(match.points[v], match.fits[v]) = choose(points, surfaces, mesh, v);
     }
   });
   return match;
@@ -330,10 +339,10 @@ void report_tangents_left_out(SceneComparison& comparison) {
     const auto& other = match.in_second ? comparison.first.meshes : comparison.second.meshes;
     const SceneMesh& mesh = own[static_cast<std::size_t>(match.mesh)];
     const auto with =
-        std::count_if(match.points.begin(), match.points.end(), [&](const SurfacePoint& point) {
+        std::count_if(match.fits.begin(), match.fits.end(), [&](const SurfacePoint& point) {
           return other[static_cast<std::size_t>(point.mesh)].has_tangents;
         });
-    const auto all = static_cast<std::ptrdiff_t>(match.points.size());
+    const auto all = static_cast<std::ptrdiff_t>(match.fits.size());
     if (!mesh.has_tangents || with == 0 || with == all) continue;
     comparison.note(fmt::format(
         "{}{}: {} of its {} nearest points have no tangents, so its tangents are not compared",
@@ -352,7 +361,7 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   std::map<int, std::size_t> on_mesh;  // vertices by mesh of the other
   std::size_t behind = 0;
   for (std::size_t v = 0; v < match.points.size(); ++v) {
-    const SurfacePoint& point = match.points[v];
+    const SurfacePoint& point = match.fits[v];
     const SceneMesh& other = mesh_of(point, surfaces.other);
     place.vertex = static_cast<int>(v);
     ++on_mesh[point.mesh];
@@ -369,9 +378,10 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   }
   const std::size_t few = match.points.size() / kFewOf;
   if (behind > few) {
-    comparison.say(fmt::format("{}: {} of its {} vertices are inside out: they lie on the backs of "
-                               "the other's triangles",
-                               name, behind, match.points.size()));
+    comparison.say(
+        fmt::format("{}: {} of its {} vertices are inside out: they lie on the backs of "
+                    "the other's triangles",
+                    name, behind, match.points.size()));
   }
   for (const auto& [index, count] : on_mesh) {
     const SceneMesh& other = surfaces.other.meshes[static_cast<std::size_t>(index)];
@@ -387,8 +397,7 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
 // Matches the meshes of a group of one scene with the other's, whose facets are in the tree.
 void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bool in_second,
                  Surfaces surfaces, int jobs) {
-  surfaces.near =
-      near_of(surfaces.own, meshes, surfaces.tree, comparison.options.tolerance.length);
+  surfaces.near = near_of(surfaces.own, meshes, surfaces.tree, comparison.options.tolerance.length);
   surfaces.same_materials = same_materials(comparison, surfaces.own, surfaces.other);
   for (const int mesh : meshes) {
     SurfaceMatch match = match_surface(surfaces, mesh, jobs);

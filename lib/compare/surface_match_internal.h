@@ -30,7 +30,9 @@ struct SurfacePoint {
 struct SurfaceMatch {
   int mesh = -1;
   bool in_second = false;  // whether `mesh` is in the second; the points are in the other scene
-  std::vector<SurfacePoint> points;  // [vertices]
+  std::vector<SurfacePoint> points;  // [vertices], the nearest
+  // Those with the attributes that fit best, about as near: another face at a hard edge.
+  std::vector<SurfacePoint> fits{};
 };
 
 // One scene at a few times: the first is used to find nearest points, the others to choose between

@@ -151,8 +151,9 @@ template <typename Vector>
 Vec3f displaced(const Mat3& linear, const Shared<Vector>& directions, std::size_t vertex,
                 const Vec3f& displacement) {
   const double length =
-      directions ? (linear * (*directions)[vertex].template head<3>().template cast<double>()).norm()
-                 : 0.0;
+      directions
+          ? (linear * (*directions)[vertex].template head<3>().template cast<double>()).norm()
+          : 0.0;
   const Vec3 change = linear * displacement.cast<double>();
   return (length > 0 ? Vec3(change / length) : change).cast<float>();
 }
@@ -374,8 +375,8 @@ bool Evaluator::displace(const Instance& instance, std::size_t target, const Eva
       out.positions[v] = (linear * (*from.positions)[v].cast<double>()).cast<float>();
     }
     if (from.normals) {
-      out.normals[v] = displaced(skinned ? linear : normals_of_node, shape.normals, v,
-                                 (*from.normals)[v]);
+      out.normals[v] =
+          displaced(skinned ? linear : normals_of_node, shape.normals, v, (*from.normals)[v]);
     }
     if (from.tangents) {
       out.tangents[v] = displaced(linear, shape.tangents, v, (*from.tangents)[v]);

@@ -70,8 +70,8 @@ class Evaluator {
   // Same for the nodes alone: fills node_to_world and the node_ members.
   void place_nodes(int animation, double time, Evaluation& out) const;
 
-  // For an instance at a moment from place_nodes() or evaluate(): the sign of the determinant of its
-  // node's global transform; if negative, its front faces are those wound clockwise (glTF 2.0,
+  // For an instance at a moment from place_nodes() or evaluate(): the sign of the determinant of
+  // its node's global transform; if negative, its front faces are those wound clockwise (glTF 2.0,
   // section 3.7.4). 0 if it vanishes.
   int winding(const Instance& instance, const Evaluation& moment) const;
 

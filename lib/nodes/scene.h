@@ -60,7 +60,7 @@ struct Primitive {
   Shared<Vec3f> normals;
   // As in glTF: xyz unit, or zero if zero in the file; w, 1 or -1, is the handedness.
   Shared<Vec4f> tangents;
-  Shared<Vec2f> texture_coordinates;  // the first set
+  Shared<Vec2f> texture_coordinates;                    // the first set
   std::vector<Shared<Vec2f>> more_texture_coordinates;  // TEXCOORD_1 and so on, null where missing
   Shared<Vec4f> colours;                                // COLOR_0: linear red, green, blue, alpha
   // [vertices x influences_per_vertex]; joints are indices into the skin's list. 0, 4 or 8 per
@@ -145,7 +145,7 @@ struct Scene {
   // What the file has beside that and evaluation does not show, with counts: "2 lights",
   // "extension KHR_physics_rigid_bodies".
   std::vector<std::string> not_shown;
-  Diagnostics diagnostics;         // what was ignored or is doubtful
+  Diagnostics diagnostics;  // what was ignored or is doubtful
 };
 
 }  // namespace krok::nodes

@@ -18,10 +18,10 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 
 // Rendered double-sided.
 struct Surface {
-  std::vector<Vec3f> positions;                  // [vertices]
-  std::vector<Vec3f> normals;                    // [vertices], or none for flat shading
-  std::shared_ptr<const Triangles> triangles;    // shared by the frames of a character
-  std::vector<Colour> colours;                   // [vertices], or one for all of them
+  std::vector<Vec3f> positions;                // [vertices]
+  std::vector<Vec3f> normals;                  // [vertices], or none for flat shading
+  std::shared_ptr<const Triangles> triangles;  // shared by the frames of a character
+  std::vector<Colour> colours;                 // [vertices], or one for all of them
   // If set, the colours of vertices multiply it; one for all is replaced.
   std::shared_ptr<const Paint> paint = nullptr;
 };

@@ -44,6 +44,39 @@ Status check_drawings(const Options& options, InputKind first, InputKind second)
   return {};
 }
 
+Result<Outcome> compare_kinds(const InputFile& first, InputKind first_kind, const InputFile& second,
+                              InputKind second_kind, const Options& options, ToolContext& context) {
+  if (first_kind == second_kind) {
+    switch (first_kind) {
+      case InputKind::motion:
+        return compare_motions(first, second, options, context);
+      case InputKind::camera:
+        return compare_cameras(first, second, options);
+      case InputKind::morphs:
+        return compare_morphs(first, second, options);
+      case InputKind::model:
+        if (options.matching == compare::Matching::nearest) break;
+        return compare_models(first, second, options, context);
+      default:
+        break;
+    }
+  }
+  return compare_scenes(first, first_kind, second, second_kind, options, context);
+}
+
+// Options that these files leave without an effect.
+void add_notes(const Options& options, InputKind first, InputKind second, Outcome& outcome) {
+  if (options.materials && !(first == InputKind::gltf && second == InputKind::gltf)) {
+    outcome.notes.emplace_back("--materials has no effect: only glTF files have materials");
+  }
+  const auto has_mesh = [](InputKind kind) {
+    return kind == InputKind::gltf || kind == InputKind::model || kind == InputKind::points;
+  };
+  if (options.matching == compare::Matching::nearest && !(has_mesh(first) && has_mesh(second))) {
+    outcome.notes.emplace_back("--match nearest has no effect: the files have no meshes to match");
+  }
+}
+
 }  // namespace
 
 Result<Outcome> compare_files(const Options& options, ToolContext& context) {
@@ -64,22 +97,9 @@ Result<Outcome> compare_files(const Options& options, ToolContext& context) {
   }
   if (Status status = check_drawings(options, *first_kind, *second_kind); !status)
     return status.error();
-  if (*first_kind == *second_kind) {
-    switch (*first_kind) {
-      case InputKind::motion:
-        return compare_motions(*first, *second, options, context);
-      case InputKind::camera:
-        return compare_cameras(*first, *second, options);
-      case InputKind::morphs:
-        return compare_morphs(*first, *second, options);
-      case InputKind::model:
-        if (options.matching == compare::Matching::nearest) break;
-        return compare_models(*first, *second, options, context);
-      default:
-        break;
-    }
-  }
-  return compare_scenes(*first, *first_kind, *second, *second_kind, options, context);
+  auto outcome = compare_kinds(*first, *first_kind, *second, *second_kind, options, context);
+  if (outcome) add_notes(options, *first_kind, *second_kind, *outcome);
+  return outcome;
 }
 
 }  // namespace krok::cli::diff

@@ -47,9 +47,8 @@ Status Opened::read_gltf_scene(const InputFile& file, ToolContext& context) {
   if (!made) return std::move(made).error();
   scene = std::move(*made);
   if (!scene.not_compared.empty()) {
-    context.warn("diff-not-compared",
-                 fmt::format("{}: not compared: {}", base_name(file.path()),
-                             fmt::join(scene.not_compared, ", ")));
+    context.warn("diff-not-compared", fmt::format("{}: not compared: {}", base_name(file.path()),
+                                                  fmt::join(scene.not_compared, ", ")));
   }
   return {};
 }

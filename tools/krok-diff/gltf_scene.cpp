@@ -105,8 +105,8 @@ void apply_transform(const TextureUses& uses, const nodes::Primitive& primitive,
                      MeshMemory& memory) {
   if (uses.transforms.empty() || primitive.texture_coordinates == nullptr) return;
   const Coordinates& first = uses.transforms.begin()->second;
-  const bool alike = std::ranges::all_of(
-      uses.transforms, [&](const auto& one) { return one.second == first; });
+  const bool alike =
+      std::ranges::all_of(uses.transforms, [&](const auto& one) { return one.second == first; });
   if (!alike || first == Coordinates()) return;
   for (const Vec2f& place : *primitive.texture_coordinates) {
     memory.coordinates.push_back(first.at(place));
@@ -248,8 +248,8 @@ Result<compare::Scene> scene_of(const nodes::Scene& asset) {
   player->memory.resize(from.instances().size());
   for (std::size_t i = 0; i < from.instances().size(); ++i) {
     const nodes::Instance& instance = from.instances()[i];
-    scene.meshes.push_back(mesh_of(asset, instance, from.primitive(instance), scene_joint_of_node,
-                                   player->memory[i]));
+    scene.meshes.push_back(
+        mesh_of(asset, instance, from.primitive(instance), scene_joint_of_node, player->memory[i]));
   }
   for (std::size_t i = 0; i < asset.animations.size(); ++i) {
     const auto times = from.key_times(static_cast<int>(i));

@@ -30,7 +30,7 @@ struct Row {
 // Names for the indices in a ValueLocation; an index without a name is shown as a number.
 struct PlaceNames {
   std::vector<std::string> joints, meshes, animations;
-  std::vector<std::string> second_meshes;         // for locations in the second
+  std::vector<std::string> second_meshes;  // for locations in the second
   // Of the meshes, as the files name them: of the node, of the mesh.
   std::vector<std::pair<std::string, std::string>> first_files, second_files;
   std::vector<std::vector<std::string>> targets;  // [meshes]

@@ -287,10 +287,11 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 }  // namespace
 
 void declare_sheet(CommandOptions& command, SheetOptions& options) {
-  command.add_option("--sheet OUT.png", options.sheet,
-                     "Contact sheet as PNG: characters at several times, in rows by file and side; "
-                     "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out "
-                     "where alpha is below their cutoff, or below one half for blended ones");
+  command.add_option(
+      "--sheet OUT.png", options.sheet,
+      "Contact sheet as PNG: characters at several times, in rows by file and side; "
+      "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out "
+      "where alpha is below their cutoff, or below one half for blended ones");
   command.add_option(
       "--strip OUT.png", options.strip,
       "Motion strip as PNG: a character at several times in one image, earlier ones fainter");

@@ -247,7 +247,7 @@ class SceneActor {
   nodes::Scene scene_;
   std::unique_ptr<nodes::Evaluator> evaluator_;
   std::vector<std::shared_ptr<const render::Triangles>> triangles_;  // [instances]
-  std::vector<std::optional<SurfaceLook>> looks_;  // [instances]; empty: not drawn
+  std::vector<std::optional<SurfaceLook>> looks_;            // [instances]; empty: not drawn
   std::vector<std::vector<render::Colour>> vertex_colours_;  // [instances][vertices] or none
   BoneStyle style_;
   bool bones_ = false;
@@ -281,9 +281,11 @@ void report_scene(const nodes::Scene& scene, ToolContext& context) {
       return primitive.colours != nullptr;
     });
   };
-  const bool pictured = std::ranges::any_of(scene.materials, [](const Material& material) {
-    return static_cast<bool>(material.base_color_texture);
-  }) || std::ranges::any_of(scene.meshes, coloured);
+  const bool pictured = std::ranges::any_of(scene.materials,
+                                            [](const Material& material) {
+                                              return static_cast<bool>(material.base_color_texture);
+                                            }) ||
+                        std::ranges::any_of(scene.meshes, coloured);
   for (const Diagnostic& diagnostic : scene.diagnostics) {
     if (pictured || diagnostic.code != "gltf-material") context.diagnose(diagnostic);
   }

@@ -35,9 +35,9 @@ struct MovingActor {
 // motions of their skeleton or static, faces at rest) and glTF files, in the order of `paths`. With
 // BodyChoice::none, motions, models and glTF files with joints are drawn as bones. glTF files are
 // drawn with their materials if one of them has an image, see look_of(), or with vertex colours;
-// otherwise in the default body colour. BodyChoice::automatic is low for more than two motions without a body, otherwise
-// medium. `method` is the skinning method for motions; glTF files are skinned as in viewers. Code
-// figure-input for a file without an actor.
+// otherwise in the default body colour. BodyChoice::automatic is low for more than two motions
+// without a body, otherwise medium. `method` is the skinning method for motions; glTF files are
+// skinned as in viewers. Code figure-input for a file without an actor.
 Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths, BodyChoice body,
                                              SkinMethod method, ToolContext& context);
 

@@ -1,10 +1,11 @@
-// If these fail, files that a viewer shows alike are said to differ, files that it shows differently
-// are said to be the same, or something is left out of a comparison without a word.
+// If these fail, files that a viewer shows alike are said to differ, files that it shows
+// differently are said to be the same, or something is left out of a comparison without a word.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "math/types.h"
@@ -115,10 +116,10 @@ TEST_F(KrokDiffAsPlayed, TurnsTheOtherWayRoundAreFound) {
   const auto turned = [](double degrees) {
     GlbBuilder builder = square();
     const double half = 0.5 * degrees * kRadiansPerDegree;
-    animate(builder, "rotation", {0, 1},
-            {0, 0, 0, 1, 0, static_cast<float>(std::sin(half)), 0,
-             static_cast<float>(std::cos(half))},
-            "VEC4");
+    animate(
+        builder, "rotation", {0, 1},
+        {0, 0, 0, 1, 0, static_cast<float>(std::sin(half)), 0, static_cast<float>(std::cos(half))},
+        "VEC4");
     return builder;
   };
   write("less.glb", turned(179.9));
@@ -167,15 +168,13 @@ GlbBuilder morphed(float scale, float more = 0, bool skinned = false) {
     std::vector<float> bind(16, 0.0F);
     bind[0] = bind[5] = bind[10] = scale;
     bind[15] = 1;
-    builder.json["skins"] = {
-        {{"joints", {1}}, {"inverseBindMatrices", builder.add(bind, "MAT4")}}};
+    builder.json["skins"] = {{{"joints", {1}}, {"inverseBindMatrices", builder.add(bind, "MAT4")}}};
   }
   const int indices = builder.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3}, "SCALAR");
-  builder.json["meshes"] = {
-      {{"primitives",
-        {{{"attributes", attributes},
-          {"indices", indices},
-          {"targets", {{{"POSITION", builder.add(moved, "VEC3")}}}}}}}}};
+  builder.json["meshes"] = {{{"primitives",
+                              {{{"attributes", attributes},
+                                {"indices", indices},
+                                {"targets", {{{"POSITION", builder.add(moved, "VEC3")}}}}}}}}};
   builder.json["nodes"] = {{{"name", "Body"}, {"mesh", 0}}, {{"name", "Root"}}};
   if (skinned) {
     builder.json["nodes"][0]["skin"] = 0;
@@ -212,8 +211,9 @@ TEST_F(KrokDiffAsPlayed, BakesWithOtherNumbersOfTargetsAreComparedByPositions) {
   write("three.glb", three);
   const auto same = diff({"two.glb", "three.glb"});
   EXPECT_EQ(same.exit_code, 0) << same.out;
-  EXPECT_THAT(same.out, HasSubstr("2 morph targets in the first, 3 in the second; compared by their "
-                                  "effect only"));
+  EXPECT_THAT(same.out,
+              HasSubstr("2 morph targets in the first, 3 in the second; compared by their "
+                        "effect only"));
   EXPECT_EQ(diff({"two.glb", "three.glb", "--match", "name"}).exit_code, 1);
   three.json["meshes"][0]["extras"] = {{"targetNames", {"half", "full", "smile"}}};
   write("lost.glb", three);
@@ -299,7 +299,8 @@ TEST_F(KrokDiffAsPlayed, VertexColoursCountWithMaterials) {
     const auto quiet = diff({"red.glb", "other.glb", "--match", how});
     EXPECT_EQ(quiet.exit_code, 0) << how;
     EXPECT_THAT(quiet.out, HasSubstr("vertex colours differ")) << how;
-    EXPECT_THAT(quiet.out, HasSubstr("vertex colours: largest 0.5 at vertex 2 of mesh Body")) << how;
+    EXPECT_THAT(quiet.out, HasSubstr("vertex colours: largest 0.5 at vertex 2 of mesh Body"))
+        << how;
     EXPECT_EQ(diff({"red.glb", "other.glb", "--materials", "--match", how}).exit_code, 1) << how;
     EXPECT_THAT(diff({"red.glb", "none.glb", "--match", how}).out,
                 HasSubstr("only the first has vertex colours"));
@@ -311,14 +312,14 @@ TEST_F(KrokDiffAsPlayed, VertexColoursCountWithMaterials) {
 GlbBuilder textured(const std::function<void(Json&)>& change,
                     std::vector<float> coordinates = {0, 0, 1, 0, 1, 1, 0, 1}) {
   GlbBuilder builder = square();
-  auto& primitive = primitive_of(builder);
-  primitive["attributes"]["TEXCOORD_0"] = builder.add(coordinates, "VEC2");
+  const int accessor = builder.add(coordinates, "VEC2");
+  primitive_of(builder)["attributes"]["TEXCOORD_0"] = accessor;
   builder.json["images"] = {{{"bufferView", builder.add_view(png())}, {"mimeType", "image/png"}}};
   builder.json["textures"] = {{{"source", 0}}};
   Json material = {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}};
   change(material);
   builder.json["materials"] = Json::array({material});
-  primitive["material"] = 0;
+  primitive_of(builder)["material"] = 0;
   return builder;
 }
 
@@ -441,8 +442,7 @@ TEST_F(KrokDiffAsPlayed, WhatIsNotComparedIsSaid) {
   lit.json["extensionsUsed"] = {"KHR_lights_punctual", "VENDOR_physics"};
   lit.json["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   lit.json["nodes"].push_back({{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
-  primitive_of(lit)["attributes"]["_WIND"] =
-      primitive_of(lit)["attributes"]["POSITION"];
+  primitive_of(lit)["attributes"]["_WIND"] = primitive_of(lit)["attributes"]["POSITION"];
   write("plain.glb", square());
   write("lit.glb", lit);
   const auto found = diff({"plain.glb", "lit.glb"});
@@ -451,6 +451,26 @@ TEST_F(KrokDiffAsPlayed, WhatIsNotComparedIsSaid) {
                                    "names, extension VENDOR_physics"));
   EXPECT_THAT(report_of({"plain.glb", "lit.glb"}).dump(), HasSubstr("not compared: 2 lights"));
   EXPECT_THAT(diff({"plain.glb", "plain.glb"}).err, Not(HasSubstr("not compared")));
+}
+
+// An option that has no effect is said to have none.
+TEST_F(KrokDiffAsPlayed, OptionsWithoutEffectAreReported) {
+  write("a.glb", square());
+  std::string points("POINTCACHE2\0", 12);
+  const auto add = [&points](auto value) {
+    points.append(reinterpret_cast<const char*>(&value), sizeof value);
+  };
+  add(std::int32_t{1});
+  add(std::int32_t{4});
+  add(0.0F);
+  add(1.0F);
+  add(std::int32_t{1});
+  for (const float value : square_positions()) add(value);
+  put("a.pc2", points);
+  const auto done = diff({"a.glb", "a.pc2", "--materials"});
+  EXPECT_EQ(done.exit_code, 0) << done.out << done.err;
+  EXPECT_THAT(done.out, HasSubstr("note: --materials has no effect"));
+  EXPECT_THAT(diff({"a.glb", "a.glb", "--materials"}).out, Not(HasSubstr("no effect")));
 }
 
 }  // namespace

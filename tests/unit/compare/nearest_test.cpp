@@ -312,8 +312,8 @@ TEST(Nearest, NormalsTellEdgesApart) {
   EXPECT_GT(found.normals.count, 0);
 }
 
-// A cube of split vertices, and the same with each vertex moved by up to `off`, the faces in reverse
-// order: what quantising and reordering do.
+// A cube of split vertices, and the same with each vertex moved by up to `off`, the faces in
+// reverse order: what quantising and reordering do.
 Scene cube(double off, bool other) {
   static const auto triangles = [] {
     std::array<std::vector<Triangle>, 2> lists;
@@ -354,8 +354,8 @@ Scene cube(double off, bool other) {
   return scene;
 }
 
-// Would fail if a vertex took the normal of the face that happens to be nearest by a hair. The shift
-// is within the tolerance of 0.1 mm, or beyond that of 0.01 mm, where the normals still fit.
+// Would fail if a vertex took the normal of the face that happens to be nearest by a hair. The
+// shift is within the tolerance of 0.1 mm, or beyond that of 0.01 mm, where the normals still fit.
 TEST(Nearest, NormalsAtHardEdgesAreThoseOfTheRightFace) {
   for (const double tolerance : {1e-4, 1e-5}) {
     Progress progress;
