@@ -250,11 +250,15 @@ class MaterialReader {
       warn(fmt::format("the materials use extensions that are ignored: {}", fmt::join(names, ", ")),
            "they may look different in other programs");
     }
-    const auto left_out = [&](int count, const char* what) {
-      if (count > 0) warn(fmt::format("{} {}: left out", counted(count, "texture"), what));
-    };
-    left_out(of_other_coordinates_, "with a texture coordinate set other than 0");
-    left_out(without_image_, "without a usable image");
+    if (of_other_coordinates_ > 0) {
+      warn(fmt::format("{} with a texture coordinate set other than 0: left out",
+                       counted(of_other_coordinates_, "texture")));
+    }
+    if (without_image_ > 0) {
+      gltf::warn(
+          scene_.diagnostics, "gltf-picture",
+          fmt::format("{} without a usable image: left out", counted(without_image_, "texture")));
+    }
     if (out_of_range_ > 0) {
       gltf::warn(
           scene_.diagnostics, "gltf-material-range",

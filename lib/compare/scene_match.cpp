@@ -96,14 +96,13 @@ void group_meshes(SceneComparison& comparison) {
   const auto& first = comparison.first.meshes;
   const auto& second = comparison.second.meshes;
   comparison.groups = groups_of(first, second);
-  const auto some_have = [](const std::vector<SceneMesh>& meshes, const auto& has) {
-    return std::any_of(meshes.begin(), meshes.end(),
-                       [&](const SceneMesh& mesh) { return has(mesh) || mesh.only_points; });
-  };
+  const auto only_points = [](const SceneMesh& mesh) { return mesh.only_points; };
+  const bool of_points =
+      std::ranges::any_of(first, only_points) || std::ranges::any_of(second, only_points);
   const auto report_missing = [&](const char* what, bool counts, const auto& has) {
-    if (first.empty() || second.empty()) return;
-    const bool first_has = some_have(first, has);
-    if (first_has == some_have(second, has)) return;
+    if (first.empty() || second.empty() || of_points) return;
+    const bool first_has = std::ranges::any_of(first, has);
+    if (first_has == std::ranges::any_of(second, has)) return;
     std::string text = fmt::format("only the {} has {}", first_has ? "first" : "second", what);
     if (counts) {
       comparison.say(std::move(text));
@@ -118,8 +117,7 @@ void group_meshes(SceneComparison& comparison) {
                  [](const SceneMesh& mesh) { return !mesh.colours.empty(); });
   report_tangents_in_groups(comparison);
   const auto any = [&](const auto& has) {
-    return std::any_of(first.begin(), first.end(), has) ||
-           std::any_of(second.begin(), second.end(), has);
+    return std::ranges::any_of(first, has) || std::ranges::any_of(second, has);
   };
   if (any([](const SceneMesh& mesh) { return mesh.influences.per_vertex > 0; })) {
     comparison.note("skin weights are compared by their effect only, with nearest points");

@@ -106,10 +106,15 @@ TEST(Texture, FieldsOfAImageAreWhereTheCoordinatesPutThem) {
   expect_as_plain(image, 0.25, 0.25, {10, 20, 90}, "lower right");
 }
 
-TEST(Texture, StandsInForTheSurfacesColours) {
+// As glTF 2.0, section 3.9.2 has it: vertex colours multiply the texture, in linear light.
+TEST(Texture, IsMultipliedByTheColoursOfVertices) {
   Surface surface = square(paint_of(mipmap(1, 1, [](int, int) { return kRedTexel; })));
-  surface.colours.assign(4, colour(0x00FF00));
-  expect_as_plain(shot({surface}), 0, 0.5, colour_of(kRedTexel), "middle");
+  const Colour tint = colour(0x80FF40);
+  surface.colours.assign(4, tint);
+  const Colour product = to_colour(to_light(colour_of(kRedTexel)).cwiseProduct(to_light(tint)));
+  expect_as_plain(shot({surface}), 0, 0.5, product, "middle");
+  surface.colours.assign(1, tint);
+  expect_as_plain(shot({surface}), 0, 0.5, colour_of(kRedTexel), "one colour is replaced");
 }
 
 // Three copies from u = -1 to 2, as glTF 2.0, section 5.26 (sampler) has them.
