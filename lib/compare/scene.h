@@ -89,7 +89,7 @@ struct Scene {
     std::string name;
     std::vector<double> key_times;  // seconds, rising
     std::vector<KeyGap> gaps{};     // [key_times - 1], or empty if all are straight
-    std::string interpolation{};    // "linear and step"; empty if unknown or nothing changes
+    std::string interpolation{};    // "linear and step"; empty if unknown
   };
   std::vector<Animation> animations;
 

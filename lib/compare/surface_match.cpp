@@ -27,7 +27,7 @@ constexpr double kBack = -0.5;           // cosine of the angle to a face seen f
 constexpr std::size_t kSampled = 1024;   // vertices, for the median distance
 constexpr double kOfMedian = 4;          // distances at which a point is as good as the nearest
 constexpr double kMaxNear = 1e-3;        // of the size, the same
-constexpr std::size_t kFewOf = 1000;     // a vertex of that many may be damaged: a sliver
+constexpr std::size_t kFewOf = 50;       // one vertex of that many may lie at a sharp edge
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;

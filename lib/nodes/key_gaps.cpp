@@ -105,7 +105,7 @@ std::string interpolation_words(const Animation& animation) {
   for (std::size_t i = 0; i < kWords.size(); ++i) {
     if (found[i]) words.emplace_back(kWords[i]);
   }
-  return fmt::format("{}", fmt::join(words, " and "));
+  return words.empty() ? "no" : fmt::format("{}", fmt::join(words, " and "));
 }
 
 }  // namespace krok::nodes

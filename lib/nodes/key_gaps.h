@@ -19,7 +19,7 @@ namespace krok::nodes {
 std::vector<KeyGap> key_gaps(const Animation& animation, std::span<const double> times);
 
 // The kinds of interpolation of the channels whose value changes: "linear", "linear and step".
-// Empty if nothing changes.
+// "no" if nothing changes.
 std::string interpolation_words(const Animation& animation);
 
 }  // namespace krok::nodes
