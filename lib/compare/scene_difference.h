@@ -60,7 +60,7 @@ struct SceneDifference {
   Measure tangent_sides;   // 1 if the handedness differs, else 0; tolerance 0
   Measure joint_positions, joint_orientations;
   Measure target_positions;     // metres: morph target displacements, where both have them
-  Measure target_normals;       // length of the difference of displacements, no unit
+  Measure target_normals;       // the same, in lengths of the normals, no unit
   Measure target_tangents;      // the same of tangents
   Measure texture_coordinates;  // max of u and v, of all sets that both have
   Measure colours;  // max of the channels of vertex colours; within any tolerance unless
