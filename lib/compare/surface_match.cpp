@@ -8,11 +8,9 @@
 #include <numeric>
 #include <tuple>
 
-#include "compare/material_difference.h"
 #include "compare/measure.h"
 #include "compare/mesh_difference.h"
-#include "compare/nearest_triangle_internal.h"
-#include "compare/scene_comparison_internal.h"
+#include "compare/surface_fit_internal.h"
 #include "core/parallel.h"
 
 namespace krok::compare {
@@ -22,8 +20,6 @@ namespace {
 constexpr std::size_t kMaxProbes = 5;    // times used to choose between touching surfaces
 constexpr std::size_t kMaxTried = 1024;  // touching points, to bound the run time
 constexpr double kNoShare = 1e-9;        // smaller coordinates are rounding errors
-constexpr double kSameAngle = 1e-4;      // radians; smaller angles between normals are float noise
-constexpr double kBack = -0.5;           // cosine of the angle to a face seen from behind
 constexpr std::size_t kSampled = 1024;   // vertices, for the median distance
 constexpr double kOfMedian = 4;          // distances at which a point is as good as the nearest
 constexpr double kMaxNear = 1e-3;        // of the size, the same
@@ -71,161 +67,6 @@ SurfacePoint point_on(const Facet& facet, const std::array<double, 3>& shares) {
 
 bool same_corners(const SurfacePoint& a, const SurfacePoint& b) {
   return a.mesh == b.mesh && a.corners == b.corners;
-}
-
-// How well a point fits a vertex over the probed moments.
-struct Fit {
-  double distance = 0;  // the largest
-  double angle = 0;     // max, of normals; 0 if one has none
-  bool behind = false;  // at the first moment, see lies_behind()
-  bool other_material = false;
-  double tangents = 0;    // max, see tangents_apart(); 0 if both have none
-  double attributes = 0;  // distance of texture coordinates and colours; 0 if one has none
-
-  auto rank() const { return std::tuple(behind, other_material, tangents + attributes, angle); }
-};
-
-// The mean normal of the triangles at each vertex, by area, of their front faces: 1 long where they
-// are flat, shorter at an edge, and 0 without triangles.
-Points faces_of(const SceneMesh& mesh, const Points& positions, int winding) {
-  Points faces(positions.size(), Vec3::Zero());
-  std::vector<double> areas(positions.size(), 0.0);
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 normal =
-        (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
-    for (const std::uint32_t corner : t) {
-      faces[corner] += winding * normal;
-      areas[corner] += normal.norm();
-    }
-  }
-  for (std::size_t v = 0; v < faces.size(); ++v) {
-    if (areas[v] > 0) faces[v] /= areas[v];
-  }
-  return faces;
-}
-
-std::vector<Points> all_faces(const SurfaceMoments& scene) {
-  std::vector<Points> faces;
-  const SceneState& state = scene.states[0];
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-    faces.push_back(faces_of(scene.meshes[m], state.positions[m],
-                             winding_of(state.windings, static_cast<int>(m))));
-  }
-  return faces;
-}
-
-// Whether a point is on a front face where the vertex is on a back face. Where the sides are
-// not clear, as at a sharp edge, it is not.
-bool lies_behind(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
-                 std::size_t vertex, const SurfaceMoments& other) {
-  return own.faces[mesh][vertex].dot(value_at(point, other.faces)) < kBack;
-}
-
-const SceneMesh& mesh_of(const SurfacePoint& point, const SurfaceMoments& scene) {
-  return scene.meshes[static_cast<std::size_t>(point.mesh)];
-}
-
-bool look_alike(const SceneComparison& comparison, const SceneMesh& first,
-                const SceneMesh& second) {
-  if (!comparison.first.knows_materials || !comparison.second.knows_materials) return true;
-  if (first.material == nullptr || second.material == nullptr) {
-    return first.material == second.material;
-  }
-  const double tolerance = comparison.options.tolerance.ratio;
-  return differences(*first.material, *second.material, tolerance).empty() &&
-         differences(first.material_parameters, second.material_parameters, tolerance).empty();
-}
-
-using SameMaterials = std::vector<std::vector<bool>>;  // [meshes][meshes of the other]
-
-SameMaterials same_materials(const SceneComparison& comparison, const SurfaceMoments& own,
-                             const SurfaceMoments& other) {
-  SameMaterials table;
-  for (const SceneMesh& mesh : own.meshes) {
-    auto& row = table.emplace_back();
-    for (const SceneMesh& one : other.meshes) row.push_back(look_alike(comparison, mesh, one));
-  }
-  return table;
-}
-
-// Angle between tangents at one moment, plus pi for opposite handedness; pi if only one mesh has
-// tangents, so that coincident meshes with and without tangents are not confused.
-double tangents_apart(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
-                      std::size_t vertex, const SurfaceMoments& other, std::size_t moment) {
-  const bool has = own.meshes[mesh].has_tangents;
-  if (has != other.meshes[static_cast<std::size_t>(point.mesh)].has_tangents) return kPi;
-  if (!has) return 0;
-  const Vec4& a = own.states[moment].tangents[mesh][vertex];
-  const Vec4 b = value_at(point, other.states[moment].tangents);
-  return angle_between_directions(a.head<3>(), b.head<3>()) + (on_other_sides(a, b) ? kPi : 0);
-}
-
-// The two surfaces, and what is known of them.
-struct Surfaces {
-  const SurfaceMoments& own;
-  const SurfaceMoments& other;
-  const FacetTree& tree;  // of `other`
-  double near = 0;        // a point at most this far away is as good as the nearest
-  SameMaterials same_materials{};
-};
-
-Fit fit_of(const SurfacePoint& point, const Surfaces& surfaces, int mesh, std::size_t vertex) {
-  const SurfaceMoments& own = surfaces.own;
-  const SurfaceMoments& other = surfaces.other;
-  Fit fit;
-  const auto m = static_cast<std::size_t>(mesh);
-  fit.behind = lies_behind(point, own, m, vertex, other);
-  fit.other_material = !surfaces.same_materials[m][static_cast<std::size_t>(point.mesh)];
-  const auto add = [&](const auto& ours, const auto& theirs) {
-    if (ours.empty() || theirs.empty()) return;
-    fit.attributes += static_cast<double>((ours[vertex] - value_in(point, theirs)).norm());
-  };
-  const SceneMesh& partner = mesh_of(point, other);
-  add(own.meshes[m].texture_coordinates, partner.texture_coordinates);
-  add(own.meshes[m].colours, partner.colours);
-  for (std::size_t k = 0; k < own.states.size(); ++k) {
-    const SceneState& a = own.states[k];
-    const SceneState& b = other.states[k];
-    fit.distance =
-        std::max(fit.distance, (a.positions[m][vertex] - value_at(point, b.positions)).norm());
-    fit.tangents = std::max(fit.tangents, tangents_apart(point, own, m, vertex, other, k));
-    if (a.normals[m].empty() || b.normals[static_cast<std::size_t>(point.mesh)].empty()) continue;
-    fit.angle = std::max(
-        fit.angle, angle_between_directions(a.normals[m][vertex], value_at(point, b.normals)));
-  }
-  return fit;
-}
-
-// Of the points at most `most` away, the ones with matching normals, of those the first in rank: it
-// decides at seams, where vertices are otherwise the same.
-std::size_t best_of(const std::vector<Fit>& fits, double most) {
-  double least_angle = std::numeric_limits<double>::infinity();
-  for (const Fit& fit : fits) {
-    if (fit.distance <= most) least_angle = std::min(least_angle, fit.angle);
-  }
-  std::size_t best = fits.size();
-  for (std::size_t i = 0; i < fits.size(); ++i) {
-    const Fit& fit = fits[i];
-    if (fit.distance > most || fit.angle > least_angle + kSameAngle) continue;
-    if (best == fits.size() || fit.rank() < fits[best].rank()) best = i;
-  }
-  return best;
-}
-
-// The point that stays nearest, and the one whose attributes fit best of those about as near.
-std::pair<SurfacePoint, SurfacePoint> choose(const std::vector<SurfacePoint>& points,
-                                             const Surfaces& surfaces, int mesh,
-                                             std::size_t vertex) {
-  if (points.size() == 1) return {points.front(), points.front()};
-  std::vector<Fit> fits;
-  double least = std::numeric_limits<double>::infinity();
-  for (const SurfacePoint& point : points) {
-    fits.push_back(fit_of(point, surfaces, mesh, vertex));
-    least = std::min(least, fits.back().distance);
-  }
-  const double touching = least + surfaces.tree.touching();
-  return {points[best_of(fits, touching)],
-          points[best_of(fits, std::max(touching, surfaces.near))]};
 }
 
 bool finite(const SceneState& state) {

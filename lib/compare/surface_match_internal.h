@@ -45,6 +45,10 @@ struct SurfaceMoments {
   std::vector<Points> faces{};
 };
 
+inline const SceneMesh& mesh_of(const SurfacePoint& point, const SurfaceMoments& scene) {
+  return scene.meshes[static_cast<std::size_t>(point.mesh)];
+}
+
 // Interpolates a value given per corner of the point's mesh: [vertices].
 template <typename Vector>
 Vector value_in(const SurfacePoint& point, std::span<const Vector> mesh) {

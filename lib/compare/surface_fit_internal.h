@@ -1,0 +1,41 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "compare/nearest_triangle_internal.h"
+#include "compare/scene_comparison_internal.h"
+#include "compare/surface_match_internal.h"
+
+// Private to this folder: which of several near points of a surface fits a vertex.
+
+namespace krok::compare {
+
+using SameMaterials = std::vector<std::vector<bool>>;  // [meshes][meshes of the other]
+
+// The two surfaces, and what is known of them.
+struct Surfaces {
+  const SurfaceMoments& own;
+  const SurfaceMoments& other;
+  const FacetTree& tree;  // of `other`
+  double near = 0;        // a point at most this far away is as good as the nearest
+  SameMaterials same_materials{};
+};
+
+// Fills SurfaceMoments::faces of a scene.
+std::vector<Points> all_faces(const SurfaceMoments& scene);
+
+SameMaterials same_materials(const SceneComparison& comparison, const SurfaceMoments& own,
+                             const SurfaceMoments& other);
+
+// Whether a point is on a front face where the vertex is on a back face. Where the sides are not
+// clear, as at a sharp edge, it is not.
+bool lies_behind(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
+                 std::size_t vertex, const SurfaceMoments& other);
+
+// The point that stays nearest, and the one whose attributes fit best of those about as near.
+std::pair<SurfacePoint, SurfacePoint> choose(const std::vector<SurfacePoint>& points,
+                                             const Surfaces& surfaces, int mesh,
+                                             std::size_t vertex);
+
+}  // namespace krok::compare
