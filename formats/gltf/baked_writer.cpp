@@ -91,10 +91,9 @@ class BakedClip {
     }
     const auto attributes =
         add_shape(document_, model_, {base_.positions, base_.normals, base_.tangents});
-    const auto mesh = document_.add_mesh(model_, attributes, mesh_name(options_));
-    if (!mesh) return mesh.error();
-    mesh_ = *mesh;
-    node_ = document_.add_mesh_node(mesh_, -1, mesh_name(options_));
+    auto meshes = document_.add_meshes(model_, attributes, -1, mesh_name(options_));
+    if (!meshes) return meshes.error();
+    meshes_ = *std::move(meshes);
     return {};
   }
 
@@ -114,10 +113,11 @@ class BakedClip {
       }
       names.push_back(fmt::format("frame_{}", names.size() + 1));
     }
-    document_.set_targets(mesh_, morph, names);
+    document_.set_targets(meshes_, morph, names);
     const int weights = document_.promise_floats(times.size() * targets(), TINYGLTF_TYPE_SCALAR,
                                                  Document::Use::data);
-    document_.add_weight_channel(node_, input, weights, options_.name);
+    document_.add_weight_channels(meshes_, input, weights,
+                                  options_.clip_name.empty() ? options_.name : options_.clip_name);
   }
 
   // Computes all targets and their bounds.
@@ -161,7 +161,7 @@ class BakedClip {
   int jobs_;
   Document document_;
   ShapeRoom base_;
-  int mesh_ = 0, node_ = 0;
+  std::vector<Document::MeshNode> meshes_;
   std::vector<Document::Bounds> bounds_;
 };
 

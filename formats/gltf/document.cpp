@@ -205,25 +205,30 @@ void Document::add_channel(tinygltf::Animation& animation, int node, const char*
   animation.channels.push_back(std::move(channel));
 }
 
-int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
+int Document::add_skeleton(const Skeleton& skeleton, std::span<const NamedTracks> clips,
                            const std::string& name, const Mat4& stored_to_model) {
   const int first = static_cast<int>(gltf.nodes.size());
-  std::vector<int> outer;  // the node that places a joint: itself, or a parent of its own
+  const JointTracks rest = rest_tracks(skeleton);
+  const auto is_sheared = [&](int j) {
+    return std::ranges::any_of(clips, [&](const NamedTracks& clip) {
+      return !clip.tracks->joints[j].inner_rotations.empty();
+    });
+  };
+  outer_.clear();
   int outer_count = 0;
   std::vector<float> inverse_reference;
   tinygltf::Skin skin;
   for (int j = 0; j < skeleton.joint_count(); ++j) {
-    const JointTrack& track = tracks.joints[j];
     tinygltf::Node node;
     node.name = unique_node_name(skeleton.names[j]);
-    const bool has_outer = !track.inner_rotations.empty();
-    if (!has_outer) set_rest(track, node);
+    const bool has_outer = is_sheared(j);
+    if (!has_outer) set_rest(rest.joints[j], node);
     gltf.nodes.push_back(std::move(node));
-    outer.push_back(has_outer ? first + skeleton.joint_count() + outer_count++ : first + j);
+    outer_.push_back(has_outer ? first + skeleton.joint_count() + outer_count++ : first + j);
     if (skeleton.parents[j] == Skeleton::kNoParent) {
-      gltf.scenes[0].nodes.push_back(outer.back());
+      gltf.scenes[0].nodes.push_back(outer_.back());
     } else {
-      gltf.nodes[first + skeleton.parents[j]].children.push_back(outer.back());
+      gltf.nodes[first + skeleton.parents[j]].children.push_back(outer_.back());
     }
     const Mat4 to_joint = skeleton.reference[j].inverse().matrix();
     const Mat4f inverse =
@@ -232,10 +237,10 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
     skin.joints.push_back(first + j);
   }
   for (int j = 0; j < skeleton.joint_count(); ++j) {
-    if (outer[j] == first + j) continue;
+    if (outer_[j] == first + j) continue;
     tinygltf::Node node;
     node.name = unique_node_name(skeleton.names[j] + "_stretch");
-    set_rest(tracks.joints[j], node);
+    set_rest(rest.joints[j], node);
     node.children.push_back(first + j);
     gltf.nodes.push_back(std::move(node));
   }
@@ -243,92 +248,114 @@ int Document::add_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
   skin.skeleton = first;
   skin.inverseBindMatrices = add_floats(inverse_reference, TINYGLTF_TYPE_MAT4, Use::data, false);
   gltf.skins.push_back(std::move(skin));
-
-  if (!tracks.times.empty()) {
-    tinygltf::Animation animation;
-    animation.name = name;
-    std::map<std::vector<int>, int> time_accessors;
-    // The times of some frames, or of all; tracks with the same key frames share an accessor.
-    const auto times = [&](const std::vector<int>& frames) {
-      const auto [place, made] = time_accessors.emplace(frames, 0);
-      if (made) {
-        std::vector<float> chosen;
-        for (const int frame : frames) chosen.push_back(tracks.times[frame]);
-        place->second = add_floats(frames.empty() ? tracks.times : chosen, TINYGLTF_TYPE_SCALAR,
-                                   Use::data, true);
-      }
-      return place->second;
-    };
-    for (int j = 0; j < skeleton.joint_count(); ++j) {
-      const JointTrack& track = tracks.joints[j];
-      if (!track.translations.empty()) {
-        const int input = times(track.translation_frames);
-        add_channel(animation, outer[j], "translation", input,
-                    add_floats({track.translations.data()->data(), track.translations.size() * 3},
-                               TINYGLTF_TYPE_VEC3, Use::data, false, Keep::view));
-      }
-      if (!track.rotations.empty()) {
-        const int input = times(track.rotation_frames);
-        add_channel(animation, outer[j], "rotation", input, add_rotations(track.rotations));
-      }
-      if (!track.scales.empty()) {
-        const int input = times({});
-        add_channel(animation, outer[j], "scale", input,
-                    add_floats({track.scales.data()->data(), track.scales.size() * 3},
-                               TINYGLTF_TYPE_VEC3, Use::data, false, Keep::view));
-      }
-      if (!track.inner_rotations.empty()) {
-        const int input = times({});
-        add_channel(animation, first + j, "rotation", input, add_rotations(track.inner_rotations));
-      }
-    }
-    // A character that stays in its reference pose still has an animation of some duration.
-    if (animation.channels.empty()) {
-      const std::vector<Vec3f> still(tracks.times.size(), tracks.joints[0].rest_translation);
-      const int input = times({});
-      add_channel(animation, first, "translation", input, add_vectors(still, Use::data));
-    }
-    gltf.animations.push_back(std::move(animation));
-  }
+  for (const NamedTracks& clip : clips) add_animation(*clip.tracks, clip.name);
   return static_cast<int>(gltf.skins.size()) - 1;
 }
 
-Result<int> Document::add_mesh(const Model& model, const std::map<std::string, int>& attributes,
-                               const std::string& name, bool own_vertices) {
+void Document::add_animation(const JointTracks& tracks, const std::string& name) {
+  if (tracks.times.empty()) return;
+  const std::vector<int> inner = gltf.skins.back().joints;
+  assert(tracks.joints.size() == inner.size());
+  tinygltf::Animation animation;
+  animation.name = name;
+  std::map<std::vector<int>, int> time_accessors;
+  // The times of some frames, or of all; tracks with the same key frames share an accessor.
+  const auto times = [&](const std::vector<int>& frames) {
+    const auto [place, made] = time_accessors.emplace(frames, 0);
+    if (made) {
+      std::vector<float> chosen;
+      for (const int frame : frames) chosen.push_back(tracks.times[frame]);
+      place->second =
+          add_floats(frames.empty() ? tracks.times : chosen, TINYGLTF_TYPE_SCALAR, Use::data, true);
+    }
+    return place->second;
+  };
+  const auto add_vector_keys = [&](int node, const char* path, int input,
+                                   const std::vector<Vec3f>& values) {
+    add_channel(animation, node, path, input,
+                add_floats({values.data()->data(), values.size() * 3}, TINYGLTF_TYPE_VEC3,
+                           Use::data, false, Keep::view));
+  };
+  for (std::size_t j = 0; j < inner.size(); ++j) {
+    const JointTrack& track = tracks.joints[j];
+    if (!track.translations.empty()) {
+      const int input = times(track.translation_frames);
+      add_vector_keys(outer_[j], "translation", input, track.translations);
+    }
+    if (!track.rotations.empty()) {
+      const int input = times(track.rotation_frames);
+      add_channel(animation, outer_[j], "rotation", input, add_rotations(track.rotations));
+    }
+    if (!track.scales.empty()) {
+      const int input = times({});
+      add_vector_keys(outer_[j], "scale", input, track.scales);
+    }
+    if (!track.inner_rotations.empty()) {
+      const int input = times({});
+      add_channel(animation, inner[j], "rotation", input, add_rotations(track.inner_rotations));
+    }
+  }
+  // A character that stays in its reference pose still has an animation of some duration.
+  if (animation.channels.empty()) {
+    const std::vector<Vec3f> still(tracks.times.size(), tracks.joints[0].rest_translation);
+    const int input = times({});
+    add_channel(animation, outer_[0], "translation", input, add_vectors(still, Use::data));
+  }
+  gltf.animations.push_back(std::move(animation));
+}
+
+Result<tinygltf::Primitive> Document::primitive_of(const Model& model, const Model::Part& part,
+                                                   const std::map<std::string, int>& attributes,
+                                                   const VertexRange& range) {
+  tinygltf::Primitive primitive;
+  primitive.mode = TINYGLTF_MODE_TRIANGLES;
+  primitive.attributes = attributes;
+  const auto material = add_material(part.material, attributes);
+  if (!material) return material.error();
+  primitive.material = *material;
+  const std::uint32_t* first = model.triangles[part.first_triangle].data();
+  std::vector<std::uint32_t> corners(first, first + std::size_t{3} * part.triangle_count);
+  for (std::uint32_t& corner : corners) corner -= static_cast<std::uint32_t>(range.first);
+  primitive.indices = add_integers(corners, TINYGLTF_TYPE_SCALAR,
+                                   static_cast<std::uint32_t>(range.count - 1), Use::indices);
+  return primitive;
+}
+
+Result<std::vector<Document::MeshNode>> Document::add_meshes(
+    const Model& model, const std::map<std::string, int>& attributes, int skin,
+    const std::string& name, bool own_vertices) {
   if (Status status = check(options_.materials); !status) return status.error();
-  tinygltf::Mesh mesh;
-  mesh.name = name;
-  const std::uint32_t* indices = model.triangles.empty() ? nullptr : model.triangles[0].data();
   std::vector<VertexRange> ranges;
   if (own_vertices) ranges = part_ranges(model);
+  std::vector<MeshNode> meshes;
+  const std::string* before = nullptr;
+  std::size_t used = 0;
   for (const Model::Part& part : model.parts) {
     if (part.triangle_count == 0) continue;
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    VertexRange range{0, model.positions.size()};
-    if (!ranges.empty()) range = ranges[mesh.primitives.size()];
-    primitive.attributes = attributes;
-    const auto material = add_material(part.material, attributes);
-    if (!material) return material.error();
-    primitive.material = *material;
-    const std::uint32_t* first = indices + std::size_t{3} * part.first_triangle;
-    std::vector<std::uint32_t> corners(first, first + std::size_t{3} * part.triangle_count);
-    for (std::uint32_t& corner : corners) corner -= static_cast<std::uint32_t>(range.first);
-    primitive.indices = add_integers(corners, TINYGLTF_TYPE_SCALAR,
-                                     static_cast<std::uint32_t>(range.count - 1), Use::indices);
-    mesh.primitives.push_back(std::move(primitive));
+    const VertexRange range =
+        ranges.empty() ? VertexRange{0, model.positions.size()} : ranges[used++];
+    auto primitive = primitive_of(model, part, attributes, range);
+    if (!primitive) return primitive.error();
+    if (before == nullptr || *before != part.mesh) {
+      before = &part.mesh;
+      gltf.meshes.emplace_back().name = part.mesh.empty() ? name : part.mesh;
+      meshes.push_back({static_cast<int>(gltf.meshes.size()) - 1, 0});
+    }
+    gltf.meshes.back().primitives.push_back(*std::move(primitive));
+    if (!ranges.empty()) ranges_[meshes.back().mesh].push_back(range);
   }
-  if (mesh.primitives.empty()) {
+  if (meshes.empty()) {
     return Error("gltf-empty-mesh", "the model has no triangles; glTF does not allow empty meshes");
   }
-  // Copies first: the first primitive's are the accessors themselves.
-  for (std::size_t p = ranges.size(); p-- > 0;) {
-    mesh.primitives[p].attributes = attributes_of(attributes, ranges[p], p == 0);
+  for_each_own_primitive(
+      meshes, [&](tinygltf::Primitive& primitive, const VertexRange& range, bool is_first) {
+        primitive.attributes = attributes_of(attributes, range, is_first);
+      });
+  for (MeshNode& made : meshes) {
+    const std::string& wanted = gltf.meshes[static_cast<std::size_t>(made.mesh)].name;
+    made.node = add_mesh_node(made.mesh, skin, wanted);
   }
-  const int index = static_cast<int>(gltf.meshes.size());
-  if (!ranges.empty()) ranges_[index] = std::move(ranges);
-  gltf.meshes.push_back(std::move(mesh));
-  return index;
+  return meshes;
 }
 
 int Document::add_mesh_node(int mesh, int skin, const std::string& name) {

@@ -3,6 +3,7 @@
 #include <tiny_gltf.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <span>
@@ -46,11 +47,12 @@ class Document {
   // `wanted`, with a number appended if another node has that name.
   std::string unique_node_name(const std::string& wanted);
 
-  // Adds nodes for all joints, the first as a scene root; a skin with the inverse bind matrices; an
-  // animation, if there are times. The tracks must outlive write(). Returns the skin.
+  // Adds nodes for all joints in the reference pose, the first as a scene root; a skin with the
+  // inverse bind matrices; an animation for each clip that has times. A joint that shears in any of
+  // them gets a node above it. The tracks must outlive write(). Returns the skin.
   // `stored_to_model` transforms the vertices of the mesh, if it is quantized.
-  int add_skeleton(const Skeleton& skeleton, const JointTracks& tracks, const std::string& name,
-                   const Mat4& stored_to_model = Mat4::Identity());
+  int add_skeleton(const Skeleton& skeleton, std::span<const NamedTracks> clips,
+                   const std::string& name, const Mat4& stored_to_model = Mat4::Identity());
 
   // The material of this name from WriteOptions::materials, or a default one; added once, as are
   // its images. Textures are left out for meshes without texture coordinates, normal textures also
@@ -61,24 +63,32 @@ class Document {
   // Eye nodes as children of the joints from add_skeleton(). Code: gltf-structure.
   Status add_eyes(const Skeleton& skeleton, int skin, std::span<const Character::Eye> eyes);
 
-  // One primitive per part of the model, all with the same attributes. With `own_vertices`, each
-  // gets a range of them, if no two parts share a vertex and the parts follow each other: then
-  // loaders do not load all vertices for each part. (part_vertices.cpp)
-  Result<int> add_mesh(const Model& model, const std::map<std::string, int>& attributes,
-                       const std::string& name, bool own_vertices = false);
+  struct MeshNode {
+    int mesh = 0, node = 0;
+  };
+  // Meshes with a node each at the scene root: one primitive per part of the model, all with the
+  // same attributes. Parts in a row of one mesh (Model::Part::mesh) share one; `name` is that of
+  // parts without. Skin -1 for none. With `own_vertices`, each primitive gets a range of the
+  // vertices, if no two parts share one and the parts follow each other: then loaders do not load
+  // all vertices for each part. (part_vertices.cpp)
+  Result<std::vector<MeshNode>> add_meshes(const Model& model,
+                                           const std::map<std::string, int>& attributes, int skin,
+                                           const std::string& name, bool own_vertices = false);
 
   // A scene root with a mesh; skin -1 for none. Returns the node.
   int add_mesh_node(int mesh, int skin, const std::string& name);
 
-  // Morph targets for every primitive of a mesh, with names for viewers (extras.targetNames).
-  void set_targets(int mesh, const std::vector<std::map<std::string, int>>& targets,
+  // Morph targets for every primitive of the meshes, with names for viewers (extras.targetNames).
+  void set_targets(std::span<const MeshNode> meshes,
+                   const std::vector<std::map<std::string, int>>& targets,
                    std::span<const std::string> names);
 
-  // Keys for the morph weights [times x targets] of a node's mesh, in the existing animation, or in
-  // a new one called `name`.
-  void add_weight_keys(int node, std::span<const float> times, std::span<const float> weights,
-                       const std::string& name);
-  void add_weight_channel(int node, int times, int weights, const std::string& name);
+  // Keys for the morph weights [times x targets] of the meshes, in the first animation, or in a new
+  // one called `name`.
+  void add_weight_keys(std::span<const MeshNode> meshes, std::span<const float> times,
+                       std::span<const float> weights, const std::string& name);
+  void add_weight_channels(std::span<const MeshNode> meshes, int times, int weights,
+                           const std::string& name);
 
   // As add_floats(), for data streamed while the file is written, after all other data: append()
   // gets the bytes, in the order of these calls.
@@ -117,6 +127,15 @@ class Document {
   // The attributes of a range of the vertices; `in_place` changes the accessors themselves.
   std::map<std::string, int> attributes_of(const std::map<std::string, int>& whole,
                                            const VertexRange& range, bool in_place);
+  // Calls `take` for the primitives that have vertices of their own, the first of all last, as its
+  // accessors may be changed in place.
+  void for_each_own_primitive(
+      std::span<const MeshNode> meshes,
+      const std::function<void(tinygltf::Primitive&, const VertexRange&, bool is_first)>& take);
+  Result<tinygltf::Primitive> primitive_of(const Model& model, const Model::Part& part,
+                                           const std::map<std::string, int>& attributes,
+                                           const VertexRange& range);
+  void add_animation(const JointTracks& tracks, const std::string& name);
   void find_bounds(tinygltf::Accessor& accessor) const;
   std::span<const std::byte> bytes_from(std::size_t offset) const;
 
@@ -142,6 +161,7 @@ class Document {
 
   const WriteOptions& options_;
   std::vector<Part> parts_;
+  std::vector<int> outer_;  // [joints] the node that places a joint: its own, or the one above it
   std::map<int, std::vector<VertexRange>> ranges_;  // of the primitives of a mesh
   std::uint64_t size_ = 0;                          // bytes of the parts and the streamed data
   std::uint64_t promised_ = 0;                      // bytes of the streamed data

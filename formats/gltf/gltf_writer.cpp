@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/mesh_shape_internal.h"
@@ -49,6 +48,11 @@ void add_influences(Document& document, const Model& model,
   }
 }
 
+// The clip's name, as the options give it.
+const std::string& clip_name(const WriteOptions& options) {
+  return options.clip_name.empty() ? options.name : options.clip_name;
+}
+
 // Tangents, if a normal texture needs them and the shape has none.
 std::vector<Vec4f> missing_tangents(const Model& model, const MeshShape& shape,
                                     const WriteOptions& options) {
@@ -70,11 +74,16 @@ Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile&
 
 Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
                       const WriteOptions& options, OutputFile& file) {
+  const NamedTracks clip{clip_name(options), &tracks};
+  return write_skeleton(skeleton, std::span(&clip, 1), options, file);
+}
+
+Status write_skeleton(const Skeleton& skeleton, std::span<const NamedTracks> clips,
+                      const WriteOptions& options, OutputFile& file) {
   if (Status status = check(skeleton); !status) return status;
   if (skeleton.empty()) return Error("gltf-structure", "the motion has no joints");
-  assert(tracks.joints.size() == skeleton.names.size());
   Document document(options);
-  document.add_skeleton(skeleton, tracks, options.name);
+  document.add_skeleton(skeleton, clips, options.name);
   return document.write(file);
 }
 
@@ -93,12 +102,17 @@ Status write_rig(const Model& model, const Clip& clip, const WriteOptions& optio
 
 Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
                  OutputFile& file) {
+  const NamedTracks clip{clip_name(options), &tracks};
+  return write_rig(model, std::span(&clip, 1), options, file);
+}
+
+Status write_rig(const Model& model, std::span<const NamedTracks> clips,
+                 const WriteOptions& options, OutputFile& file) {
   if (Status status = check_mesh(model); !status) return status;
   if (Status status = check_morphs(model, options); !status) return status;
-  assert(tracks.joints.size() == model.skeleton.names.size());
   Document document(options);
   const PositionGrid grid = options.quantized ? PositionGrid::of(model.positions) : PositionGrid();
-  const int skin = document.add_skeleton(model.skeleton, tracks, options.name, grid.to_model());
+  const int skin = document.add_skeleton(model.skeleton, clips, options.name, grid.to_model());
   if (Status status = document.add_eyes(model.skeleton, skin, options.eyes); !status) return status;
   MeshShape shape{model.positions, model.normals, model.tangents};
   const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
@@ -116,10 +130,9 @@ Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptio
     attributes = add_shape(document, model, shape);
     add_influences(document, model, attributes);
   }
-  const auto mesh = document.add_mesh(model, attributes, mesh_name(options), true);
-  if (!mesh) return mesh.error();
-  const int node = document.add_mesh_node(*mesh, skin, mesh_name(options));
-  Status status = add_morphs(document, model, attributes, *mesh, node, options);
+  const auto meshes = document.add_meshes(model, attributes, skin, mesh_name(options), true);
+  if (!meshes) return meshes.error();
+  Status status = add_morphs(document, model, attributes, *meshes, options);
   return status ? document.write(file) : status;
 }
 
@@ -132,10 +145,9 @@ Status write_mesh(const Model& model, const MeshShape& given, const WriteOptions
   const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
   if (!tangents.empty()) shape.tangents = tangents;
   const auto attributes = add_shape(document, model, shape);
-  const auto mesh = document.add_mesh(model, attributes, mesh_name(options), true);
-  if (!mesh) return mesh.error();
-  const int node = document.add_mesh_node(*mesh, -1, mesh_name(options));
-  Status status = add_morphs(document, model, attributes, *mesh, node, options);
+  const auto meshes = document.add_meshes(model, attributes, -1, mesh_name(options), true);
+  if (!meshes) return meshes.error();
+  Status status = add_morphs(document, model, attributes, *meshes, options);
   return status ? document.write(file) : status;
 }
 

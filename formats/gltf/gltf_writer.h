@@ -26,7 +26,9 @@ struct WriteOptions {
   bool binary = true;  // GLB; otherwise text with a data URI
   // Stored in asset.extras; its version goes into asset.generator.
   Provenance provenance;
-  std::string name = "krok";  // of the mesh's node and of the animation
+  // Of the skin, and of the mesh of parts that name none: "krok_mesh".
+  std::string name = "krok";
+  std::string clip_name = {};  // of the animation; empty: `name`
   // Materials of the model's parts, by name, with image bytes; parts with other materials are light
   // grey. Must outlive the call. Textures need texture coordinates. Normal textures also need
   // tangents, which are computed if the model has none; baked clips without tangents leave normal
@@ -34,16 +36,22 @@ struct WriteOptions {
   std::span<const Material> materials{};
   // Eye nodes as children of their joints, named like "left_eye"; write_rig only.
   std::span<const Character::Eye> eyes{};
-  // For write_rig and write_mesh: morph targets of the model and their weights over time (constant
-  // if one frame), in the same animation as the joints. Code: gltf-morphs.
   // For write_rig: vertices as integers of 16 bits (directions of 8; KHR_mesh_quantization) and
   // rotations of 16, see quantize.h; tracks should have been through round_rotations().
   bool quantized = false;
   // For a GLB: buffer views encoded by meshoptimizer (EXT_meshopt_compression), without loss. Best
   // after order_for_compression().
   bool compressed = false;
+  // For write_rig and write_mesh: morph targets of the model and their weights over time (constant
+  // if one frame), in the same animation as the joints. Code: gltf-morphs.
   const MorphSet* morphs = nullptr;
   const MorphWeights* weights = nullptr;  // of `morphs`, in its order
+};
+
+// One of the animations of a file.
+struct NamedTracks {
+  std::string name;
+  const JointTracks* tracks = nullptr;  // of the file's skeleton; none if it has no times
 };
 
 // A skeleton and its motion: one node per joint, in the reference pose; a skin that marks them as
@@ -52,8 +60,9 @@ struct WriteOptions {
 Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile& file);
 
 // A skinned mesh: the content of write_skeleton, with the nodes in the model's reference pose, and
-// the mesh with joints and weights at the scene root. The skeletons of model and clip must have the
-// same structure (code gltf-structure); see bind_to in lib/skin.
+// the mesh with joints and weights at the scene root; parts in a row that name different meshes
+// (Model::Part::mesh) become meshes of these names. The skeletons of
+// model and clip must have the same structure (code gltf-structure); see bind_to in lib/skin.
 Status write_rig(const Model& model, const Clip& clip, const WriteOptions& options,
                  OutputFile& file);
 
@@ -62,6 +71,12 @@ Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
                       const WriteOptions& options, OutputFile& file);
 Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
                  OutputFile& file);
+
+// As above, with several animations. Weights go into the first.
+Status write_skeleton(const Skeleton& skeleton, std::span<const NamedTracks> clips,
+                      const WriteOptions& options, OutputFile& file);
+Status write_rig(const Model& model, std::span<const NamedTracks> clips,
+                 const WriteOptions& options, OutputFile& file);
 
 // Reorders triangles within parts and vertices so that compression finds neighbours near each
 // other; `morphs` may have no targets.

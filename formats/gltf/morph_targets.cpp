@@ -45,8 +45,8 @@ Status check_morphs(const Model& model, const WriteOptions& options) {
 }
 
 Status add_morphs(Document& document, const Model& model,
-                  const std::map<std::string, int>& attributes, int mesh, int node,
-                  const WriteOptions& options) {
+                  const std::map<std::string, int>& attributes,
+                  std::span<const Document::MeshNode> meshes, const WriteOptions& options) {
   if (options.morphs == nullptr || options.morphs->names.empty()) return {};
   const MorphSet& morphs = *options.morphs;
   std::vector<std::map<std::string, int>> targets(morphs.names.size());
@@ -62,30 +62,36 @@ Status add_morphs(Document& document, const Model& model,
     if (morphs.normals.empty() || model.normals.empty() || !attributes.contains("NORMAL")) continue;
     target["NORMAL"] = document.add_vectors(displacements(morphs.target_normals(t), model.normals));
   }
-  document.set_targets(mesh, targets, morphs.names);
+  document.set_targets(meshes, targets, morphs.names);
   if (options.weights == nullptr) return {};
   const MorphWeights& weights = *options.weights;
   if (weights.frame_count() == 1) {
-    document.gltf.meshes[static_cast<std::size_t>(mesh)].weights.assign(weights.values.begin(),
-                                                                        weights.values.end());
+    for (const Document::MeshNode& made : meshes) {
+      document.gltf.meshes[static_cast<std::size_t>(made.mesh)].weights.assign(
+          weights.values.begin(), weights.values.end());
+    }
   } else if (weights.frame_count() > 1) {
     const auto times = key_times(weights.frame_count(), weights.rate);
     if (!times) return times.error();
-    document.add_weight_keys(node, *times, weights.values, options.name);
+    document.add_weight_keys(meshes, *times, weights.values,
+                             options.clip_name.empty() ? options.name : options.clip_name);
   }
   return {};
 }
 
-void Document::add_weight_keys(int node, std::span<const float> times,
+void Document::add_weight_keys(std::span<const MeshNode> meshes, std::span<const float> times,
                                std::span<const float> weights, const std::string& name) {
   const int input = add_floats(times, TINYGLTF_TYPE_SCALAR, Use::data, true);
   const int output = add_floats(weights, TINYGLTF_TYPE_SCALAR, Use::data, false);
-  add_weight_channel(node, input, output, name);
+  add_weight_channels(meshes, input, output, name);
 }
 
-void Document::add_weight_channel(int node, int times, int weights, const std::string& name) {
+void Document::add_weight_channels(std::span<const MeshNode> meshes, int times, int weights,
+                                   const std::string& name) {
   if (gltf.animations.empty()) gltf.animations.emplace_back().name = name;
-  add_channel(gltf.animations.front(), node, "weights", times, weights);
+  for (const MeshNode& made : meshes) {
+    add_channel(gltf.animations.front(), made.node, "weights", times, weights);
+  }
 }
 
 }  // namespace krok::gltf

@@ -15,9 +15,9 @@ namespace krok::gltf {
 // of check(MorphSet).
 Status check_morphs(const Model& model, const WriteOptions& options);
 
-// Adds them to the model's mesh, which has `attributes`, and to the animation of its node.
+// Adds them to the model's meshes, which have `attributes`, and to the animation of their nodes.
 Status add_morphs(Document& document, const Model& model,
-                  const std::map<std::string, int>& attributes, int mesh, int node,
-                  const WriteOptions& options);
+                  const std::map<std::string, int>& attributes,
+                  std::span<const Document::MeshNode> meshes, const WriteOptions& options);
 
 }  // namespace krok::gltf

@@ -99,19 +99,34 @@ std::map<std::string, int> Document::attributes_of(const std::map<std::string, i
   return attributes;
 }
 
-void Document::set_targets(int mesh, const std::vector<std::map<std::string, int>>& targets,
-                           std::span<const std::string> names) {
-  tinygltf::Mesh& changed = gltf.meshes[static_cast<std::size_t>(mesh)];
-  const auto ranges = ranges_.find(mesh);
-  for (std::size_t p = changed.primitives.size(); p-- > 0;) {
-    auto& own = changed.primitives[p].targets;
-    own = targets;
+void Document::for_each_own_primitive(
+    std::span<const MeshNode> meshes,
+    const std::function<void(tinygltf::Primitive&, const VertexRange&, bool)>& take) {
+  for (std::size_t m = meshes.size(); m-- > 0;) {
+    const auto ranges = ranges_.find(meshes[m].mesh);
     if (ranges == ranges_.end()) continue;
-    for (auto& target : own) target = attributes_of(target, ranges->second[p], p == 0);
+    auto& primitives = gltf.meshes[static_cast<std::size_t>(meshes[m].mesh)].primitives;
+    for (std::size_t p = primitives.size(); p-- > 0;) {
+      take(primitives[p], ranges->second[p], m == 0 && p == 0);
+    }
   }
+}
+
+void Document::set_targets(std::span<const MeshNode> meshes,
+                           const std::vector<std::map<std::string, int>>& targets,
+                           std::span<const std::string> names) {
   tinygltf::Value::Array list;
   for (const std::string& name : names) list.emplace_back(name);
-  changed.extras = tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(list)}});
+  for (const MeshNode& made : meshes) {
+    tinygltf::Mesh& changed = gltf.meshes[static_cast<std::size_t>(made.mesh)];
+    for (tinygltf::Primitive& primitive : changed.primitives) primitive.targets = targets;
+    changed.extras =
+        tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(list)}});
+  }
+  for_each_own_primitive(
+      meshes, [&](tinygltf::Primitive& primitive, const VertexRange& range, bool is_first) {
+        for (auto& target : primitive.targets) target = attributes_of(target, range, is_first);
+      });
 }
 
 }  // namespace krok::gltf

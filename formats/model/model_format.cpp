@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "formats/container/sections.h"
@@ -63,6 +64,26 @@ Status write_parts(const Model& model, ContainerWriter& container) {
   return write_texts("PARTNAME", names, container);
 }
 
+// Whether the section MESHNAME is written.
+bool names_meshes(const Model& model) {
+  return std::ranges::any_of(model.parts,
+                             [](const Model::Part& part) { return !part.mesh.empty(); });
+}
+
+Status write_mesh_names(const Model& model, ContainerWriter& container) {
+  std::vector<std::string> names;
+  for (const Model::Part& part : model.parts) names.push_back(part.mesh);
+  return write_texts("MESHNAME", names, container);
+}
+
+Status read_mesh_names(const ContainerReader& container, Model& model) {
+  if (!container.find("MESHNAME")) return {};
+  auto names = read_texts(container, "MESHNAME", model.parts.size());
+  if (!names) return names.error();
+  for (std::size_t i = 0; i < names->size(); ++i) model.parts[i].mesh = std::move((*names)[i]);
+  return {};
+}
+
 Status read_parts(const ContainerReader& container, std::uint32_t part_count, Model& model) {
   std::vector<PartRecord> records;
   if (Status status = read_array(container, "PARTS", part_count, records); !status) return status;
@@ -72,7 +93,7 @@ Status read_parts(const ContainerReader& container, std::uint32_t part_count, Mo
     model.parts.push_back({std::move((*names)[2 * i]), std::move((*names)[2 * i + 1]),
                            records[i].first_triangle, records[i].triangle_count});
   }
-  return {};
+  return read_mesh_names(container, model);
 }
 
 Status check_storable(const Model& model) {
@@ -84,10 +105,13 @@ Status check_storable(const Model& model) {
                  fmt::format("more than {} vertices, triangles or parts", kMaxCount));
   }
   for (const Model::Part& part : model.parts) {
-    if (is_storable_text(part.name) && is_storable_text(part.material)) continue;
+    if (is_storable_text(part.name) && is_storable_text(part.material) &&
+        is_storable_text(part.mesh)) {
+      continue;
+    }
     return Error("model-shape",
-                 "the name or material of a part is not valid UTF-8 or has a zero byte",
-                 "rename the part or its material");
+                 "the name, material or mesh of a part is not valid UTF-8 or has a zero byte",
+                 "rename the part, its material or its mesh");
   }
   return {};
 }
@@ -113,7 +137,8 @@ Status write(const Model& model, const WriteOptions& options, OutputFile& file) 
   const bool normals = !model.normals.empty();
   const bool coordinates = !model.texture_coordinates.empty();
   const bool tangents = !model.tangents.empty();
-  const std::size_t optional_sections = std::size_t{normals} + coordinates + tangents;
+  const bool meshes = names_meshes(model);
+  const std::size_t optional_sections = std::size_t{normals} + coordinates + tangents + meshes;
   ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
                             8 + kSkeletonSections + optional_sections);
   Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));
@@ -126,6 +151,7 @@ Status write(const Model& model, const WriteOptions& options, OutputFile& file) 
   if (status) status = write_array("VWEIGHTS", model.influence_weights, container);
   if (status) status = write_array("TRIANGLE", model.triangles, container);
   if (status) status = write_parts(model, container);
+  if (status && meshes) status = write_mesh_names(model, container);
   if (status) status = write_provenance(model.provenance, container);
   if (status) status = container.finish();
   return status;

@@ -235,7 +235,7 @@ void MeshBuilder::add_triangles(const nodes::Instance& instance, std::uint32_t f
   model.parts.push_back({to_utf8(shape.material.empty() ? mesh_name : shape.material),
                          to_utf8(shape.material),
                          static_cast<std::uint32_t>(model.triangles.size()),
-                         static_cast<std::uint32_t>(shape.triangles.size())});
+                         static_cast<std::uint32_t>(shape.triangles.size()), to_utf8(mesh_name)});
   actor_.part_materials.push_back(shape.material_index);
   for (auto triangle : shape.triangles) {
     const bool mirrored = placements_.of(triangle[0]).leftCols<3>().determinant() < 0;

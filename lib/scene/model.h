@@ -42,6 +42,7 @@ struct Model {
     std::string material;
     std::uint32_t first_triangle = 0;
     std::uint32_t triangle_count = 0;
+    std::string mesh = {};  // that it came from, as exporters name it; may be empty
   };
   std::vector<Part> parts;
 

@@ -30,7 +30,7 @@ say "1. A forearm and a 180-degree twist"
 
 say "2. Skin with each method"
 for method in "${methods[@]}"; do
-  "$bin/krok-skin" -q --method "$method" --every 45 -o "$method.glb" -- forearm.model twist.anim
+  "$bin/krok-skin" -q --as baked --method "$method" --every 45 -o "$method.glb" -- forearm.model twist.anim
 done
 "$bin/krok-plot" -q --sheet twist.png --sides front --moments 0s,0.75s,1.5s,2.25s,3s --size 150 \
   -- "${methods[@]/%/.glb}"

@@ -55,11 +55,11 @@ clip=${base}_clip.glb
 same_rig=${base}_rig.glb
 refusal=$(mktemp)
 trap 'rm -f -- "$refusal"' EXIT
-if ! "$bin/krok-skin" -q --as clip -o "$clip" -- "$base.model" "$base.anim" 2>"$refusal"; then
+if ! "$bin/krok-skin" -q --as baked -o "$clip" -- "$base.model" "$base.anim" 2>"$refusal"; then
   grep -q '\[skin-clip-too-long\]' "$refusal" || { cat "$refusal" >&2 && exit 2; }
   baked=
   for part in "${parts[@]}"; do
-    if "$bin/krok-skin" -q --as clip --to "$part" -o "$clip" -- "$base.model" "$base.anim" \
+    if "$bin/krok-skin" -q --as baked --to "$part" -o "$clip" -- "$base.model" "$base.anim" \
       2>"$refusal"; then
       baked=$part
       break

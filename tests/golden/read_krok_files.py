@@ -128,6 +128,8 @@ def read_model(container):
     require(1 <= influences <= 8, "impossible number of influences")
     skeleton = container.skeleton(joints)
     names = container.texts("PARTNAME", 2 * parts)
+    meshes = (container.texts("MESHNAME", parts) if "MESHNAME" in container.sections
+              else [""] * parts)
     ranges = container.numbers("PARTS", "I", 2, parts)
     next_triangle = 0
     for first, count in ranges:
@@ -147,7 +149,8 @@ def read_model(container):
             "tangents": container.optional_numbers("TANGENT", "f", 4, vertices),
             "joints": bound, "weights": weights, "triangles": corners,
             "parts": [{"name": names[2 * i], "material": names[2 * i + 1],
-                       "first_triangle": ranges[i][0], "triangle_count": ranges[i][1]}
+                       "first_triangle": ranges[i][0], "triangle_count": ranges[i][1],
+                       "mesh": meshes[i]}
                       for i in range(parts)]}
 
 

@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "core/file.h"
+#include "core/text.h"
 
 namespace krok::cli {
 
@@ -24,6 +25,12 @@ std::string file_name_of(const std::string& name) {
 
 std::string name_of_input(const std::string& path) {
   return path == "-" ? "standard input" : base_name(path);
+}
+
+std::string clip_name_of(const std::string& path) {
+  const std::string name = base_name(path);
+  const std::string stem = name.substr(0, name.size() - extension(path).size());
+  return path == "-" || stem.empty() ? "motion" : to_utf8(stem);
 }
 
 }  // namespace krok::cli

@@ -11,4 +11,7 @@ std::string file_name_of(const std::string& name);
 // Display name of an input: the base name, "walk.bvh", or "standard input" for "-".
 std::string name_of_input(const std::string& path);
 
+// The name of a motion in a file of several: "walk" for "takes/walk.anim", "motion" for "-". UTF-8.
+std::string clip_name_of(const std::string& path);
+
 }  // namespace krok::cli

@@ -53,16 +53,22 @@ void declare(CommandOptions& command, Options& options) {
       .add_option("subject IN.model", options.subject,
                   "Skinned mesh: a .model, or a .character with its materials and expressions")
       .required();
-  command.add_option("motion IN.anim", options.motion,
-                     "Motion: .anim, or a capture read as by krok-import; without it, the mesh is "
-                     "in its reference pose");
+  command.add_option("motions IN.anim", options.motions,
+                     "Motions: .anim, or captures read as by krok-import; several of one skeleton "
+                     "become the clips of one rig, named after their files. Without any, the mesh "
+                     "is in its reference pose");
   add_choice(command, "--as", options.as,
-             {{"clip", As::clip}, {"pose", As::pose}, {"rig", As::rig}, {"frames", As::frames}},
-             "What to write. clip: the baked motion, as glTF with one morph target per frame or as "
-             "a point cache (.pc2). pose: one mesh. rig: joints, weights and the animation, for "
-             "skinning in the viewer. frames: one file per frame, OUT_0000.glb, OUT_0001.glb, ... "
-             "for -o OUT.glb. Meshes can be .glb, .gltf or .obj",
-             "WHAT", "clip");
+             {{"rig", As::rig},
+              {"motion", As::motion},
+              {"baked", As::baked},
+              {"pose", As::pose},
+              {"frames", As::frames}},
+             "What to write. rig: mesh, joints, weights and animations, for game engines, Blender "
+             "and viewers. motion: the same without the mesh. baked: the motion as glTF with one "
+             "morph target per frame, or as a point cache (.pc2); large. pose: one mesh. frames: "
+             "one file per frame, OUT_0000.glb, OUT_0001.glb, ... for -o OUT.glb. Poses can be "
+             ".glb, .gltf or .obj",
+             "WHAT", "rig, baked for .pc2");
   command
       .add_option("--time T", options.time, "For --as pose: the time, such as 1.5s, 250ms or 120f")
       .default_str("0");
@@ -109,16 +115,16 @@ Result<double> reduce_tolerance(const Options& options) {
   return Error("usage", fmt::format("--reduce {} is not more than 0", options.reduce));
 }
 
+As what_to_write(const Options& options, const std::string& output) {
+  if (options.as != As::automatic) return options.as;
+  return extension(output) == ".pc2" ? As::baked : As::rig;
+}
+
 // Options without effect are errors.
 Status check(const Options& options) {
   for (const auto& [option, text] :
        {std::pair{"--time", &options.time}, {"--from", &options.from}, {"--to", &options.to}}) {
     if (Status status = check_time(option, *text); !status) return status;
-  }
-  const bool pose = options.as == As::pose;
-  if (!pose && !options.time.empty()) {
-    return Error("usage", "--time is for --as pose",
-                 "use --from and --to for a range of the motion");
   }
   if (!options.weights.empty() && options.morphs.empty() && !is_character(options.subject)) {
     return Error("usage", "--weights needs morph targets",
@@ -128,15 +134,32 @@ Status check(const Options& options) {
     return Error("usage", "--morph is for a model; a character has its own targets",
                  "edit \"morphs\" in the .character file");
   }
-  if (!options.morphs.empty() && options.weights.empty() && options.as != As::rig) {
+  if (options.as != As::pose && !options.time.empty()) {
+    return Error("usage", "--time is for --as pose",
+                 "use --from and --to for a range of the motion");
+  }
+  // Without --as, the output determines it.
+  return options.as == As::automatic ? Status() : check_for(options.as, options);
+}
+
+Status check_for(As as, const Options& options) {
+  const bool pose = as == As::pose, rigged = as == As::rig || as == As::motion;
+  if (!options.morphs.empty() && options.weights.empty() && as != As::rig) {
     return Error("usage", "--morph has no effect without --weights",
                  "only --as rig writes targets without weights");
   }
-  if (options.as == As::rig && options.method != SkinMethod::linear) {
-    return Error("usage", "--method is not for --as rig, which leaves skinning to the viewer",
-                 "use --as clip to bake the mesh with this method");
+  if (rigged && options.method != SkinMethod::linear) {
+    return Error("usage", "--method is not for a rig, which leaves skinning to the viewer",
+                 "use --as baked to bake the mesh with this method");
   }
-  if (options.as != As::rig && (!options.reduce.empty() || options.quantize || options.compress)) {
+  if (as == As::motion && !(options.morphs.empty() && options.weights.empty())) {
+    return Error("usage", "--morph and --weights are not for --as motion, which has no mesh",
+                 "use --as rig");
+  }
+  if (as == As::motion && options.motions.empty()) {
+    return Error("usage", "--as motion needs a motion");
+  }
+  if (as != As::rig && (!options.reduce.empty() || options.quantize || options.compress)) {
     return Error("usage", "--reduce, --quantize and --compress are for --as rig");
   }
   if (!options.reduce.empty()) {
@@ -144,6 +167,15 @@ Status check(const Options& options) {
   }
   if (pose && !(options.from.empty() && options.to.empty() && options.every == 1)) {
     return Error("usage", "--from, --to and --every are not for --as pose", "use --time");
+  }
+  if (options.motions.size() < 2) return {};
+  if (!rigged) {
+    return Error("usage", "several motions are for --as rig and --as motion",
+                 "use --out-dir DIR for a file each");
+  }
+  if (!(options.from.empty() && options.to.empty() && options.weights.empty())) {
+    return Error("usage", "--from, --to and --weights are for a single motion",
+                 "cut the motions with krok-edit");
   }
   return {};
 }
@@ -174,7 +206,7 @@ Result<double> pose_time(const Options& options, const Clip& clip) {
   if (seconds < 0 || seconds > clip.duration() * (1 + 1e-9)) {
     return Error("skin-time", fmt::format("--time {} is outside the motion, which is {} s long",
                                           options.time, readable(clip.duration())))
-        .in_file(options.motion);
+        .in_file(options.motions.empty() ? options.subject : options.motions.front());
   }
   return seconds;
 }
@@ -184,16 +216,20 @@ ToolSpec make_spec() {
   ToolSpec spec = spec_of("krok-skin", options, declare, check, run);
   spec.summary =
       "Skins a mesh with a skeleton's motion and writes glTF, a point cache or OBJ files";
-  spec.inputs = "IN.model IN.anim";
+  spec.inputs = "IN.model IN.anim...";
   spec.examples = {
-      {"krok-skin body.model walk.anim -o walk.glb",
-       "baked vertex animation, for viewers without skinning"},
-      {"krok-skin body.model walk.anim --as rig -o walk.glb", "a rig for a game engine or Blender"},
-      {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one pose"},
-      {"krok-skin hero.character walk.anim --weights smile.csv --as rig -o hero.glb",
+      {"krok-skin body.model walk.anim -o walk.glb", "a rig for a game engine or Blender"},
+      {"krok-skin hero.character walk.anim run.anim idle.anim -o hero.glb",
+       "one character with three clips: walk, run and idle"},
+      {"krok-skin hero.character walk.anim run.anim --as motion -o hero_moves.glb",
+       "the clips alone, on the same skeleton"},
+      {"krok-skin hero.character walk.anim --weights smile.csv -o hero.glb",
        "a character with its materials, eyes and expressions"},
+      {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one pose"},
+      {"krok-skin body.model walk.anim --as baked -o baked.glb",
+       "baked vertex animation, for viewers without skinning"},
       {"krok-skin body.model walk.anim -o walk.pc2", "a point cache for Blender or 3ds Max"}};
-  spec.batch = {{".anim"}, always(".glb")};
+  spec.batch = {{".anim", ".kanim"}, always(".glb")};
   return spec;
 }
 

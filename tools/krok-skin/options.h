@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "formats/pc2/pc2.h"
@@ -14,15 +15,15 @@ namespace krok::cli::skin {
 
 enum class Influences { all = 0, four = 4, eight = 8 };
 
-enum class As { clip, pose, rig, frames };
+enum class As { automatic, rig, motion, baked, pose, frames };
 
 // Command-line options.
 struct Options {
-  std::string subject;  // a model or a character
-  std::string motion;   // empty: the reference pose
-  std::string morphs;   // --morph, empty: none
-  std::string weights;  // --weights, empty: none
-  As as = As::clip;
+  std::string subject;                      // a model or a character
+  std::vector<std::string> motions;         // none: the reference pose
+  std::string morphs;                       // --morph, empty: none
+  std::string weights;                      // --weights, empty: none
+  As as = As::automatic;                    // see what_to_write()
   SkinMethod method = SkinMethod::linear;   // always for --as rig
   std::string time;                         // --as pose; a ClipTime, empty: the start
   std::string from, to;                     // time range; ClipTimes, empty: the ends; not --as pose
@@ -41,8 +42,14 @@ bool is_character(const std::string& path);
 
 void declare(CommandOptions& command, Options& options);
 
+// What --as stands for: baked for a point cache (.pc2), else a rig, where it is not given.
+As what_to_write(const Options& options, const std::string& output);
+
 // Checks the options for values that are invalid for any file.
 Status check(const Options& options);
+
+// The same with what is written, once the output is known.
+Status check_for(As as, const Options& options);
 
 // The frames of a motion selected by --from, --to and --every; codes skin-no-frames, skin-time.
 struct Range {

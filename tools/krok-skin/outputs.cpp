@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <memory>
 
+#include "core/numbers.h"
 #include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/obj/obj_writer.h"
@@ -22,12 +24,15 @@ namespace {
 constexpr int kManyMorphTargets = 1000;
 // Default mesh name, for object lists of viewers.
 constexpr const char* kMeshName = "body";
+// Sizes that are printed before a baked motion is written.
+constexpr std::uint64_t kLargeBytes = 50'000'000;
 
 gltf::WriteOptions write_options(const Subject& subject, const ToolContext& context) {
   gltf::WriteOptions options;
   options.binary = extension(context.output) != ".gltf";
   options.provenance = context.provenance();
   options.name = kMeshName;
+  options.clip_name = subject.clip_name;
   options.materials = subject.materials;
   return options;
 }
@@ -95,6 +100,12 @@ Status check_bakeable(const Subject& subject, ToolContext& context) {
                        step * subject.every)
                  : "use --as rig or -o OUT.pc2 for any number of vertices and frames");
   }
+  if (bytes > kLargeBytes) {
+    context.log(fmt::format("{}: {} of {} will take {} MB; a rig (--as rig) has the mesh once",
+                            context.output, counted(frames, "frame"),
+                            counted(subject.model.vertex_count(), "vertex", "vertices"),
+                            readable(static_cast<double>(bytes) / 1e6, 3)));
+  }
   if (frames - 1 > kManyMorphTargets) {
     context.warn("skin-many-targets",
                  fmt::format("{} morph targets are more than some viewers support", frames - 1),
@@ -121,9 +132,9 @@ Status check_output(As as, const std::string& output) {
   }
   if (output == "-" || end == ".glb" || end == ".gltf") return {};
   if (end == ".pc2") {
-    if (as == As::clip) return {};
+    if (as == As::baked) return {};
     return Error("skin-format", "a point cache (.pc2) can only hold the vertices of a whole motion",
-                 "use --as clip; write the mesh with --as pose -o OUT.obj")
+                 "use --as baked; write the mesh with --as pose -o OUT.obj")
         .in_file(output);
   }
   if (end == ".obj") {
@@ -149,8 +160,8 @@ Status write_pose(const Subject& subject, const SkinBinding& binding, double sec
                       [&](OutputFile& file) { return (*write)(vertices.shape(), file); });
 }
 
-Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up,
-                  ToolContext& context) {
+Status write_baked(const Subject& subject, const SkinBinding& binding, pc2::Up up,
+                   ToolContext& context) {
   const bool cache = extension(context.output) == ".pc2";
   if (!cache) {
     if (Status status = check_bakeable(subject, context); !status) return status;
@@ -174,8 +185,17 @@ Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up
   });
 }
 
+Status write_motion(const Subject& subject, ToolContext& context) {
+  const auto clips = clips_of(subject, kMeshName, context);
+  if (!clips) return clips.error();
+  return write_output(context, context.output, [&](OutputFile& file) {
+    return gltf::write_skeleton(subject.model.skeleton, clips->named(),
+                                write_options(subject, context), file);
+  });
+}
+
 Status write_rig(const Options& chosen, const Subject& subject, ToolContext& context) {
-  const auto rig = small_rig(chosen, subject, context);
+  const auto rig = small_rig(chosen, subject, kMeshName, context);
   if (!rig) return rig.error();
   return write_output(context, context.output, [&](OutputFile& file) {
     gltf::WriteOptions options = write_options(subject, context);
@@ -184,7 +204,7 @@ Status write_rig(const Options& chosen, const Subject& subject, ToolContext& con
     if (subject.changes_shape()) options.weights = &subject.weights;
     options.quantized = chosen.quantize;
     options.compressed = chosen.compress;
-    return gltf::write_rig(rig->model, rig->tracks, options, file);
+    return gltf::write_rig(rig->model, rig->clips.named(), options, file);
   });
 }
 

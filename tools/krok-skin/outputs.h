@@ -16,12 +16,16 @@ Status check_output(As as, const std::string& output);
 Status write_pose(const Subject& subject, const SkinBinding& binding, double seconds,
                   ToolContext& context);
 
-// The whole motion as an animated mesh. Codes skin-no-frames, skin-clip-too-long.
-Status write_clip(const Subject& subject, const SkinBinding& binding, pc2::Up up,
-                  ToolContext& context);
+// The whole motion as an animated mesh; says how large it is if it is over 50 MB. Codes
+// skin-no-frames, skin-clip-too-long.
+Status write_baked(const Subject& subject, const SkinBinding& binding, pc2::Up up,
+                   ToolContext& context);
 
-// Joints, weights and animation tracks.
+// Joints, weights and the animations of all motions.
 Status write_rig(const Options& options, const Subject& subject, ToolContext& context);
+
+// The same without the mesh.
+Status write_motion(const Subject& subject, ToolContext& context);
 
 // One file per frame, written in parallel; all appear or none. Returns their names for display:
 // "walk_0000.glb to walk_0119.glb".

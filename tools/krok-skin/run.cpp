@@ -11,6 +11,20 @@ namespace krok::cli::skin {
 
 namespace {
 
+// The file of the first motion, or of the mesh, for messages.
+const std::string& motion_of(const Options& options) {
+  return options.motions.empty() ? options.subject : options.motions.front();
+}
+
+Json clip_json(const std::string& name, const Clip& clip) {
+  Json json;
+  json["name"] = name;
+  json["frames"] = clip.frame_count();
+  json["rate"] = clip.rate;
+  json["duration"] = clip.duration();
+  return json;
+}
+
 Json result_of(const Subject& subject, int frames) {
   Json result;
   result["vertices"] = subject.model.vertex_count();
@@ -18,24 +32,44 @@ Json result_of(const Subject& subject, int frames) {
   result["joints"] = subject.model.skeleton.joint_count();
   result["frames"] = frames;
   result["rate"] = subject.clip.rate;
+  result["clips"] = Json::array();
+  if (!subject.clip_name.empty()) {
+    result["clips"].push_back(clip_json(subject.clip_name, subject.clip));
+  }
+  for (const Subject::Motion& other : subject.others) {
+    result["clips"].push_back(clip_json(other.name, other.clip));
+  }
   if (subject.morphs.target_count() > 0) result["morph_targets"] = subject.morphs.names;
   return result;
 }
 
+// "; clips: walk (120 frames), run (80)", or nothing without motions.
+std::string clips_text(const Subject& subject) {
+  if (subject.others.empty()) return {};
+  std::string text = fmt::format("; clips: {} ({})", subject.clip_name, subject.clip.frame_count());
+  for (const Subject::Motion& other : subject.others) {
+    text += fmt::format(", {} ({})", other.name, other.clip.frame_count());
+  }
+  return text + " frames";
+}
+
 // Writes the output; returns its names for display.
-Result<std::string> write(const Options& options, const Subject& subject, ToolContext& context) {
-  if (options.as == As::rig) {
+Result<std::string> write(As as, const Options& options, const Subject& subject,
+                          ToolContext& context) {
+  if (as == As::rig || as == As::motion) {
     if (subject.clip.frame_count() == 0) {
       context.warn("skin-no-frames", "the motion has no frames; the rig is not animated");
     }
-    if (Status status = write_rig(options, subject, context); !status) return status.error();
+    Status status =
+        as == As::rig ? write_rig(options, subject, context) : write_motion(subject, context);
+    if (!status) return status.error();
     return context.output;
   }
   const SkinBinding binding(subject.model, options.method);
-  if (options.as == As::frames) return write_frames(subject, binding, context);
-  if (options.as == As::clip) {
-    Status status = write_clip(subject, binding, options.up, context);
-    if (!status) return std::move(status.error()).in_file(options.motion);
+  if (as == As::frames) return write_frames(subject, binding, context);
+  if (as == As::baked) {
+    Status status = write_baked(subject, binding, options.up, context);
+    if (!status) return std::move(status.error()).in_file(motion_of(options));
     return context.output;
   }
   const auto seconds = pose_time(options, subject.clip);
@@ -48,26 +82,29 @@ Result<std::string> write(const Options& options, const Subject& subject, ToolCo
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status status = check(options); !status) return status.error();
-  if (Status status = check_output(options.as, context.output); !status) return status.error();
+  const As as = what_to_write(options, context.output);
+  if (Status status = check_for(as, options); !status) return status.error();
+  if (Status status = check_output(as, context.output); !status) return status.error();
   auto subject = load(options, context);
   if (!subject) return subject.error();
-  const bool every_frame = options.as == As::clip || options.as == As::frames;
+  const bool every_frame = as == As::baked || as == As::frames;
   if (subject->clip.frame_count() == 0 && every_frame) {
     return Error("skin-no-frames", "the motion has no frames",
                  "use --as pose for the reference pose")
-        .in_file(options.motion);
+        .in_file(motion_of(options));
   }
-  const int frames = options.as == As::pose ? 1 : subject->clip.frame_count();
+  const int frames = as == As::pose ? 1 : subject->clip.frame_count();
   context.report.result = result_of(*subject, frames);
   apply_influence_limit(options, *subject, context);
-  const auto written = write(options, *subject, context);
+  const auto written = write(as, options, *subject, context);
   if (!written) return written.error();
-  context.log(options.as == As::frames
+  context.log(as == As::frames
                   ? fmt::format("{}: {}", *written, counted(frames, "file"))
-                  : fmt::format("{}: {}, {}", *written,
-                                counted(subject->model.vertex_count(), "vertex", "vertices"),
-                                counted(frames, "frame")));
+                  : fmt::format("{}: {}, {}{}", *written,
+                                as == As::motion
+                                    ? counted(subject->model.skeleton.joint_count(), "joint")
+                                    : counted(subject->model.vertex_count(), "vertex", "vertices"),
+                                counted(frames, "frame"), clips_text(*subject)));
   return kExitDone;
 }
 

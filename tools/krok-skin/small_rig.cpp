@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/numbers.h"
 #include "formats/gltf/quantize.h"
@@ -17,28 +18,31 @@ std::string millimetres(double metres) {
   return readable(1e3 * metres, 3) + " mm";
 }
 
-// The palettes of the motion's frames, or of the reference pose.
-PaletteSource palettes_of(const Subject& subject) {
-  return [&subject, back = inverse_reference(subject.model.skeleton)](
-             int frame, std::span<SkinMatrix> palette) {
+// The palettes of a motion's frames.
+PaletteSource palettes_of(const Skeleton& skeleton, const Clip& clip, const Stretches& stretches) {
+  return [&clip, &stretches, back = inverse_reference(skeleton)](int frame,
+                                                                 std::span<SkinMatrix> palette) {
     std::vector<Transform> pose(palette.size());
-    subject.clip.get_pose(frame, pose);
+    clip.get_pose(frame, pose);
     for (std::size_t j = 0; j < palette.size(); ++j) {
-      const Stretch stretch =
-          subject.stretches.empty()
-              ? Stretch()
-              : subject.stretches[static_cast<std::size_t>(frame) * palette.size() + j];
+      const Stretch stretch = stretches.empty()
+                                  ? Stretch()
+                                  : stretches[static_cast<std::size_t>(frame) * palette.size() + j];
       palette[j] = skin_matrix(back[j], pose[j], stretch);
     }
   };
 }
 
 // Notes how joints that change scale are written, and warns where nodes cannot have it.
-void report_stretch(const Subject& subject, const gltf::JointTracks& tracks, double largest_error,
-                    ToolContext& context) {
-  if (subject.stretches.empty()) return;
-  const auto sheared = std::ranges::count_if(
-      tracks.joints, [](const gltf::JointTrack& joint) { return !joint.inner_rotations.empty(); });
+void report_stretch(const Subject& subject, const std::vector<gltf::JointTracks>& all,
+                    double largest_error, ToolContext& context) {
+  if (std::ranges::none_of(all, &gltf::JointTracks::are_stretched)) return;
+  int sheared = 0;
+  for (int j = 0; j < subject.model.skeleton.joint_count(); ++j) {
+    sheared += std::ranges::any_of(all, [&](const gltf::JointTracks& tracks) {
+      return !tracks.joints[static_cast<std::size_t>(j)].inner_rotations.empty();
+    });
+  }
   context.report.result["joints_with_stretch_nodes"] = sheared;
   if (sheared > 0) {
     Diagnostic note =
@@ -50,10 +54,10 @@ void report_stretch(const Subject& subject, const gltf::JointTracks& tracks, dou
   }
   if (largest_error < 2e-4) return;
   context.warn("skin-stretch",
-               fmt::format("joints below one that is flattened stand apart from it, which nodes "
+               fmt::format("joints below one that is flattened are apart from it, which nodes "
                            "cannot have: they are up to {} off",
                            millimetres(largest_error)),
-               "use --as clip to bake the mesh");
+               "use --as baked to bake the mesh");
 }
 
 void warn_of_second_set(const Model& model, ToolContext& context) {
@@ -82,11 +86,16 @@ void apply_influence_limit(const Options& options, Subject& subject, ToolContext
   const Model full = subject.model;
   const int limit = static_cast<int>(options.influences);
   const int changed = limit_influences(subject.model, limit);
-  const int frames = subject.clip.frame_count();
   MeshError error;
+  const auto measure = [&](const Clip& clip, const Stretches& stretches) {
+    const PaletteSource palettes = palettes_of(full.skeleton, clip, stretches);
+    const MeshError of_clip =
+        mesh_error({full, palettes}, {subject.model, palettes}, clip.frame_count(), context.jobs);
+    if (of_clip.largest > error.largest) error = of_clip;
+  };
   if (changed > 0) {
-    const PaletteSource palettes = palettes_of(subject);
-    error = mesh_error({full, palettes}, {subject.model, palettes}, frames, context.jobs);
+    measure(subject.clip, subject.stretches);
+    for (const Subject::Motion& other : subject.others) measure(other.clip, other.stretches);
   }
   context.report.result["influences"] = {{"limit", limit},
                                          {"vertices_changed", changed},
@@ -101,49 +110,106 @@ void apply_influence_limit(const Options& options, Subject& subject, ToolContext
                   millimetres(error.largest), error.vertex, error.moment));
 }
 
-Result<SmallRig> small_rig(const Options& options, const Subject& subject, ToolContext& context) {
+std::vector<gltf::NamedTracks> Clips::named() const {
+  std::vector<gltf::NamedTracks> all;
+  for (std::size_t i = 0; i < names.size(); ++i) all.push_back({names[i], &tracks[i]});
+  return all;
+}
+
+Result<Clips> clips_of(const Subject& subject, const std::string& still_name,
+                       ToolContext& context) {
+  Clips clips;
+  double largest_error = 0;
+  for (const Subject::NamedMotion& motion : subject.all_motions(still_name)) {
+    double error = 0;
+    auto tracks = gltf::joint_tracks(subject.model.skeleton, motion.clip, motion.stretches, error);
+    if (!tracks) return tracks.error();
+    largest_error = std::max(largest_error, error);
+    clips.names.push_back(motion.name);
+    clips.tracks.push_back(*std::move(tracks));
+  }
+  report_stretch(subject, clips.tracks, largest_error, context);
+  return clips;
+}
+
+namespace {
+
+// What --reduce and --quantize did to all clips.
+struct Loss {
+  std::size_t keys = 0, keys_before = 0;
+  MeshError error;     // the largest of all clips
+  std::string clip;    // in which that is
+  double rounded = 0;  // the largest error of reduced clips, metres
+};
+
+Result<Loss> make_small(const Options& options, std::optional<double> tolerance, SmallRig& rig,
+                        ToolContext& context) {
+  Loss loss;
+  const Model shown = options.quantize ? gltf::quantized(rig.model) : rig.model;
+  for (std::size_t i = 0; i < rig.clips.names.size(); ++i) {
+    gltf::JointTracks& tracks = rig.clips.tracks[i];
+    const gltf::JointTracks full = tracks;
+    if (tolerance) {
+      const auto reduction =
+          gltf::reduce_for_mesh(rig.model, *tolerance, options.quantize, context.jobs, tracks);
+      if (!reduction) return reduction.error();
+      loss.keys += reduction->keys_after;
+      loss.keys_before += reduction->keys_before;
+      loss.rounded = std::max(loss.rounded, reduction->error.largest);
+    } else {
+      gltf::round_rotations(tracks);
+    }
+    const MeshError error = gltf::mesh_error(rig.model, full, shown, tracks, context.jobs);
+    if (i > 0 && error.largest <= loss.error.largest) continue;
+    loss.error = error;
+    loss.clip = rig.clips.names[i];
+  }
+  return loss;
+}
+
+}  // namespace
+
+Result<SmallRig> small_rig(const Options& options, const Subject& subject,
+                           const std::string& still_name, ToolContext& context) {
   if (options.compress && extension(context.output) == ".gltf") {
     return Error("usage", "--compress is for .glb files", "use -o OUT.glb").in_file(context.output);
   }
-  double largest_error = 0;
-  auto tracks =
-      gltf::joint_tracks(subject.model.skeleton, subject.clip, subject.stretches, largest_error);
-  if (!tracks) return tracks.error();
-  report_stretch(subject, *tracks, largest_error, context);
+  auto clips = clips_of(subject, still_name, context);
+  if (!clips) return clips.error();
   warn_of_second_set(subject.model, context);
-  SmallRig rig{subject.model, subject.morphs, *std::move(tracks)};
+  SmallRig rig{subject.model, subject.morphs, *std::move(clips)};
   if (!options.reduce.empty() || options.quantize) {
-    const gltf::JointTracks full = rig.tracks;
+    std::optional<double> tolerance;
+    if (!options.reduce.empty()) {
+      const auto given = reduce_tolerance(options);
+      if (!given) return given.error();
+      tolerance = *given;
+    }
+    const auto loss = make_small(options, tolerance, rig, context);
+    if (!loss) return loss.error();
     Json facts;
     std::string words;
-    if (!options.reduce.empty()) {
-      const auto tolerance = reduce_tolerance(options);
-      if (!tolerance) return tolerance.error();
-      const auto reduction =
-          gltf::reduce_for_mesh(rig.model, *tolerance, options.quantize, context.jobs, rig.tracks);
-      if (!reduction) return reduction.error();
-      facts["keys"] = reduction->keys_after;
-      facts["keys_before"] = reduction->keys_before;
-      words = fmt::format("{} of {}, ", grouped(static_cast<long long>(reduction->keys_after)),
-                          counted(static_cast<long long>(reduction->keys_before), "key"));
-      if (reduction->error.largest > *tolerance) {
+    if (tolerance) {
+      facts["keys"] = loss->keys;
+      facts["keys_before"] = loss->keys_before;
+      words = fmt::format("{} of {}, ", grouped(static_cast<long long>(loss->keys)),
+                          counted(static_cast<long long>(loss->keys_before), "key"));
+      if (loss->rounded > *tolerance) {
         context.warn("skin-reduce",
                      fmt::format("rotations of 16 bits are up to {} off by themselves: all keys "
                                  "are kept",
-                                 millimetres(reduction->error.largest)),
+                                 millimetres(loss->rounded)),
                      "use a larger tolerance, or leave out --quantize");
       }
-    } else {
-      gltf::round_rotations(rig.tracks);
     }
-    const Model shown = options.quantize ? gltf::quantized(rig.model) : rig.model;
-    const MeshError error = gltf::mesh_error(rig.model, full, shown, rig.tracks, context.jobs);
-    facts.update(error_json(error));
+    facts.update(error_json(loss->error));
+    if (rig.clips.names.size() > 1) facts["clip"] = loss->clip;
     if (options.quantize) facts["quantization_bound"] = gltf::quantization_bound(rig.model);
     context.report.result["rig"] = std::move(facts);
-    context.log(fmt::format("{}max error on the mesh {} (vertex {}, frame {})", words,
-                            millimetres(error.largest), error.vertex,
-                            readable(0.5 * error.moment)));
+    context.log(fmt::format("{}max error on the mesh {} (vertex {}, {}frame {})", words,
+                            millimetres(loss->error.largest), loss->error.vertex,
+                            rig.clips.names.size() > 1 ? loss->clip + ", " : "",
+                            readable(0.5 * loss->error.moment)));
   }
   if (options.compress) gltf::order_for_compression(rig.model, rig.morphs);
   return rig;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/result.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/gltf/joint_tracks.h"
@@ -13,15 +16,28 @@ namespace krok::cli::skin {
 // Applies --influences to the model, and reports how far vertices move by it over the motion.
 void apply_influence_limit(const Options& options, Subject& subject, ToolContext& context);
 
+// The animations of all motions of a subject.
+struct Clips {
+  std::vector<std::string> names;
+  std::vector<gltf::JointTracks> tracks;
+  // Refers to both.
+  std::vector<gltf::NamedTracks> named() const;
+};
+
+// Reports joints that shear. `still_name` is that of a reference pose in which shapes change.
+// Codes: those of joint_tracks().
+Result<Clips> clips_of(const Subject& subject, const std::string& still_name, ToolContext& context);
+
 // What --as rig writes, with --reduce, --quantize and --compress applied.
 struct SmallRig {
   Model model;
   MorphSet morphs;
-  gltf::JointTracks tracks;
+  Clips clips;
 };
 
 // Reports the error of what is lost. Warns where the file needs a second set of influences. Codes:
 // those of joint_tracks() and reduce_for_mesh().
-Result<SmallRig> small_rig(const Options& options, const Subject& subject, ToolContext& context);
+Result<SmallRig> small_rig(const Options& options, const Subject& subject,
+                           const std::string& still_name, ToolContext& context);
 
 }  // namespace krok::cli::skin

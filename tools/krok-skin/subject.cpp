@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "capture/unique_names.h"
 #include "core/numbers.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
@@ -14,6 +15,7 @@
 #include "motion/cut.h"
 #include "scene/tangents.h"
 #include "skin/bind.h"
+#include "tools/cli/file_name.h"
 
 namespace krok::cli::skin {
 
@@ -26,8 +28,9 @@ class Loader {
   Loader(const Options& options, ToolContext& context) : options_(options), context_(context) {}
 
   Result<Subject> load() {
-    for (const auto step : {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights,
-                            &Loader::read_clip, &Loader::take_weights, &Loader::take_part}) {
+    for (const auto step :
+         {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights, &Loader::read_clip,
+          &Loader::take_weights, &Loader::take_part, &Loader::read_others}) {
       if (Status status = (this->*step)(); !status) return status.error();
     }
     return std::move(subject_);
@@ -111,27 +114,61 @@ class Loader {
 
   Status read_clip() {
     Clip& clip = subject_.clip;
-    if (options_.motion.empty()) {
+    if (options_.motions.empty()) {
       clip.skeleton = subject_.model.skeleton;
       clip.rate = weights_ && weights_->rate ? *weights_->rate : kStillRate;
       clip.resize(1);
       clip.set_pose(0, clip.skeleton.reference);
       return {};
     }
-    auto read = io::open_motion(options_.motion, context_, {.stretches = &subject_.stretches});
+    const std::string& path = options_.motions.front();
+    auto read = io::open_motion(path, context_, {.stretches = &subject_.stretches});
     if (!read) return read.error();
     clip = std::move(*read);
+    subject_.clip_name = names_.make(clip_name_of(path));
     auto bound = bind_to(std::move(subject_.model), clip.skeleton);
-    if (!bound) return std::move(bound.error()).in_file(options_.motion);
+    if (!bound) return std::move(bound.error()).in_file(path);
     subject_.model = std::move(*bound);
     std::erase_if(subject_.eyes, [&](const Character::Eye& eye) {  // whose joints were removed
       return subject_.model.skeleton.find(eye.joint) < 0;
     });
-    for (Diagnostic difference : reference_differences(subject_.model.skeleton, clip)) {
-      difference.where.file = options_.motion;
-      context_.diagnose(std::move(difference));
+    report_differences(clip, path);
+    return {};
+  }
+
+  // The further motions, which must be of the first one's skeleton.
+  Status read_others() {
+    for (std::size_t i = 1; i < options_.motions.size(); ++i) {
+      const std::string& path = options_.motions[i];
+      Stretches stretches;
+      auto clip = io::open_motion(path, context_, {.stretches = &stretches});
+      if (!clip) return clip.error();
+      const std::string difference =
+          difference_in_structure(subject_.model.skeleton, clip->skeleton);
+      if (!difference.empty()) {
+        return Error("skin-motions",
+                     fmt::format("its skeleton is not that of {}: {}",
+                                 base_name(options_.motions.front()), difference),
+                     "krok-retarget puts a motion on another skeleton")
+            .in_file(path);
+      }
+      report_differences(*clip, path);
+      if (options_.every > 1 && clip->frame_count() > 0) {
+        const int last = clip->frame_count() - 1;
+        stretches = cut(stretches, clip->joint_count(), 0, last, options_.every);
+        *clip = cut(*clip, 0, last, options_.every);
+      }
+      subject_.others.push_back(
+          {names_.make(clip_name_of(path)), std::move(*clip), std::move(stretches)});
     }
     return {};
+  }
+
+  void report_differences(const Clip& clip, const std::string& path) {
+    for (Diagnostic difference : reference_differences(subject_.model.skeleton, clip)) {
+      difference.where.file = path;
+      context_.diagnose(std::move(difference));
+    }
   }
 
   // Samples the weights at the frames of the motion; a static pose is held for their duration.
@@ -153,7 +190,9 @@ class Loader {
                   fmt::format("the weights last {} s, the motion {} s; the rest is ignored",
                               readable(weights_->curves.duration()), readable(clip.duration()))));
     }
-    auto weights = sample(weights_->curves, clip.rate, std::max(1, clip.frame_count()));
+    // Those of several motions do not change.
+    const int frames = options_.motions.size() > 1 ? 1 : std::max(1, clip.frame_count());
+    auto weights = sample(weights_->curves, clip.rate, frames);
     if (!weights) return Error(weights.error()).in_file(options_.weights);
     subject_.weights = std::move(*weights);
     return {};
@@ -161,14 +200,17 @@ class Loader {
 
   Status take_part() {
     const auto range = chosen_range(options_, subject_.clip);
-    if (!range) return Error(range.error()).in_file(options_.motion);
+    if (!range) {
+      return Error(range.error())
+          .in_file(options_.motions.empty() ? options_.subject : options_.motions.front());
+    }
     if (!*range) return {};
     const auto [first, last, every] = **range;
     subject_.stretches = cut(subject_.stretches, subject_.clip.joint_count(), first, last, every);
     subject_.clip = cut(subject_.clip, first, last, every);
     subject_.first_frame = first;
     subject_.every = every;
-    if (!subject_.changes_shape()) return {};
+    if (!subject_.changes_shape() || subject_.weights.frame_count() == 1) return {};
     MorphWeights part{subject_.clip.rate, subject_.weights.names, {}};
     const auto targets = static_cast<std::ptrdiff_t>(part.names.size());
     for (int frame = first; frame <= last; frame += every) {
@@ -200,9 +242,19 @@ class Loader {
   Subject subject_;
   std::vector<float> rest_weights_;  // [targets], for characters
   std::optional<weights::WeightFile> weights_;
+  UniqueNames names_;  // of the motions
 };
 
 }  // namespace
+
+std::vector<Subject::NamedMotion> Subject::all_motions(const std::string& still_name) const {
+  std::vector<NamedMotion> motions;
+  if (!clip_name.empty() || weights.frame_count() > 1) {
+    motions.push_back({clip_name.empty() ? still_name : clip_name, clip, stretches});
+  }
+  for (const Motion& other : others) motions.push_back({other.name, other.clip, other.stretches});
+  return motions;
+}
 
 Result<Subject> load(const Options& options, ToolContext& context) {
   return Loader(options, context).load();

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "core/result.h"
 #include "scene/character.h"
 #include "scene/clip.h"
@@ -17,13 +20,30 @@ struct Subject {
   Model model;                     // on the motion's skeleton, with triangles
   Clip clip;                       // the selected range
   Stretches stretches;             // of the joints in `clip`; none if they are rigid
+  std::string clip_name;           // of its file; empty without a motion
   int first_frame = 0, every = 1;  // of the motion as read, for file names
 
   std::vector<Material> materials;   // of the model's parts; for characters
   std::vector<Character::Eye> eyes;  // at joints of the model; for characters
 
+  struct Motion {
+    std::string name;
+    Clip clip;
+    Stretches stretches;  // of the joints in `clip`; none if they are rigid
+  };
+  std::vector<Motion> others;  // on the same skeleton, for --as rig and motion; names are unique
+
   MorphSet morphs;       // may have no targets
   MorphWeights weights;  // at the frames of `clip`, for the targets of `morphs`; or empty
+
+  // The motions that --as rig and motion write: none for the reference pose, unless shapes change
+  // in it, which then is called `still_name`.
+  struct NamedMotion {
+    std::string name;
+    const Clip& clip;
+    const Stretches& stretches;
+  };
+  std::vector<NamedMotion> all_motions(const std::string& still_name) const;
 
   bool changes_shape() const { return !weights.values.empty(); }
 };

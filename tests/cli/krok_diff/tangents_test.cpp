@@ -177,7 +177,7 @@ TEST_F(DiffBumpyHero, ARigAgreesWithItsBakedClip) {
   put_material(R"("normal_texture": "skin.png")");
   put_character(kUpright);
   tool("krok-skin", {"hero.character", "in.anim", "--as", "rig", "-o", "rig.glb"});
-  tool("krok-skin", {"hero.character", "in.anim", "--as", "clip", "-o", "clip.glb"});
+  tool("krok-skin", {"hero.character", "in.anim", "--as", "baked", "-o", "clip.glb"});
   const ToolRun done = tool("krok-diff", {"rig.glb", "clip.glb"});
   EXPECT_THAT(done.out, HasSubstr("  tangents: largest "));
   EXPECT_THAT(done.out, Not(HasSubstr("only the first has tangents")));

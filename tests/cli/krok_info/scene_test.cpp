@@ -81,7 +81,7 @@ TEST_F(InfoOfScenes, ANodeWhoseShapeAloneChangesIsNoJoint) {
   run_tool("krok-import", {path("in.bvh"), "-o", path("in.anim")});
   run_tool("krok-body", {path("in.anim"), "--detail", "low", "-o", path("in.model")});
   const ToolRun baked = run_tool(
-      "krok-skin", {path("in.model"), path("in.anim"), "--as", "clip", "-o", path("baked.gltf")});
+      "krok-skin", {path("in.model"), path("in.anim"), "--as", "baked", "-o", path("baked.gltf")});
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   const Json file = info_of({path("baked.gltf")});
   EXPECT_EQ(file["meshes"][0]["morph_targets"], 4);

@@ -53,8 +53,8 @@ TEST_F(SkinMethods, EveryFormOfOutputFollowsThem) {
                   .exit_code,
               0);
     EXPECT_EQ(difference("f_0015.glb", expected), 0) << method;
-    ASSERT_EQ(tool("krok-skin", {"in.model", "in.anim", "--from", "15f", "--to", "15f", "--method",
-                                 method, "-o", "clip.glb"})
+    ASSERT_EQ(tool("krok-skin", {"in.model", "in.anim", "--as", "baked", "--from", "15f", "--to",
+                                 "15f", "--method", method, "-o", "clip.glb"})
                   .exit_code,
               0);
     EXPECT_EQ(difference("clip.glb", expected), 0) << method;
@@ -84,8 +84,8 @@ TEST_F(SkinMethods, AWordThatIsNoneIsAnsweredWithTheWords) {
 }
 
 TEST_F(SkinMethods, TheReportNamesIt) {
-  const ToolRun run = tool("krok-skin", {"in.model", "in.anim", "--method", "dual-quaternion", "-o",
-                                         "x.glb", "--json", "-q"});
+  const ToolRun run = tool("krok-skin", {"in.model", "in.anim", "--as", "baked", "--method",
+                                         "dual-quaternion", "-o", "x.glb", "--json", "-q"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(json::parse(run.out)["options"]["method"], "dual-quaternion");
 }

@@ -37,7 +37,7 @@ TEST_F(SkinMorphs, TheSkeletonMovesTheChangedShape) {
     return more;
   };
   tool("krok-skin", with({"--as", "rig", "-o", "rig.glb"}));
-  tool("krok-skin", with({"-o", "baked.glb"}));
+  tool("krok-skin", with({"--as", "baked", "-o", "baked.glb"}));
   expect_same("rig.glb", "baked.glb");  // the viewer's arithmetic against the tool's
   tool("krok-skin", with({"--as", "pose", "--time", "10f", "-o", "morphed.glb"}));
   tool("krok-skin", {"in.model", "in.anim", "--as", "pose", "--time", "10f", "-o", "plain.glb"});
@@ -89,9 +89,10 @@ TEST_F(SkinMorphs, WhatCannotBeIsToldAndNothingIsWritten) {
   EXPECT_NE(told.find("wrong.json:1:"), std::string::npos) << told;
   EXPECT_NE(told.find("bent"), std::string::npos) << told;
   tool("krok-skin", {"in.model", "in.anim", "--weights", "full.json", "-o", "x.glb"}, 2);
-  tool("krok-skin", {"in.model", "in.anim", "--morph", "bent.exr", "-o", "x.glb"}, 2);
+  tool("krok-skin", {"in.model", "in.anim", "--morph", "bent.exr", "--as", "baked", "-o", "x.glb"},
+       2);
   tool("krok-skin", {"in.model", "in.anim", "--as", "rig", "-o", "x.pc2"}, 2);
-  tool("krok-skin", {"in.model", "in.anim", "--as", "clip", "-o", "x.obj"}, 2);
+  tool("krok-skin", {"in.model", "in.anim", "--as", "baked", "-o", "x.obj"}, 2);
   // Targets of another mesh.
   tool("krok-body", {"in.anim", "--detail", "high", "-o", "other.model"});
   const std::string other = tool("krok-skin",

@@ -134,7 +134,7 @@ TEST_F(SkinnedByOthers, WhatIsWrittenIsValid) {
   int files = 0;
   for (const fs::path& rig : rigs) {
     ASSERT_NO_FATAL_FAILURE(import(rig));
-    for (const std::string as : {"clip", "pose", "rig", "frames"}) {
+    for (const std::string as : {"baked", "pose", "rig", "frames"}) {
       for (const std::string method : {"linear", "dual-quaternion", "rigid"}) {
         if (as == "rig" && method != "linear") continue;
         std::vector<std::string> options = {

@@ -335,7 +335,8 @@ void expect_model(const json& found, const Model& model) {
     EXPECT_EQ(found["parts"][i], (json{{"name", part.name},
                                        {"material", part.material},
                                        {"first_triangle", part.first_triangle},
-                                       {"triangle_count", part.triangle_count}}));
+                                       {"triangle_count", part.triangle_count},
+                                       {"mesh", part.mesh}}));
   }
 }
 

@@ -41,7 +41,7 @@ TEST_F(GltfJudges, FewerKeysShowTheJointsOfTheTableWithinTheTolerance) {
 TEST_F(GltfJudges, RigShowsWhatTheBakeShows) {
   write_clip(test::swinging_clip(human(), 41, 30));
   write_model(test::tube_model(human()));
-  tool("krok-skin in.model in.anim -o clip.glb");
+  tool("krok-skin in.model in.anim --as baked -o clip.glb");
   tool("krok-skin in.model in.anim --as rig -o rig.glb");
   tool("krok-skin in.model in.anim --as rig -o rig.gltf");
   tool("krok-export in.anim -o joints.csv");
@@ -113,7 +113,7 @@ TEST_F(GltfJudges, FourInfluencesAreTheLargest) {
 TEST_F(GltfJudges, PosesAndFramesShowTheBake) {
   write_clip(test::swinging_clip(human(), 21, 25));
   write_model(test::tube_model(human()));
-  tool("krok-skin in.model in.anim --from 10f --to 10f -o clip.glb");
+  tool("krok-skin in.model in.anim --as baked --from 10f --to 10f -o clip.glb");
   tool("krok-skin in.model in.anim --as pose --time 10f -o pose.glb");
   tool("krok-skin in.model in.anim --as frames --from 8f --every 2 --to 12f -o out.glb");
   valid(".");
@@ -125,7 +125,7 @@ TEST_F(GltfJudges, PosesAndFramesShowTheBake) {
 TEST_F(GltfJudges, ThreadsDoNotChangeTheBytes) {
   write_clip(test::swinging_clip(human(), 5, 25));
   write_model(test::tube_model(human(), 4, 24, 16));  // several tiles of the kernel
-  for (const char* as : {"clip", "pose", "rig"}) {
+  for (const char* as : {"baked", "pose", "rig"}) {
     tool(fmt::format("krok-skin in.model in.anim --as {} -j 1 -o one.glb", as));
     tool(fmt::format("krok-skin in.model in.anim --as {} -j 4 -o four.glb", as));
     EXPECT_EQ(content("one.glb"), content("four.glb")) << as;
@@ -136,11 +136,11 @@ TEST_F(GltfJudges, ThreadsDoNotChangeTheBytes) {
 TEST_F(GltfJudges, AClipTooLongToBakeSaysWhatToDo) {
   write_clip(test::swinging_clip(human(), 2200, 30));
   write_model(test::tube_model(human(), 1, 2, 4));
-  tool("krok-skin in.model in.anim -o clip.glb", 2);
+  tool("krok-skin in.model in.anim --as baked -o clip.glb", 2);
   EXPECT_THAT(content("log.txt"), testing::HasSubstr("[skin-clip-too-long]"));
   EXPECT_THAT(content("log.txt"), testing::HasSubstr("--every 2"));
   EXPECT_FALSE(fs::exists(path("clip.glb")));
-  tool("krok-skin in.model in.anim --every 2 -o clip.glb");
+  tool("krok-skin in.model in.anim --as baked --every 2 -o clip.glb");
   EXPECT_THAT(content("log.txt"), testing::HasSubstr("[skin-many-targets]"));
   valid("clip.glb");
 }
@@ -158,7 +158,7 @@ TEST_F(GltfJudges, OddFilesAreValid) {
     tool(fmt::format("krok-export in.anim --no-bones -o plain{}.gltf", n));
     tool(fmt::format("krok-skin in.model in.anim --as rig -o rig{}.glb", n));
     tool(fmt::format("krok-skin in.model in.anim --as pose -o pose{}.glb", n));
-    tool(fmt::format("krok-skin in.model in.anim --as clip -o clip{}.glb", n), frames > 0 ? 0 : 2);
+    tool(fmt::format("krok-skin in.model in.anim --as baked -o clip{}.glb", n), frames > 0 ? 0 : 2);
   }
   Skeleton lone;
   lone.add("only", Skeleton::kNoParent, {});

@@ -1,0 +1,127 @@
+// krok-skin with several motions, and the names in what it writes. Would fail if clips of a game
+// engine's file could not be told apart by name, if one clip had another's keys, or if the meshes
+// of a character became one.
+#include "cli/hero_character.h"
+
+namespace krok::test {
+namespace {
+
+class SkinClips : public HeroCharacter {
+ protected:
+  void SetUp() override {
+    HeroCharacter::SetUp();
+    put("run.bvh", capture(12, "0.3"));
+    tool("krok-import", {"run.bvh", "-o", "run.anim"});
+    std::filesystem::create_directory(path("more"));
+    std::filesystem::copy(path("run.anim"), path("more/run.anim"));
+  }
+
+  json gltf(const std::string& name) const { return json::parse(get(path(name))); }
+
+  static std::vector<std::string> names(const json& list) {
+    std::vector<std::string> result;
+    for (const json& one : list) result.push_back(one["name"]);
+    return result;
+  }
+};
+
+TEST_F(SkinClips, SeveralMotionsAreClipsOfOneRigNamedAfterTheirFiles) {
+  const ToolRun run = tool("krok-skin", {"hero.character", "in.anim", "run.anim", "more/run.anim",
+                                         "-o", "hero.gltf", "--json"});
+  const json hero = gltf("hero.gltf");
+  EXPECT_THAT(names(hero["animations"]), ElementsAre("in", "run", "run_2"));
+  EXPECT_EQ(hero["skins"].size(), 1U);
+  EXPECT_EQ(hero["meshes"].size(), 1U);
+  const json clips = json::parse(run.out)["result"]["clips"];
+  EXPECT_THAT(names(clips), ElementsAre("in", "run", "run_2"));
+  EXPECT_EQ(clips[0]["frames"], 20);
+  EXPECT_EQ(clips[1]["frames"], 12);
+  // Each clip is its motion, by what the file says to another reader.
+  for (const std::string clip : {"in", "run"}) {
+    tool("krok-import", {"hero.gltf", "--clip", clip, "-o", "back.anim", "--fps", "30"});
+    tool("krok-import", {clip + ".bvh", "-o", "there.anim", "--fps", "30"});
+    tool("krok-diff", {"back.anim", "there.anim", "--tolerance", "0.02mm", "--angle", "0.05deg"});
+  }
+}
+
+TEST_F(SkinClips, MotionsWithoutTheMeshHaveTheSameJoints) {
+  tool("krok-skin",
+       {"hero.character", "in.anim", "run.anim", "--as", "motion", "-o", "moves.gltf"});
+  tool("krok-skin", {"hero.character", "in.anim", "-o", "hero.gltf"});
+  const json moves = gltf("moves.gltf"), hero = gltf("hero.gltf");
+  EXPECT_THAT(names(moves["animations"]), ElementsAre("in", "run"));
+  EXPECT_FALSE(moves.contains("meshes"));
+  ASSERT_EQ(moves["skins"][0]["joints"].size(), hero["skins"][0]["joints"].size());
+  for (std::size_t j = 0; j < moves["skins"][0]["joints"].size(); ++j) {
+    EXPECT_EQ(moves["nodes"][j]["name"], hero["nodes"][j]["name"]);
+  }
+}
+
+TEST_F(SkinClips, ARigIsTheDefaultAndAPointCacheIsBaked) {
+  tool("krok-skin", {"in.model", "in.anim", "-o", "rig.gltf"});
+  EXPECT_TRUE(gltf("rig.gltf").contains("skins"));
+  tool("krok-skin", {"in.model", "in.anim", "-o", "cache.pc2"});
+  tool("krok-skin", {"in.model", "-o", "still.gltf"});
+  EXPECT_FALSE(gltf("still.gltf").contains("animations"));
+  const ToolRun old = tool("krok-skin", {"in.model", "in.anim", "--as", "clip", "-o", "x.glb"}, 2);
+  EXPECT_THAT(old.err, HasSubstr("baked")) << "which is what clip was called";
+}
+
+TEST_F(SkinClips, SeveralMotionsAreRefusedWhereOneIsMeant) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--as", "baked"},
+                                               {"--as", "pose"},
+                                               {"--to", "5f"},
+                                               {"--weights", "none.json"}}) {
+    std::vector<std::string> arguments = {"hero.character", "in.anim", "run.anim", "-o", "x.glb"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_TRUE(has_code(tool("krok-skin", arguments, 2).err, "usage"));
+  }
+  put("other.bvh", [] {
+    std::string text = capture(5);
+    text.replace(text.find("Spine"), 5, "Trunk");
+    return text;
+  }());
+  tool("krok-import", {"other.bvh", "-o", "other.anim"});
+  const ToolRun other =
+      tool("krok-skin", {"hero.character", "in.anim", "other.anim", "-o", "x.glb"}, 2);
+  EXPECT_THAT(other.err, AllOf(HasSubstr("other.anim"), HasSubstr("krok-retarget")));
+  EXPECT_FALSE(std::filesystem::exists(path("x.glb")));
+}
+
+// As another program exports a character: a mesh each for the body and the hat.
+TEST_F(SkinClips, MeshesKeepTheirNames) {
+  tool("krok-skin", {"in.model", "in.anim", "-o", "two.gltf"});
+  json two = gltf("two.gltf");
+  two["meshes"][0]["name"] = "Knight";
+  two["meshes"].push_back(two["meshes"][0]);
+  two["meshes"][1]["name"] = "Hat";
+  json node;
+  for (const json& each : two["nodes"]) {
+    if (each.contains("mesh")) node = each;
+  }
+  node["mesh"] = 1;
+  node["name"] = "hat node";
+  two["nodes"].push_back(node);
+  two["scenes"][0]["nodes"].push_back(two["nodes"].size() - 1);
+  put("two.gltf", two.dump());
+  tool("krok-import", {"two.gltf", "--model", "two.model", "-o", "two.anim"});
+  for (const std::string as : {"rig", "baked"}) {
+    tool("krok-skin", {"two.model", "two.anim", "--as", as, "-o", "again.gltf"});
+    EXPECT_THAT(names(gltf("again.gltf")["meshes"]), ElementsAre("Knight", "Hat")) << as;
+    expect_same("two.gltf", "again.gltf");
+  }
+}
+
+TEST_F(SkinClips, ClipsAreChosenByNameInImages) {
+  tool("krok-skin", {"hero.character", "in.anim", "run.anim", "-o", "hero.glb"});
+  const ToolRun first = tool("krok-plot", {"hero.glb", "--sheet", "a.png", "--moments", "1"});
+  EXPECT_THAT(first.err, AllOf(HasSubstr("0 (in), 1 (run)"), HasSubstr("[clip-first]")));
+  const ToolRun run = tool("krok-plot", {"hero.glb", "--clip", "run", "--sheet", "b.png",
+                                         "--moments", "0s,0.3s", "--json"});
+  EXPECT_EQ(json::parse(run.out)["issues"].size(), 0U);
+  const ToolRun none = tool("krok-plot", {"hero.glb", "--clip", "walk", "--sheet", "c.png"}, 2);
+  EXPECT_TRUE(has_code(none.err, "clip-name")) << none.err;
+}
+
+}  // namespace
+}  // namespace krok::test
