@@ -18,7 +18,7 @@ struct ChosenClip {
 };
 
 // `wanted` is the value of --clip: a name, an index, "all", or empty for the first, with a warning
-// that lists the others. Empty for a scene without animations. Fails (code import-clip) if there is
+// that lists the others. Empty for a scene without animations. Fails (code clip-name) if there is
 // no match.
 Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const std::string& wanted,
                                              const std::string& file, ToolContext& context);

@@ -109,7 +109,7 @@ TEST_F(SceneImportTest, OfSeveralAnimationsTheFirstWithAWarning) {
   }
   const ToolRun unknown = import({"-o", path("b.anim"), "--clip", "Walk"});
   EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_TRUE(has_code(unknown.err, "import-clip")) << unknown.err;
+  EXPECT_TRUE(has_code(unknown.err, "clip-name")) << unknown.err;
   EXPECT_NE(unknown.err.find("0 (Bend)"), std::string::npos) << unknown.err;
 }
 
