@@ -23,4 +23,11 @@ struct Camera {
   Vec2 project(const Vec3& point) const;
 };
 
+// A perspective camera. As in CameraTrack it looks along its local -Z with +Y up.
+struct Lens {
+  Vec3 eye = Vec3::Zero();                  // world, metres
+  Quat camera_to_world = Quat::Identity();  // unit
+  double field_of_view = kPi / 4;           // vertical, radians, in (0, pi)
+};
+
 }  // namespace krok::render

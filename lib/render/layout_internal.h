@@ -19,6 +19,14 @@ inline constexpr int kGroundBand = 9;  // below the ground
 inline constexpr int kKey = 46;
 inline constexpr double kTitleSize = 14, kTextSize = 12, kSmallSize = 11;
 
+// Colours that sheets and films share.
+inline constexpr Colour kPaper = colour(0xFFFFFF);
+inline constexpr Colour kPanel = colour(0xF4F5F7);
+inline constexpr Colour kGround = colour(0xD5DAE0);
+inline constexpr Colour kGroundLine = colour(0x5B6570);
+inline constexpr Colour kInk = colour(0x1B1F24);
+inline constexpr Colour kSoft = colour(0x5B6570);
+
 // Above this elevation the ground is drawn as a grid.
 inline constexpr double kRaised = 2 * kRadiansPerDegree;
 

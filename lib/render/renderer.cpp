@@ -43,7 +43,7 @@ struct Lamp {
 
 class Lights {
  public:
-  explicit Lights(const Camera& camera) {
+  explicit Lights(const Projection& camera) {
     const auto world = [&camera](double right, double up, double towards) -> Vec3f {
       const Vec3 way = right * camera.right() + up * camera.up() + towards * camera.towards();
       return way.normalized().cast<float>();
@@ -72,13 +72,7 @@ class Lights {
 // Per-view state shared by its pixels.
 class ViewPainter {
  public:
-  explicit ViewPainter(const View& view)
-      : view_(view),
-        lights_(view.camera),
-        right_(view.camera.right()),
-        up_(view.camera.up()),
-        towards_(view.camera.towards()),
-        step_(1 / (kAcross * view.camera.pixels_per_metre)) {
+  explicit ViewPainter(const View& view) : view_(view), projection_(view), lights_(projection_) {
     for (const View::Layer& layer : view.layers) reaches_.push_back(reach_of(*layer.actor));
   }
 
@@ -118,9 +112,10 @@ class ViewPainter {
       const Vec3 point((corner & 1) != 0 ? box.low.x() : box.high.x(),
                        (corner & 2) != 0 ? box.low.y() : box.high.y(),
                        (corner & 4) != 0 ? box.low.z() : box.high.z());
-      const Vec2 place = view_.camera.project(point);
-      pixels.low = pixels.low.cwiseMin(place);
-      pixels.high = pixels.high.cwiseMax(place);
+      const auto place = projection_.project(point);
+      if (!place) return {Vec2::Constant(-1e300), Vec2::Constant(1e300)};
+      pixels.low = pixels.low.cwiseMin(*place);
+      pixels.high = pixels.high.cwiseMax(*place);
     }
     return pixels;
   }
@@ -144,24 +139,25 @@ class ViewPainter {
   // Blends what is visible at an image position over `light`; false if nothing is.
   bool look(const Vec2& place, int sample, const std::vector<std::size_t>& near,
             Light& light) const {
-    const Camera& camera = view_.camera;
-    const Vec2 offset = (place - camera.place_of_target) / camera.pixels_per_metre;
-    const Vec3 point = camera.target + offset.x() * right_ - offset.y() * up_;
     thread_local std::vector<Seen> seen;
     seen.clear();
     for (const std::size_t i : near) {
       const View::Layer& layer = view_.layers[i];
-      const auto hit =
-          layer.actor->look({point, towards_, Vec3(step_ * right_), Vec3(-step_ * up_)});
+      const double away = (projection_.origin() - layer.actor->middle()).dot(projection_.towards());
+      const Sight sight = projection_.sight(place, kAcross, away);
+      const auto hit = layer.actor->look(sight);
       if (!hit) continue;
       const float occlusion =
           layer.actor->occlusion(hit->point, hit->normal, rays_of(sample, 18), kReach);
-      const double depth = hit->depth + (layer.actor->middle() - camera.target).dot(towards_);
+      const double depth =
+          hit->depth + (layer.actor->middle() - projection_.origin()).dot(sight.towards);
       seen.push_back({layer.behind ? -std::numeric_limits<double>::infinity() : depth,
                       layer.opacity, lights_.shaded(*hit, occlusion)});
     }
     bool changed = !seen.empty();
-    if (view_.shadows) changed = add_shadows(point, sample, near, light) || changed;
+    if (view_.shadows) {
+      changed = add_shadows(projection_.sight(place, kAcross, 1), sample, near, light) || changed;
+    }
     // Back to front; at equal depth, in layer order.
     std::stable_sort(seen.begin(), seen.end(),
                      [](const Seen& a, const Seen& b) { return a.depth < b.depth; });
@@ -169,9 +165,11 @@ class ViewPainter {
     return changed;
   }
 
-  bool add_shadows(const Vec3& point, int sample, const std::vector<std::size_t>& near,
+  bool add_shadows(const Sight& sight, int sample, const std::vector<std::size_t>& near,
                    Light& light) const {
-    const Vec3 on_ground = point - point.y() / towards_.y() * towards_;
+    // The ground is seen from above, and by an eye only where it looks down.
+    if (!(sight.towards.y() > 0) || (sight.from_eye && !(sight.point.y() > 0))) return false;
+    const Vec3 on_ground = sight.point - sight.point.y() / sight.towards.y() * sight.towards;
     float open = 1;
     for (const std::size_t i : near) {
       const TracedActor& actor = *view_.layers[i].actor;
@@ -184,13 +182,51 @@ class ViewPainter {
   }
 
   const View& view_;
+  Projection projection_;
   Lights lights_;
-  Vec3 right_, up_, towards_;
-  double step_;  // metres between samples
   std::vector<Box> reaches_;
 };
 
 }  // namespace
+
+Projection::Projection(const View& view) : camera_(view.camera), lens_(view.lens) {
+  if (!lens_) {
+    right_ = camera_.right();
+    up_ = camera_.up();
+    towards_ = camera_.towards();
+    origin_ = camera_.target;
+    return;
+  }
+  const Mat3 axes = lens_->camera_to_world.toRotationMatrix();
+  right_ = axes.col(0);
+  up_ = axes.col(1);
+  towards_ = axes.col(2);
+  origin_ = lens_->eye;
+  middle_ = 0.5 * Vec2(view.left + view.right, view.top + view.bottom);
+  focal_ = 0.5 * (view.bottom - view.top) / std::tan(0.5 * lens_->field_of_view);
+}
+
+Sight Projection::sight(const Vec2& place, int parts, double depth) const {
+  if (!lens_) {
+    const Vec2 offset = (place - camera_.place_of_target) / camera_.pixels_per_metre;
+    const double metres = 1 / (parts * camera_.pixels_per_metre);
+    return {camera_.target + offset.x() * right_ - offset.y() * up_, towards_, metres * right_,
+            -metres * up_};
+  }
+  const Vec2 offset = place - middle_;
+  const Vec3 ahead = offset.x() * right_ - offset.y() * up_ - focal_ * towards_;
+  const double metres = std::max(depth, 0.0) / (parts * focal_);
+  return {lens_->eye, -ahead.normalized(), metres * right_, -metres * up_, true};
+}
+
+std::optional<Vec2> Projection::project(const Vec3& point) const {
+  if (!lens_) return camera_.project(point);
+  constexpr double kNear = 0.01;  // metres
+  const Vec3 offset = point - lens_->eye;
+  const double depth = -towards_.dot(offset);
+  if (!(depth > kNear)) return std::nullopt;
+  return Vec2(middle_ + focal_ / depth * Vec2(right_.dot(offset), -up_.dot(offset)));
+}
 
 void render(std::span<const View> views, Image& image, int jobs) {
   struct Tile {

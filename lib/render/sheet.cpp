@@ -7,6 +7,8 @@
 #include <map>
 
 #include "core/numbers.h"
+#include "render/colour_key_internal.h"
+#include "render/grid_internal.h"
 #include "render/layout_internal.h"
 #include "render/renderer_internal.h"
 #include "render/text.h"
@@ -15,15 +17,8 @@ namespace krok::render {
 
 namespace {
 
-constexpr Colour kPaper = colour(0xFFFFFF);
-constexpr Colour kPanel = colour(0xF4F5F7);
-constexpr Colour kGround = colour(0xD5DAE0);
-constexpr Colour kGroundLine = colour(0x5B6570);
 constexpr Colour kHeightLine = colour(0xE2E6EA);
-constexpr Colour kGridLine = colour(0xC3CAD2);
 constexpr Colour kPath = colour(0x9AA5B1);
-constexpr Colour kInk = colour(0x1B1F24);
-constexpr Colour kSoft = colour(0x5B6570);
 constexpr Colour kAccent = colour(0xC2251C);
 
 Box box_of(const CellLayout& cell) {
@@ -91,33 +86,14 @@ class SheetPainter {
     fill(image_, {{left, place.ground}, {right, place.ground + 1.5}}, kGroundLine);
   }
 
-  // A ground grid with the spacing of the height lines, fading away from the centre.
+  // A ground grid with the spacing of the height lines.
   void paint_grid(const CellLayout& cell) {
-    const Camera& camera = cell.camera;
-    const double step = layout_.height_step;
+    View view;
+    view.camera = cell.camera;
     const double reach =
-        std::hypot(cell.right - cell.left, cell.bottom - cell.top) / camera.pixels_per_metre;
-    const auto piece = [&](const Vec3& from, const Vec3& to) {
-      const double far = (0.5 * (from + to) - camera.target).norm() / reach;
-      draw_line(image_, camera.project(from), camera.project(to), 1, kGridLine, box_of(cell),
-                std::clamp(1.2 - 1.2 * far, 0.0, 1.0));
-    };
-    const auto lines = [&](int across, int along) {
-      const double middle = camera.target[across];
-      for (double i = std::ceil((middle - reach) / step); i * step <= middle + reach; ++i) {
-        constexpr int kPieces = 24;
-        for (int k = 0; k < kPieces; ++k) {
-          Vec3 from = Vec3::Zero();
-          Vec3 to = Vec3::Zero();
-          from[across] = to[across] = i * step;
-          from[along] = camera.target[along] + reach * (2.0 * k / kPieces - 1);
-          to[along] = camera.target[along] + reach * (2.0 * (k + 1) / kPieces - 1);
-          piece(from, to);
-        }
-      }
-    };
-    lines(0, 2);
-    lines(2, 0);
+        std::hypot(cell.right - cell.left, cell.bottom - cell.top) / cell.camera.pixels_per_metre;
+    render::paint_grid(Projection(view), {cell.camera.target, layout_.height_step, reach, 24},
+                       box_of(cell), image_);
   }
 
   void paint_path(const std::vector<Vec3>& path, const CellLayout& cell) {
@@ -175,20 +151,7 @@ class SheetPainter {
   void paint_key(const ColourKey& key) {
     const double left = kMargin + kGutter;
     const double width = std::min(320.0, static_cast<double>(layout_.width) - left - kMargin);
-    const double top = layout_.key_top + 18;
-    text_.draw(image_, {left, top - 6}, text_.fitted(key.label, kTextSize, width), kTextSize, kInk);
-    for (int i = 0; i < static_cast<int>(width); ++i) {
-      const Colour at = key.at((i + 0.5) / width * key.high);
-      fill(image_, {{left + i, top}, {left + i + 1, top + 10}}, at);
-    }
-    const std::string end = fmt::format("{} {}", readable(key.high, 4), key.unit);
-    text_.draw(image_, {left, top + 23}, "0", kSmallSize, kSoft);
-    text_.draw(image_, {left + width, top + 23}, end, kSmallSize, kSoft, Align::right);
-    if (key.low > 0 && key.low < key.high) {
-      text_.draw(image_, {left + 0.5 * width, top + 23},
-                 fmt::format("grey: up to {} {}", readable(key.low, 4), key.unit), kSmallSize,
-                 kSoft, Align::centre);
-    }
+    paint_colour_key(key, {left, static_cast<double>(layout_.key_top)}, width, text_, image_);
   }
 
   const Sheet& sheet_;
@@ -207,6 +170,24 @@ Colour ColourKey::at(double value) const {
   if (value <= low) return kSame;
   const double share = value < high ? value / high : 1.0;  // NaN maps to 1 too
   return share < 0.5 ? mixed(kSmall, kMiddle, 2 * share) : mixed(kMiddle, kLarge, 2 * share - 1);
+}
+
+void paint_colour_key(const ColourKey& key, const Vec2& corner, double width, TextPainter& text,
+                      Image& image) {
+  const double left = corner.x(), top = corner.y() + 18;
+  text.draw(image, {left, top - 6}, text.fitted(key.label, kTextSize, width), kTextSize, kInk);
+  for (int i = 0; i < static_cast<int>(width); ++i) {
+    const Colour at = key.at((i + 0.5) / width * key.high);
+    fill(image, {{left + i, top}, {left + i + 1, top + 10}}, at);
+  }
+  const std::string end = fmt::format("{} {}", readable(key.high, 4), key.unit);
+  text.draw(image, {left, top + 23}, "0", kSmallSize, kSoft);
+  text.draw(image, {left + width, top + 23}, end, kSmallSize, kSoft, Align::right);
+  if (key.low > 0 && key.low < key.high) {
+    text.draw(image, {left + 0.5 * width, top + 23},
+              fmt::format("grey: up to {} {}", readable(key.low, 4), key.unit), kSmallSize, kSoft,
+              Align::centre);
+  }
 }
 
 Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
@@ -242,7 +223,12 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
   for (const CellLayout& place : layout->cells) {
     const SheetRow& row = sheet.rows[static_cast<std::size_t>(place.row)];
     const SheetCell& cell = row.cells[static_cast<std::size_t>(place.column)];
-    View view{place.camera, place.left, place.top, place.right, place.bottom, {}, false};
+    View view;
+    view.camera = place.camera;
+    view.left = place.left;
+    view.top = place.top;
+    view.right = place.right;
+    view.bottom = place.bottom;
     view.shadows = row.elevation > kRaised && !row.own_ground;
     for (const SheetCell::Layer& layer : cell.layers) {
       view.layers.push_back(

@@ -288,6 +288,12 @@ std::optional<Hit> TracedActor::look(const Sight& sight) const {
   ray.ray.dir_y = direction.y();
   ray.ray.dir_z = direction.z();
   ray.ray.tfar = static_cast<float>(2 * kStart);
+  if (sight.from_eye) {
+    // An eye behind the far end sees nothing; one in front of the start sees everything.
+    const double eye = kStart - offset.dot(towards);
+    if (!(eye < 2 * kStart)) return std::nullopt;
+    ray.ray.tnear = static_cast<float>(std::max(eye, 0.0));
+  }
   ray.ray.mask = 0xFFFFFFFFU;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;

@@ -26,6 +26,7 @@ struct Hit {
 // `towards`.
 struct Sight {
   Vec3 point, towards, right, down;
+  bool from_eye = false;  // `point` is the eye: what is behind it is not seen
 };
 
 class Tracer;

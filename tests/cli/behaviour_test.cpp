@@ -9,11 +9,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kTools[] = {"krok-import", "krok-export", "krok-info",    "krok-body",
-                                  "krok-skin",   "krok-diff",   "krok-edit",    "krok-retarget",
-                                  "krok-view",   "krok-plot",   "krok-keys",    "krok-blend",
-                                  "krok-mix",    "krok-cam",    "krok-fit",     "krok-synth",
-                                  "krok-morph",  "krok-ik",     "krok-ragdoll", "krok-walk"};
+constexpr const char* kTools[] = {
+    "krok-import",  "krok-export",   "krok-info",  "krok-body",  "krok-skin",  "krok-diff",
+    "krok-edit",    "krok-retarget", "krok-view",  "krok-plot",  "krok-keys",  "krok-blend",
+    "krok-mix",     "krok-cam",      "krok-fit",   "krok-synth", "krok-morph", "krok-ik",
+    "krok-ragdoll", "krok-walk",     "krok-render"};
 
 class Tools : public CliTest, public testing::WithParamInterface<const char*> {};
 

@@ -304,7 +304,8 @@ Result<Options> understand(const Arguments& arguments) {
   options.sheet.prints = arguments.prints;
   if (!options.sheet.wanted() && has_image_options(options.sheet)) {
     return usage(
-        "--moments, --sides, --elevation, --size, --whole-ground, --front, --body and --method are "
+        "--moments, --sides, --elevation, --size, --whole-ground, --front, --body, --clip and "
+        "--method are "
         "for --sheet and "
         "--strip");
   }

@@ -57,19 +57,21 @@ Json axis_json(const draw::Axis& axis) {
   return json;
 }
 
-// The chart's contents for the report: for each line, the number of values and their range.
+// The chart's contents for the report: for each line, the number of values, their range, mean and
+// unit.
 Json summary_of(const draw::Chart& chart) {
   Json panels = Json::array();
   for (const draw::Panel& panel : chart.panels) {
     Json lines = Json::array();
     for (const draw::Series& series : panel.series) {
       if (series.name.empty()) continue;
-      double low = INFINITY, high = -INFINITY;
+      double low = INFINITY, high = -INFINITY, sum = 0;
       std::size_t values = 0;
       for (const double value : series.y) {
         if (!std::isfinite(value)) continue;
         low = std::min(low, value);
         high = std::max(high, value);
+        sum += value;
         ++values;
       }
       Json line;
@@ -77,6 +79,8 @@ Json summary_of(const draw::Chart& chart) {
       line["values"] = values;
       line["low"] = values > 0 ? Json(low) : Json();
       line["high"] = values > 0 ? Json(high) : Json();
+      line["mean"] = values > 0 ? Json(sum / static_cast<double>(values)) : Json();
+      line["unit"] = to_utf8(panel.y.unit);
       lines.push_back(std::move(line));
     }
     Json entry;
@@ -121,16 +125,15 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (context.output.empty() && !images) {
     return Error("usage", "-o is missing", "see krok-plot --help");
   }
-  if (images && context.one_of_many != nullptr) {
-    return Error("usage", "--sheet and --strip cannot be used in batch mode");
-  }
+  // In batch mode -o is given by the batch; images replace the charts.
+  const bool charts = !context.output.empty() && !(images && context.one_of_many != nullptr);
   OutputSet outputs(context);
   std::vector<std::string> done;
   if (images) {
     Status status = make_sheets(options.inputs, options.sheet, context, outputs, done);
     if (!status) return status.error();
   }
-  if (!context.output.empty()) {
+  if (charts) {
     if (Status status = add_charts(options, context, outputs, done); !status) return status.error();
   }
   if (Status status = outputs.finish(); !status) return status.error();

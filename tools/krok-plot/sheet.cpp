@@ -10,11 +10,9 @@
 
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "core/quantity.h"
-#include "formats/io/open_terrain.h"
 #include "render/strip.h"
 #include "tools/cli/one_of.h"
-#include "tools/krok-plot/sheet_ground.h"
+#include "tools/shared/sheet_ground.h"
 #include "tools/shared/shown_ground.h"
 #include "tools/shared/skin_method_option.h"
 
@@ -26,9 +24,6 @@ constexpr int kSheetMoments = 8;
 constexpr int kStripMoments = 10;
 constexpr int kStripWidth = 2400;
 constexpr int kPathPoints = 400;
-constexpr double kAroundActor = 0.35;  // metres of ground on each side of an actor
-constexpr double kAroundWay = 0.6;     // metres on each side of a way
-constexpr double kDeepest = 2;         // metres below the hips: deeper ground is not shown
 
 // A character at the times shown.
 struct Shown {
@@ -38,71 +33,11 @@ struct Shown {
   std::vector<render::Actor> actors;  // [moments]
 };
 
-Result<double> time_of(const std::string& text, const char* option, const MovingActor& actor,
-                       double otherwise) {
-  if (text.empty()) return otherwise;
-  const auto time = parse_clip_time(text);
-  if (!time) return Error("usage", fmt::format("{} {}: {}", option, text, time.error().message));
-  if (time->in_frames && actor.frame_count == 0) {
-    return Error("usage", fmt::format("{} {}: the file has no frames, only seconds", option, text))
-        .in_file(actor.path);
-  }
-  const double seconds = time->seconds(actor.rate);
-  if (!(seconds >= 0 && seconds <= actor.duration + 1e-6)) {
-    return Error("usage", fmt::format("{} {}: the motion lasts {} s", option, text,
-                                      readable(actor.duration)))
-        .in_file(actor.path);
-  }
-  return seconds;
-}
-
-Result<ImageSpan> span_of(const MovingActor& actor, const SheetOptions& options) {
-  const auto from = time_of(options.from, "--from", actor, 0.0);
-  if (!from) return from.error();
-  const auto to = time_of(options.to, "--to", actor, actor.duration);
-  if (!to) return to.error();
-  if (*from > *to) return Error("usage", "--from is after --to");
-  ImageSpan span;
-  span.start = *from;
-  span.end = *to;
-  if (actor.frame_count > 0) {
-    span.rate = actor.rate;
-    span.first = static_cast<int>(std::lround(*from * actor.rate));
-    span.last = std::min(static_cast<int>(std::lround(*to * actor.rate)), actor.frame_count - 1);
-  }
-  return span;
-}
-
-// What lies below the actors.
-struct SheetGround {
-  std::unique_ptr<const Terrain> terrain;  // null for none
-  std::vector<draw::ViewedPrint> prints;
-};
-
-// Below an actor, or below its whole way.
-GroundPart part_below(const MovingActor& source, const ImageSpan& span, double time, bool whole) {
-  GroundPart part;
-  const Vec3 here = source.carrier(time);
-  Eigen::AlignedBox2d box(Vec2(here.x(), here.z()));
-  part.bottom = part.top = here.y();
-  for (int i = 0; whole && i <= kPathPoints; ++i) {
-    const Vec3 at = source.carrier(span.start + (span.end - span.start) * i / kPathPoints);
-    box.extend(Vec2(at.x(), at.z()));
-    part.bottom = std::min(part.bottom, at.y());
-    part.top = std::max(part.top, at.y());
-  }
-  const Vec2 around = Vec2::Constant(whole ? kAroundWay : kAroundActor);
-  part.low = box.min() - around;
-  part.high = box.max() + around;
-  part.bottom -= kDeepest;
-  return part;
-}
-
 Result<Shown> show(const MovingActor& source, const SheetOptions& options,
                    const SheetGround& ground, int moments, int jobs) {
   Shown shown;
   shown.source = &source;
-  const auto span = span_of(source, options);
+  const auto span = span_of(source, options.from, options.to);
   if (!span) return span.error();
   shown.span = *span;
   auto chosen = choose_moments(options.image.moments, moments, *span);
@@ -114,7 +49,8 @@ Result<Shown> show(const MovingActor& source, const SheetOptions& options,
       const double time = shown.moments[i].time;
       shown.actors[i] = shown.source->at(time);
       if (ground.terrain == nullptr) continue;
-      const GroundPart part = part_below(source, shown.span, time, options.whole_ground);
+      const GroundPart part = options.whole_ground ? part_below_way(source, shown.span)
+                                                   : part_below(source.carrier(time));
       for (render::Surface& surface : ground_surfaces(*ground.terrain, ground.prints, part)) {
         shown.actors[i].surfaces.push_back(std::move(surface));
       }
@@ -311,6 +247,7 @@ void declare_sheet(CommandOptions& command, SheetOptions& options) {
   add_body_option(command, options.body,
                   "Body for motions without a model: low (2,500 vertices), medium (10,000), high "
                   "(40,000), auto: low for more than two files, else medium; none: bones only");
+  add_clip_option(command, options.clip);
   add_skin_method(command, options.method,
                   "Skinning method: linear, as viewers use it, dual-quaternion, which keeps the "
                   "volume of twisted joints, or rigid; not for glTF files");
@@ -322,7 +259,7 @@ bool has_image_options(const SheetOptions& options) {
          options.image.elevation != usual.image.elevation ||
          options.image.size != usual.image.size || options.front != usual.front ||
          options.whole_ground != usual.whole_ground || options.body != usual.body ||
-         options.method != usual.method;
+         options.method != usual.method || !options.clip.empty();
 }
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
@@ -334,27 +271,16 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
        {std::pair("--sheet", options.sheet), std::pair("--strip", options.strip)}) {
     if (Status status = check_image_name(path, option); !status) return status;
   }
-  const auto actors = read_actors(inputs, options.body, options.method, context);
+  const auto actors = read_actors(inputs, {options.body, options.method, options.clip}, context);
   if (!actors) return actors.error();
-  SheetGround ground;
-  if (!options.ground.empty()) {
-    auto opened = io::open_terrain(options.ground, {}, context);
-    if (!opened) return opened.error();
-    ground.terrain = *std::move(opened);
-    if (!options.prints.empty()) {
-      const auto prints = open_prints(options.prints, context);
-      if (!prints) return prints.error();
-      const auto shown = show_prints(*prints, *ground.terrain, {}, context);
-      if (!shown) return Error(shown.error()).in_file(options.prints);
-      ground.prints = viewed_prints(*shown);
-    }
-  }
+  const auto ground = open_sheet_ground(options.ground, options.prints, context);
+  if (!ground) return ground.error();
   if (!options.sheet.empty()) {
-    if (Status status = make_sheet(*actors, *sides, options, ground, results); !status) {
+    if (Status status = make_sheet(*actors, *sides, options, *ground, results); !status) {
       return status;
     }
   }
-  if (!options.strip.empty()) return make_strip(*actors, *sides, options, ground, results);
+  if (!options.strip.empty()) return make_strip(*actors, *sides, options, *ground, results);
   return {};
 }
 

@@ -28,6 +28,7 @@ struct SheetOptions {
   Front front = Front::actor;
   BodyChoice body = BodyChoice::automatic;
   SkinMethod method = SkinMethod::linear;
+  std::string clip;  // of glTF files: a name or an index; empty: the first
 
   bool wanted() const { return !sheet.empty() || !strip.empty(); }
 };

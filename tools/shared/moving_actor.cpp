@@ -10,6 +10,7 @@
 
 #include "body/body.h"
 #include "core/numbers.h"
+#include "core/quantity.h"
 #include "core/text.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
@@ -18,6 +19,7 @@
 #include "motion/ground_frame.h"
 #include "nodes/evaluate.h"
 #include "tools/cli/file_name.h"
+#include "tools/shared/animation_choice.h"
 #include "tools/shared/bone_actor.h"
 #include "tools/shared/drawn_body.h"
 
@@ -110,9 +112,10 @@ MovingActor actor_of(const std::string& path, Clip clip, const Body& body, SkinM
 class SceneActor {
  public:
   // Textured or with vertex colours; without both, in the default body colour.
-  static Result<std::shared_ptr<const SceneActor>> create(nodes::Scene scene, bool bones,
-                                                          const DecodedImages& images) {
+  static Result<std::shared_ptr<const SceneActor>> create(nodes::Scene scene, int animation,
+                                                          bool bones, const DecodedImages& images) {
     auto actor = std::make_shared<SceneActor>(std::move(scene));
+    actor->animation_ = animation;
     auto evaluator = nodes::Evaluator::create(actor->scene_);
     if (!evaluator) return evaluator.error();
     actor->evaluator_ = std::make_unique<nodes::Evaluator>(std::move(*evaluator));
@@ -129,8 +132,8 @@ class SceneActor {
     }
     actor->set_style();
     actor->set_looks(images);
-    if (!actor->scene_.animations.empty()) {
-      const auto times = from.key_times(0);
+    if (animation >= 0) {
+      const auto times = from.key_times(animation);
       if (!times.empty()) actor->duration_ = std::max(0.0, times.back());
     }
     return std::shared_ptr<const SceneActor>(actor);
@@ -146,7 +149,7 @@ class SceneActor {
 
   render::Actor at(double time) const {
     nodes::Evaluation moment;
-    evaluator_->evaluate(animation(), time, moment);
+    evaluator_->evaluate(animation_, time, moment);
     const auto joints = positions(moment);
     render::Actor actor;
     if (bones_) {
@@ -164,13 +167,11 @@ class SceneActor {
   Vec3 carrier(double time) const {
     if (evaluator_->joints().empty()) return middle(at(time));
     nodes::Evaluation moment;
-    evaluator_->place_nodes(animation(), time, moment);
+    evaluator_->place_nodes(animation_, time, moment);
     return positions(moment)[0].cast<double>();
   }
 
  private:
-  int animation() const { return scene_.animations.empty() ? -1 : 0; }
-
   static Vec3 middle(const render::Actor& actor) {
     const render::Bounds box = render::bounds(actor);
     return 0.5 * (box.low + box.high);
@@ -251,6 +252,7 @@ class SceneActor {
   std::vector<std::vector<render::Colour>> vertex_colours_;  // [instances][vertices] or none
   BoneStyle style_;
   bool bones_ = false;
+  int animation_ = -1;  // that is shown
   double duration_ = 0;
 };
 
@@ -261,6 +263,7 @@ struct Read {
     std::string path;
     Clip clip;
     Body body;
+    bool made = false;  // the body, for this motion
   };
   struct Character {
     std::size_t place;
@@ -291,8 +294,9 @@ void report_scene(const nodes::Scene& scene, ToolContext& context) {
   }
 }
 
-Status add_file(const std::string& path, std::size_t place, bool bones, ToolContext& context,
-                Read& read) {
+Status add_file(const std::string& path, std::size_t place, const ActorOptions& options,
+                ToolContext& context, Read& read) {
+  const bool bones = options.body == BodyChoice::none;
   auto input = context.open_input(path);
   if (!input) return input.error();
   const Kind kind = registry::identify(input->path(), input->bytes());
@@ -313,13 +317,9 @@ Status add_file(const std::string& path, std::size_t place, bool bones, ToolCont
       if (!scene) return scene.error();
       decode_base_colours(scene->materials, path, context, read.images);
       report_scene(*scene, context);
-      if (scene->animations.size() > 1) {
-        context.warn("figure-clips",
-                     fmt::format("{}: the first of {} animations is drawn, {}", base_name(path),
-                                 scene->animations.size(), shown(scene->animations[0].name)),
-                     "for another, import it with krok-import --clip");
-      }
-      const auto source = SceneActor::create(std::move(*scene), bones, read.images);
+      const auto animation = choose_animation(*scene, options.clip, path, context);
+      if (!animation) return animation.error();
+      const auto source = SceneActor::create(std::move(*scene), *animation, bones, read.images);
       if (!source) return Error(source.error()).in_file(path);
       MovingActor actor;
       actor.path = path;
@@ -370,6 +370,14 @@ void share_models(bool bones, SkinMethod method, Read& read) {
   }
 }
 
+bool same_reference(const Clip& a, const Clip& b) {
+  const auto same = [](const Transform& one, const Transform& other) {
+    return one.position == other.position && one.orientation.coeffs() == other.orientation.coeffs();
+  };
+  return difference_in_structure(a.skeleton, b.skeleton).empty() &&
+         std::ranges::equal(a.skeleton.reference, b.skeleton.reference, same);
+}
+
 Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   if (choice == BodyChoice::none) return {};
   const auto bare = std::count_if(read.motions.begin(), read.motions.end(),
@@ -378,6 +386,14 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   const BodyOptions how = body_options(choice, context);
   for (Read::Motion& motion : read.motions) {
     if (motion.body.model != nullptr) continue;
+    const auto same = std::ranges::find_if(read.motions, [&](const Read::Motion& other) {
+      return &other < &motion && other.made && same_reference(other.clip, motion.clip);
+    });
+    if (same != read.motions.end()) {
+      motion.body.model = same->body.model;
+      continue;
+    }
+    motion.made = true;
     auto body = make_body(motion.clip, how);
     if (!body) return std::move(body).error().in_file(motion.path);
     motion.body.model = std::make_shared<Model>(std::move(body->model));
@@ -387,17 +403,64 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
 
 }  // namespace
 
-Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths, BodyChoice body,
-                                             SkinMethod method, ToolContext& context) {
+void add_clip_option(CommandOptions& command, std::string& clip) {
+  command.add_option(
+      "--clip NAME", clip,
+      "Animation of a glTF file that has several: name or number from 0 [the first]");
+}
+
+namespace {
+
+Result<double> time_of(const std::string& text, const char* option, const MovingActor& actor,
+                       double otherwise) {
+  if (text.empty()) return otherwise;
+  const auto time = parse_clip_time(text);
+  if (!time) return Error("usage", fmt::format("{} {}: {}", option, text, time.error().message));
+  if (time->in_frames && actor.frame_count == 0) {
+    return Error("usage", fmt::format("{} {}: the file has no frames, only seconds", option, text))
+        .in_file(actor.path);
+  }
+  const double seconds = time->seconds(actor.rate);
+  if (!(seconds >= 0 && seconds <= actor.duration + 1e-6)) {
+    return Error("usage", fmt::format("{} {}: the motion lasts {} s", option, text,
+                                      readable(actor.duration)))
+        .in_file(actor.path);
+  }
+  return seconds;
+}
+
+}  // namespace
+
+Result<ImageSpan> span_of(const MovingActor& actor, const std::string& from_text,
+                          const std::string& to_text) {
+  const auto from = time_of(from_text, "--from", actor, 0.0);
+  if (!from) return from.error();
+  const auto to = time_of(to_text, "--to", actor, actor.duration);
+  if (!to) return to.error();
+  if (*from > *to) return Error("usage", "--from is after --to");
+  ImageSpan span;
+  span.start = *from;
+  span.end = *to;
+  if (actor.frame_count > 0) {
+    span.rate = actor.rate;
+    span.first = static_cast<int>(std::lround(*from * actor.rate));
+    span.last = std::min(static_cast<int>(std::lround(*to * actor.rate)), actor.frame_count - 1);
+  }
+  return span;
+}
+
+Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths,
+                                             const ActorOptions& options, ToolContext& context) {
   Read read;
-  const bool bones = body == BodyChoice::none;
+  const bool bones = options.body == BodyChoice::none;
+  const SkinMethod method = options.method;
   for (std::size_t place = 0; place < paths.size(); ++place) {
-    if (Status status = add_file(paths[place], place, bones, context, read); !status) {
+    if (Status status = add_file(paths[place], place, options, context, read); !status) {
       return status.error();
     }
   }
   share_models(bones, method, read);
-  if (Status status = make_bodies(body, context, read); !status) return status.error();
+  if (Status status = make_bodies(options.body, context, read); !status) return status.error();
   for (Read::Motion& motion : read.motions) {
     read.actors.emplace(motion.place, actor_of(motion.path, std::move(motion.clip), motion.body,
                                                method, read.images));

@@ -10,6 +10,7 @@
 #include "skin/skin.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/body_choice.h"
+#include "tools/shared/image.h"
 
 // Reads input files as actors that can be rendered.
 
@@ -31,14 +32,28 @@ struct MovingActor {
   std::function<double(double time)> heading;
 };
 
+// How actors are read.
+struct ActorOptions {
+  BodyChoice body = BodyChoice::automatic;
+  SkinMethod method = SkinMethod::linear;  // of motions; glTF files are skinned as in viewers
+  std::string clip;  // of glTF files with animations: a name or an index; empty: the first
+};
+
+// --clip.
+void add_clip_option(CommandOptions& command, std::string& clip);
+
+// The part of an actor's motion between two times as given by --from and --to, or its ends for
+// empty texts. Code usage.
+Result<ImageSpan> span_of(const MovingActor& actor, const std::string& from, const std::string& to);
+
 // Reads motions (captures, .anim), models and characters (.model, .character; animated by the
 // motions of their skeleton or static, faces at rest) and glTF files, in the order of `paths`. With
 // BodyChoice::none, motions, models and glTF files with joints are drawn as bones. glTF files are
 // drawn with their materials if one of them has an image, see look_of(), or with vertex colours;
-// otherwise in the default body colour. BodyChoice::automatic is low for more than two motions
-// without a body, otherwise medium. `method` is the skinning method for motions; glTF files are
-// skinned as in viewers. Code figure-input for a file without an actor.
-Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths, BodyChoice body,
-                                             SkinMethod method, ToolContext& context);
+// otherwise in the default body colour. BodyChoice::automatic is low for more than two motions without a body, otherwise
+// medium; motions with the same skeleton and reference pose share one. Codes figure-input for a
+// file without an actor, clip-name.
+Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths,
+                                             const ActorOptions& options, ToolContext& context);
 
 }  // namespace krok::cli

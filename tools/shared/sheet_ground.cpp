@@ -1,4 +1,4 @@
-#include "tools/krok-plot/sheet_ground.h"
+#include "tools/shared/sheet_ground.h"
 
 #include <algorithm>
 #include <array>
@@ -6,12 +6,18 @@
 #include <memory>
 
 #include "draw/sole_outline.h"
+#include "formats/io/open_terrain.h"
 #include "terrain/surface.h"
+#include "tools/shared/shown_ground.h"
 
-namespace krok::cli::plot {
+namespace krok::cli {
 
 namespace {
 
+constexpr double kAroundActor = 0.35;  // metres of ground on each side of an actor
+constexpr double kAroundWay = 0.6;     // metres on each side of a way
+constexpr double kDeepest = 2;         // metres below the hips: deeper ground is not shown
+constexpr int kWayPoints = 400;
 constexpr float kBorder = 0.06F;  // metres
 constexpr double kLift = 0.004;   // metres of a footprint over the ground
 constexpr std::int64_t kMaxFaces = 40'000;
@@ -67,7 +73,45 @@ render::Surface sole(const draw::ViewedPrint& print, const std::vector<Vec2>& ou
   return surface;
 }
 
+GroundPart around(const Eigen::AlignedBox3d& box, double metres) {
+  const Vec2 border = Vec2::Constant(metres);
+  GroundPart part;
+  part.low = Vec2(box.min().x(), box.min().z()) - border;
+  part.high = Vec2(box.max().x(), box.max().z()) + border;
+  part.bottom = box.min().y() - kDeepest;
+  part.top = box.max().y();
+  return part;
+}
+
 }  // namespace
+
+Result<SheetGround> open_sheet_ground(const std::string& ground, const std::string& prints,
+                                      ToolContext& context) {
+  SheetGround result;
+  if (ground.empty()) return result;
+  auto opened = io::open_terrain(ground, {}, context);
+  if (!opened) return opened.error();
+  result.terrain = *std::move(opened);
+  if (prints.empty()) return result;
+  const auto read = open_prints(prints, context);
+  if (!read) return read.error();
+  const auto shown = show_prints(*read, *result.terrain, {}, context);
+  if (!shown) return Error(shown.error()).in_file(prints);
+  result.prints = viewed_prints(*shown);
+  return result;
+}
+
+GroundPart part_below(const Vec3& carrier) {
+  return around(Eigen::AlignedBox3d(carrier), kAroundActor);
+}
+
+GroundPart part_below_way(const MovingActor& actor, const ImageSpan& span) {
+  Eigen::AlignedBox3d box;
+  for (int i = 0; i <= kWayPoints; ++i) {
+    box.extend(actor.carrier(span.start + (span.end - span.start) * i / kWayPoints));
+  }
+  return around(box, kAroundWay);
+}
 
 std::vector<render::Surface> ground_surfaces(const Terrain& ground,
                                              std::span<const draw::ViewedPrint> prints,
@@ -118,4 +162,4 @@ std::vector<render::Surface> ground_surfaces(const Terrain& ground,
   return surfaces;
 }
 
-}  // namespace krok::cli::plot
+}  // namespace krok::cli

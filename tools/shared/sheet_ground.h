@@ -1,15 +1,28 @@
 #pragma once
 
+#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "draw/viewer_page.h"
 #include "render/actor.h"
 #include "terrain/terrain.h"
+#include "tools/shared/moving_actor.h"
 
 // The ground and the footprints in images.
 
-namespace krok::cli::plot {
+namespace krok::cli {
+
+// What lies below actors in images.
+struct SheetGround {
+  std::unique_ptr<const Terrain> terrain;  // null for none
+  std::vector<draw::ViewedPrint> prints;
+};
+
+// Reads --ground and --prints; both may be empty.
+Result<SheetGround> open_sheet_ground(const std::string& ground, const std::string& prints,
+                                      ToolContext& context);
 
 // The part of a ground that an image shows.
 struct GroundPart {
@@ -18,10 +31,14 @@ struct GroundPart {
   double bottom = 0, top = 0;
 };
 
+// Below an actor whose hips are at `carrier`, and below the whole way of one.
+GroundPart part_below(const Vec3& carrier);
+GroundPart part_below_way(const MovingActor& actor, const ImageSpan& span);
+
 // The ground as surfaces, with a border that goes down so that it is seen from the side, and the
 // footprints in it. Empty where there is none.
 std::vector<render::Surface> ground_surfaces(const Terrain& ground,
                                              std::span<const draw::ViewedPrint> prints,
                                              const GroundPart& part);
 
-}  // namespace krok::cli::plot
+}  // namespace krok::cli
