@@ -2,35 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/numbers.h"
+#include "formats/csv/field_internal.h"
 
 namespace krok::csv {
-
-namespace {
-
-std::string csv_field(std::string_view name) {
-  if (name.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(name);
-  std::string text = "\"";
-  for (const char c : name) {
-    if (c == '"') text += '"';
-    text += c;
-  }
-  return text + '"';
-}
-
-}  // namespace
 
 Status write(const Clip& clip, OutputFile& file) {
   if (Status status = check(clip); !status) return status;
   constexpr std::size_t kFlushAt = std::size_t{1} << 20;
 
   std::vector<std::string> names;
-  for (const std::string& name : clip.skeleton.names) names.push_back(csv_field(name));
+  for (const std::string& name : clip.skeleton.names) names.push_back(field(name));
 
   std::string text = "frame,time,joint,x,y,z\n";
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
@@ -52,9 +37,21 @@ Status write(const Clip& clip, OutputFile& file) {
   return file.write(text);
 }
 
+Status write(std::span<const Contact> contacts, std::span<const std::string> names,
+             OutputFile& file) {
+  std::string text = "joint,start,end,x,y,z\n";
+  for (const Contact& contact : contacts) {
+    text += fmt::format("{},{},{}", field(names[static_cast<std::size_t>(contact.joint)]),
+                        shortest(contact.start), shortest(contact.end));
+    for (int axis = 0; axis < 3; ++axis) (text += ',') += shortest(contact.place[axis]);
+    text += '\n';
+  }
+  return file.write(text);
+}
+
 Status write(const MorphWeights& weights, OutputFile& file) {
   std::string text = "frame,time";
-  for (const std::string& name : weights.names) text += "," + csv_field(name);
+  for (const std::string& name : weights.names) (text += ',') += field(name);
   text += '\n';
   for (int frame = 0; frame < weights.frame_count(); ++frame) {
     text += fmt::format("{},{}", frame, shortest(frame / weights.rate));

@@ -1,9 +1,13 @@
 #pragma once
 
+#include <span>
+#include <string>
+
 #include "core/file.h"
 #include "core/result.h"
 #include "scene/clip.h"
 #include "scene/morph_set.h"
+#include "scene/motion_keys.h"
 
 // Writes world positions of joints and morph target weights as CSV.
 
@@ -15,6 +19,11 @@ namespace krok::csv {
 // positions as floats); names with a comma, a quote or a line break are quoted (RFC 4180). Lines
 // end with LF. A clip without frames gives only the header. An Error if check() fails.
 Status write(const Clip& clip, OutputFile& file);
+
+// Contacts: the header "joint,start,end,x,y,z" and a row for each, in seconds and metres; `names`
+// are those of the joints.
+Status write(std::span<const Contact> contacts, std::span<const std::string> names,
+             OutputFile& file);
 
 // Morph target weights: the header "frame,time," followed by the target names, then one row per
 // frame. Numbers, names and lines as above.

@@ -6,11 +6,13 @@
 
 #include "capture/conventions.h"
 #include "core/quantity.h"
+#include "core/tolerance.h"
 #include "formats/bvh/bvh_writer.h"
 #include "formats/io/formats.h"
 #include "tools/cli/one_of.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-export/run.h"
+#include "tools/shared/role_input.h"
 
 namespace krok::cli::exporting {
 
@@ -26,10 +28,14 @@ Result<std::string> extension_of(ExportFormat format) {
       return std::string(".gltf");
     case ExportFormat::csv:
       return std::string(".csv");
+    case ExportFormat::mot:
+      return std::string(".mot");
+    case ExportFormat::sto:
+      return std::string(".sto");
     case ExportFormat::from_extension:
       break;
   }
-  return Error("usage", "no output format given", "use --format bvh, glb, gltf or csv");
+  return Error("usage", "no output format given", "use --format bvh, glb, gltf, csv, mot or sto");
 }
 
 Status check(const Options& options) {
@@ -51,7 +57,7 @@ Result<double> unit_of(const Options& options, ExportFormat format) {
 }
 
 Result<double> reduce_tolerance(const Options& options) {
-  const auto tolerance = parse_length(options.reduce);
+  const auto tolerance = parse_length_tolerance(options.reduce);
   if (!tolerance)
     return Error("usage", "--reduce: " + tolerance.error().message, tolerance.error().hint);
   if (!(*tolerance > 0)) {
@@ -66,6 +72,15 @@ Status check_for(ExportFormat format, const Options& options) {
   if (const auto unit = unit_of(options, format); !unit) return unit.error();
   if (format != ExportFormat::bvh && (options.digits || !options.order.empty())) {
     return Error("usage", "--digits and --order are for BVH");
+  }
+  const bool opensim = format == ExportFormat::mot || format == ExportFormat::sto;
+  if ((options.what != What::automatic || !options.map.empty()) && format != ExportFormat::csv &&
+      !opensim) {
+    return Error("usage", "--what and --map are for tables: .csv, .mot and .sto");
+  }
+  if (options.layout != Layout::automatic && format != ExportFormat::csv) {
+    return Error("usage",
+                 opensim ? "--layout is for CSV; OpenSim's files are wide" : "--layout is for CSV");
   }
   if (options.bones && format != ExportFormat::glb && format != ExportFormat::gltf) {
     return Error("usage", "--bones and --no-bones are for glTF");
@@ -88,12 +103,37 @@ void declare(CommandOptions& command, Options& options) {
                   "by krok-import without options")
       .required();
   command
-      .add_option("--format FORMAT", options.format,
-                  "bvh, glb, gltf (text, embedded data) or csv; default: the output's extension")
+      .add_option(
+          "--format FORMAT", options.format,
+          "bvh, glb, gltf (text, embedded data), csv, or OpenSim's mot or sto; default: the "
+          "output's extension")
       .transform(one_of<ExportFormat>({{"bvh", ExportFormat::bvh},
                                        {"glb", ExportFormat::glb},
                                        {"gltf", ExportFormat::gltf},
-                                       {"csv", ExportFormat::csv}}));
+                                       {"csv", ExportFormat::csv},
+                                       {"mot", ExportFormat::mot},
+                                       {"sto", ExportFormat::sto}}));
+  command
+      .add_option("--what SERIES", options.what,
+                  "Tables: positions (world, m), velocities (world, m/s), quaternions (world: qx, "
+                  "qy, qz, qw), local (position in m and quaternion relative to the parent), "
+                  "angles (of hips, knees, ankles, shoulders, elbows in degrees, those that "
+                  "krok-plot draws, see docs/angles.md) or contacts (of the feet, from "
+                  "NAME.keys.json or detected); default: positions, angles for mot and sto")
+      .transform(one_of<What>({{"positions", What::positions},
+                               {"local", What::local},
+                               {"angles", What::angles},
+                               {"quaternions", What::quaternions},
+                               {"velocities", What::velocities},
+                               {"contacts", What::contacts}}));
+  command
+      .add_option(
+          "--layout LAYOUT", options.layout,
+          "CSV: long, a row for each frame and joint (contacts: a row for each), or wide, a "
+          "row for each frame")
+      .transform(one_of<Layout>({{"long", Layout::long_rows}, {"wide", Layout::wide}}))
+      .default_str("long");
+  add_map_option(command, options.map);
   command.add_option("--unit UNIT", options.unit, "BVH: length unit: m, cm, mm, in, ft")
       .default_str("cm");
   add_whole(command, "--digits 1..15", options.digits,
@@ -121,12 +161,16 @@ void declare(CommandOptions& command, Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-export", options, declare, check, run);
-  spec.summary = "Exports a motion as BVH, glTF or a CSV table of world positions";
+  spec.summary =
+      "Exports a motion as BVH, glTF, or tables of positions, angles and others (CSV, OpenSim)";
   spec.inputs = "IN";
   spec.examples = {
       {"krok-export walk.anim -o walk.glb", "the animated skeleton, for any glTF viewer"},
       {"krok-export walk.anim -o walk.csv",
        "frame,time,joint,x,y,z: one row per frame and joint, in metres"},
+      {"krok-export walk.anim --what angles --layout wide -o angles.csv",
+       "frame,time,hip_flexion_l,...: one row per frame, in degrees"},
+      {"krok-export walk.anim -o walk.mot", "the same angles for OpenSim"},
       {"krok-export capture.bvh -o capture.glb",
        "directly from a capture; -v prints the detected conventions"},
       {"krok-export walk.anim --format csv -o - | head", "the first rows"}};

@@ -7,16 +7,31 @@
 
 namespace krok::cli::exporting {
 
-enum class ExportFormat { from_extension, bvh, glb, gltf, csv };
+enum class ExportFormat { from_extension, bvh, glb, gltf, csv, mot, sto };
+
+// The series in a table.
+enum class What : unsigned char {
+  automatic,  // positions; for OpenSim angles
+  positions,
+  local,
+  angles,
+  quaternions,
+  velocities,
+  contacts
+};
+enum class Layout : unsigned char { automatic, long_rows, wide };
 
 struct Options {
   std::string input;
   ExportFormat format = ExportFormat::from_extension;
-  std::string unit;           // BVH: length unit; empty: centimetres
-  std::optional<int> digits;  // BVH: decimal places of degrees and centimetres
-  std::string order;          // BVH: of rotation channels, "ZXY"; empty: default
-  std::string reduce;         // glTF: key reduction tolerance; empty: keep all keys
-  std::optional<bool> bones;  // glTF: add a thin mesh of the skeleton; default yes
+  std::string unit;                   // BVH: length unit; empty: centimetres
+  std::optional<int> digits;          // BVH: decimal places of degrees and centimetres
+  std::string order;                  // BVH: of rotation channels, "ZXY"; empty: default
+  std::string reduce;                 // glTF: key reduction tolerance; empty: keep all keys
+  What what = What::automatic;        // tables
+  Layout layout = Layout::automatic;  // CSV; automatic: long
+  std::string map;                    // role map for angles and contacts, or empty
+  std::optional<bool> bones;          // glTF: add a thin mesh of the skeleton; default yes
 };
 
 // Checks the options for a format. Codes usage, export-unit.

@@ -13,8 +13,13 @@
 #include "formats/gltf/gltf_writer.h"
 #include "formats/gltf/reduce_tracks.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
+#include "formats/opensim/storage_writer.h"
 #include "skin/bone_mesh.h"
+#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/krok-export/series.h"
+#include "tools/shared/keys_choice.h"
 
 namespace krok::cli::exporting {
 
@@ -27,10 +32,12 @@ Result<ExportFormat> format_of(const Options& options, const std::string& output
   if (end == ".glb") return ExportFormat::glb;
   if (end == ".gltf") return ExportFormat::gltf;
   if (end == ".csv") return ExportFormat::csv;
+  if (end == ".mot") return ExportFormat::mot;
+  if (end == ".sto") return ExportFormat::sto;
   return Error("export-format",
                end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
                            : fmt::format("unknown extension {}", end),
-               "use .bvh, .glb, .gltf or .csv; or --format bvh, glb, gltf or csv")
+               "use .bvh, .glb, .gltf, .csv, .mot or .sto; or --format")
       .in_file(output);
 }
 
@@ -43,16 +50,12 @@ EulerOrder order_of(const std::string& letters) {
   return order;
 }
 
-Status write_as(ExportFormat format, const Clip& clip, const Options& options, double unit_metres,
-                OutputFile& file) {
-  if (format == ExportFormat::bvh) {
-    bvh::WriteOptions writing;
-    writing.unit_metres = unit_metres;
-    if (options.digits) writing.decimals = *options.digits;
-    if (!options.order.empty()) writing.order = order_of(options.order);
-    return bvh::write(clip, writing, file);
-  }
-  return csv::write(clip, file);
+Status write_bvh(const Clip& clip, const Options& options, double unit_metres, OutputFile& file) {
+  bvh::WriteOptions writing;
+  writing.unit_metres = unit_metres;
+  if (options.digits) writing.decimals = *options.digits;
+  if (!options.order.empty()) writing.order = order_of(options.order);
+  return bvh::write(clip, writing, file);
 }
 
 io::MotionSummary facts_of(const Clip& clip) {
@@ -115,6 +118,7 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
   writing.provenance.conversions = facts->conversions;
   const bool bones = options.bones.value_or(true);
   writing.name = bones ? "bones" : "skeleton";
+  writing.clip_name = clip_name_of(options.input);
   const Status status = write_output(context, context.output, [&](OutputFile& file) {
     return bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
                  : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
@@ -123,14 +127,72 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
   return facts;
 }
 
+// The contacts of the motion's sidecar, or as krok-keys detects them.
+Result<std::vector<Contact>> contacts_of(const Options& options, const Clip& clip,
+                                         ToolContext& context) {
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  auto keys = choose_keys(KeysChoice::automatic, options.input, name_of_input(options.input), clip,
+                          *find_roles, context);
+  if (!keys) return keys.error();
+  return *keys ? std::move((*keys)->contacts) : std::vector<Contact>();
+}
+
+Result<csv::SeriesTable> series_of(What what, ExportFormat format, const Options& options,
+                                   const Clip& clip, ToolContext& context) {
+  if (what == What::contacts) {
+    const auto contacts = contacts_of(options, clip, context);
+    if (!contacts) return contacts.error();
+    return contact_series(clip, *contacts);
+  }
+  if (what != What::angles) return joint_series(clip, what);
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto roles = (*find_roles)(clip.skeleton);
+  if (!roles) return roles.error();
+  auto table = angle_series(clip, *roles, format != ExportFormat::csv);
+  if (!table) return std::move(table.error()).in_file(options.input);
+  return table;
+}
+
+// Tables. Without --what, CSV has positions and OpenSim's files have angles.
+Status write_table(ExportFormat format, const Clip& clip, const Options& options,
+                   ToolContext& context) {
+  const bool opensim = format != ExportFormat::csv;
+  const What usual = opensim ? What::angles : What::positions;
+  const What what = options.what == What::automatic ? usual : options.what;
+  const Layout layout = options.layout == Layout::wide ? Layout::wide : Layout::long_rows;
+  if (!opensim && what == What::contacts && layout == Layout::long_rows) {
+    const auto contacts = contacts_of(options, clip, context);
+    if (!contacts) return contacts.error();
+    return write_output(context, context.output, [&](OutputFile& file) {
+      return csv::write(*contacts, clip.skeleton.names, file);
+    });
+  }
+  if (!opensim && what == What::positions && layout == Layout::long_rows) {
+    return write_output(context, context.output,
+                        [&](OutputFile& file) { return csv::write(clip, file); });
+  }
+  const auto table = series_of(what, format, options, clip, context);
+  if (!table) return table.error();
+  context.report.result["columns"] = table->items;
+  return write_output(context, context.output, [&](OutputFile& file) {
+    if (opensim) return opensim::write(*table, clip_name_of(options.input), true, file);
+    return layout == Layout::wide ? csv::write_wide(*table, file) : csv::write_long(*table, file);
+  });
+}
+
 Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
                                         double unit_metres, ToolContext& context) {
   const auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
-  const Status status = write_output(context, context.output, [&](OutputFile& file) {
-    return write_as(format, *clip, options, unit_metres, file);
-  });
+  const Status status = format == ExportFormat::bvh
+                            ? write_output(context, context.output,
+                                           [&](OutputFile& file) {
+                                             return write_bvh(*clip, options, unit_metres, file);
+                                           })
+                            : write_table(format, *clip, options, context);
   if (!status) return status.error();
   return facts_of(*clip);
 }
@@ -170,7 +232,9 @@ Result<int> run(const Options& options, ToolContext& context) {
                           ? export_gltf(is_glb, options, context, reduction)
                           : export_others(*format, options, *unit_metres, context);
   if (!motion) return motion.error();
+  Json columns = std::move(context.report.result["columns"]);
   context.report.result = result_of(*motion, reduction);
+  if (!columns.is_null()) context.report.result["columns"] = std::move(columns);
   context.log(fmt::format("{}: {}, {}, {} s{}", context.output,
                           counted(motion->skeleton.joint_count(), "joint"),
                           counted(motion->frame_count, "frame"), readable(motion->duration, 3),
