@@ -27,10 +27,10 @@ bool appends(const Arguments& a) {
 }
 // A sequence may loop if its file says so.
 bool may_loop(const Arguments& a) {
-  return a.loop || !a.sequences.empty();
+  return a.loop || a.cycle != CycleFoot::none || !a.sequences.empty();
 }
 
-constexpr const char* kLoop = "--loop, or --sequences with a looped one";
+constexpr const char* kLoop = "--loop, --cycle, or --sequences with a looped one";
 constexpr std::array kNeeds = {
     Need{"--spike-threshold", [](const Arguments& a) { return a.spikes; }, "--spikes"},
     Need{"--cutoff", [](const Arguments& a) { return a.filter == Arguments::Filter::butterworth; },

@@ -53,8 +53,16 @@ void declare_cut(CommandOptions& command, Arguments& a) {
   command.group("2. Cut");
   command.add_option(
       "--from TIME", a.from,
-      "Start of the range to keep: 1.5s, 250ms, or 120f for a frame; a bare number is seconds");
+      "Start of the range to keep: 1.5s, 250ms, or 120f for a frame; a bare number is seconds; or "
+      "a keytime, left_strike[2] for the second of that name, from NAME.keys.json or detected as "
+      "by "
+      "krok-keys");
   command.add_option("--to TIME", a.to, "End of the range to keep, inclusive");
+  add_choice(command, "--cycle", a.cycle,
+             {{"auto", CycleFoot::either}, {"left", CycleFoot::left}, {"right", CycleFoot::right}},
+             "Keep one gait cycle, from a strike of a foot to its next, and loop it: the one whose "
+             "ends match best, of either foot or of the left or right one",
+             "FOOT", "");
   command.add_option(
       "--sequences IN.json", a.sequences,
       "File that lists sequences of the input (formats/sequences/SPEC.md). Without --sequence each "
@@ -172,6 +180,10 @@ ToolSpec make_spec() {
        "replaces spikes and removes jitter without time shift"},
       {"krok-edit take.anim -o walk.anim --from 1.5s --to 187f --loop --treadmill",
        "a seamless walk cycle in place"},
+      {"krok-edit take.anim -o walk.anim --cycle auto --in-place",
+       "the gait cycle that loops best, in place"},
+      {"krok-edit take.anim -o step.anim --from left_strike[1] --to left_strike[2]",
+       "from the first strike of the left foot to its second"},
       {"krok-edit take.anim -o 'take_{sequence}.anim' --sequences take.json",
        "every sequence listed in a file, at its speed, looped if the file says so"},
       {"krok-edit walk.anim --plant -o planted.anim",

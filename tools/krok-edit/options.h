@@ -17,6 +17,15 @@
 
 namespace krok::cli::edit {
 
+// A keytime by its name and which of that name, from 1: left_strike[2].
+struct EventTime {
+  std::string name;
+  int number = 1;
+};
+
+// Whose strikes a cycle is between.
+enum class CycleFoot : unsigned char { none, either, left, right };
+
 // The options as given.
 struct Arguments {
   enum class Filter { none, butterworth, savgol };
@@ -37,6 +46,7 @@ struct Arguments {
   // 2. cut
   std::string from, to, sequences, sequence;
   bool list_sequences = false;
+  CycleFoot cycle = CycleFoot::none;
   // 3. mirror
   bool mirror = false;
   // 4. timing
@@ -79,6 +89,8 @@ struct Options {
   std::string contacts;  // a file, "auto" or "find"
 
   std::optional<ClipTime> from, to;
+  std::optional<EventTime> from_event, to_event;  // instead of from and to
+  CycleFoot cycle = CycleFoot::none;
   std::string sequences, sequence;
   bool list_sequences = false;
 

@@ -16,6 +16,7 @@
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-edit/steps.h"
+#include "tools/shared/keys_choice.h"
 #include "tools/shared/planting.h"
 #include "tools/shared/role_input.h"
 
@@ -114,6 +115,12 @@ Result<Edit> read_inputs(const Options& options, ToolContext& context) {
     auto contacts = read_planting_contacts(options.contacts, options.input, edit.clip, context);
     if (!contacts) return contacts.error();
     edit.contacts = std::move(*contacts);
+  }
+  if (options.from_event || options.to_event || options.cycle != CycleFoot::none) {
+    auto keys = choose_keys(KeysChoice::automatic, options.input, name_of_input(options.input),
+                            edit.clip, *find_roles, context);
+    if (!keys) return keys.error();
+    if (*keys) edit.keytimes = std::move((*keys)->keytimes);
   }
   edit.sequence = options.sequence;
   if (!options.sequences.empty()) {

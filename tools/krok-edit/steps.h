@@ -24,6 +24,7 @@ struct Edit {
   std::optional<sequences::SequenceFile> sequences;
   std::string sequence;                          // to cut out, or empty
   std::optional<std::vector<Contact>> contacts;  // of the input; none: to be found
+  std::vector<Keytime> keytimes;                 // of the input, for ends that are keytimes
   std::vector<Clip> appended;                    // in the order of Options::append
 
   double speed = 1;   // of options and sequence together

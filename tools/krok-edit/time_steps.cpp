@@ -10,6 +10,7 @@
 #include "motion/loop.h"
 #include "motion/mirror.h"
 #include "motion/retime.h"
+#include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/steps.h"
 
 namespace krok::cli::edit {
@@ -63,15 +64,26 @@ Result<Range> named_range(const Options& options, Edit& edit) {
 
 Result<Range> typed_range(const Options& options, const Edit& edit) {
   const double end = edit.clip.frame_count() - 1;
-  const auto frame_of = [&](const ClipTime& time) {
-    return time.seconds(edit.clip.rate) * edit.clip.rate;
+  // Keytimes are between frames: the nearest frame.
+  const auto frame_of = [&](const std::optional<ClipTime>& time,
+                            const std::optional<EventTime>& event,
+                            double otherwise) -> Result<double> {
+    if (time) return time->seconds(edit.clip.rate) * edit.clip.rate;
+    if (!event) return otherwise;
+    const auto seconds = time_of(*event, edit.keytimes);
+    if (!seconds) return Error(seconds.error()).in_file(options.input);
+    return std::clamp(std::round(*seconds * edit.clip.rate), 0.0, end);
   };
-  const Range range{options.from ? frame_of(*options.from) : 0,
-                    options.to ? frame_of(*options.to) : end};
+  const auto first = frame_of(options.from, options.from_event, 0);
+  if (!first) return first.error();
+  const auto last = frame_of(options.to, options.to_event, end);
+  if (!last) return last.error();
+  const Range range{*first, *last};
   if (range.first > range.last) {
     return Error("edit-range",
                  fmt::format("--from ({}) is after {} ({})", seconds(range.first / edit.clip.rate),
-                             options.to ? "--to" : "the end", seconds(range.last / edit.clip.rate)),
+                             options.to || options.to_event ? "--to" : "the end",
+                             seconds(range.last / edit.clip.rate)),
                  extent_of(edit.clip));
   }
   // A printed duration may be rounded up.
@@ -150,7 +162,11 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
   edit.speed = options.speed;
   edit.loop = options.loop;
   const bool named = !edit.sequence.empty();
-  if (!named && !options.from && !options.to) return {};
+  const bool cycle = options.cycle != CycleFoot::none;
+  if (!named && !cycle && !options.from && !options.to && !options.from_event &&
+      !options.to_event) {
+    return {};
+  }
   if (edit.clip.frame_count() == 0) {
     return Error("edit-range", "the motion has no frames to cut from").in_file(options.input);
   }
@@ -158,8 +174,8 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
   if (!range) return range.error();
   constexpr double kSameFrame = 1e-3;
   const int end = edit.clip.frame_count() - 1;
-  const int first = static_cast<int>(std::ceil(range->first - kSameFrame));
-  const int last = std::min(end, static_cast<int>(std::floor(range->last + kSameFrame)));
+  int first = static_cast<int>(std::ceil(range->first - kSameFrame));
+  int last = std::min(end, static_cast<int>(std::floor(range->last + kSameFrame)));
   if (first > last) {
     return Error("edit-range",
                  fmt::format("no frame between {} and {}", seconds(range->first / edit.clip.rate),
@@ -167,15 +183,28 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
                  extent_of(edit.clip))
         .in_file(options.input);
   }
-  edit.clip = cut(edit.clip, first, last);
   Json metrics;
+  std::string chosen = named ? fmt::format("sequence '{}', ", edit.sequence) : "";
   if (named) metrics["sequence"] = edit.sequence;
+  if (cycle) {
+    const auto best =
+        best_cycle(edit.clip, edit.carrier, edit.keytimes, options.cycle, first, last);
+    if (!best) return Error(best.error()).in_file(options.input);
+    first = best->first;
+    last = best->last;
+    metrics["cycle"] = {{"from", fmt::format("{}[{}]", best->name, best->number)},
+                        {"to", fmt::format("{}[{}]", best->name, best->number + 1)},
+                        {"angle", best->angle},
+                        {"compared", best->compared}};
+    chosen = fmt::format("cycle {}[{}] to [{}], of {} the one that matches best, ", best->name,
+                         best->number, best->number + 1, best->compared);
+  }
+  edit.clip = cut(edit.clip, first, last);
   metrics["first_frame"] = first;
   metrics["last_frame"] = last;
   metrics["frames_cut"] = end + 1 - edit.clip.frame_count();
   edit.note("cut", std::move(metrics),
-            fmt::format("cut: {}frames {} to {}, {} removed",
-                        named ? fmt::format("sequence '{}', ", edit.sequence) : "", first, last,
+            fmt::format("cut: {}frames {} to {}, {} removed", chosen, first, last,
                         end + 1 - edit.clip.frame_count()));
   return {};
 }
@@ -286,6 +315,10 @@ Status make_loop(const Options& options, ToolContext&, Edit& edit) {
   }
   LoopOptions looping = options.looping;
   looping.blend = options.loop_blend.seconds(edit.clip.rate);
+  // From strike to strike the last pose is the first again.
+  if (options.cycle != CycleFoot::none && looping.end == LoopEnd::automatic) {
+    looping.end = LoopEnd::closed;
+  }
   auto looped = loop(edit.clip, edit.carrier, looping);
   if (!looped) return std::move(looped.error()).in_file(options.input);
   Json metrics = loop_json(*looped, edit);

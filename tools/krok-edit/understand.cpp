@@ -8,6 +8,7 @@
 #include "core/quantity.h"
 #include "core/text.h"
 #include "tools/cli/usage.h"
+#include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/options.h"
 
 namespace krok::cli::edit {
@@ -73,25 +74,40 @@ Status understand_cleaning(const Arguments& a, Options& options) {
   return {};
 }
 
+// A time or a keytime.
+Status understand_end(const std::string& text, const char* option, std::optional<ClipTime>& time,
+                      std::optional<EventTime>& event) {
+  if (text.empty()) return {};
+  auto named_event = parse_event(text);
+  if (!named_event) return named(std::move(named_event).error(), option);
+  event = *std::move(named_event);
+  if (event) return {};
+  const auto given = time_of(text, option);
+  if (!given) return given.error();
+  time = *given;
+  return {};
+}
+
 Status understand_cut(const Arguments& a, Options& options) {
-  if (!a.from.empty()) {
-    const auto from = time_of(a.from, "--from");
-    if (!from) return from.error();
-    options.from = *from;
+  if (Status status = understand_end(a.from, "--from", options.from, options.from_event); !status) {
+    return status;
   }
-  if (!a.to.empty()) {
-    const auto to = time_of(a.to, "--to");
-    if (!to) return to.error();
-    options.to = *to;
+  if (Status status = understand_end(a.to, "--to", options.to, options.to_event); !status) {
+    return status;
+  }
+  options.cycle = a.cycle;
+  const bool cut = !a.from.empty() || !a.to.empty();
+  if (a.cycle != CycleFoot::none && !a.sequences.empty()) {
+    return usage("--cycle and --sequences exclude each other");
   }
   const bool by_name = !a.sequence.empty();
-  if (by_name && (options.from || options.to)) {
+  if (by_name && cut) {
     return usage("--sequence cannot be combined with --from and --to");
   }
   if ((by_name || a.list_sequences) && a.sequences.empty()) {
     return usage("no sequences file given", "add --sequences FILE");
   }
-  if (!a.sequences.empty() && !by_name && (options.from || options.to)) {
+  if (!a.sequences.empty() && !by_name && cut) {
     return usage("--sequences cannot be combined with --from and --to");
   }
   options.sequences = a.sequences;
@@ -103,7 +119,7 @@ Status understand_cut(const Arguments& a, Options& options) {
 Status understand_loop(const Arguments& a, Options& options) {
   const auto blend = time_of(a.loop_blend, "--loop-blend");
   if (!blend) return blend.error();
-  options.loop = a.loop;
+  options.loop = a.loop || a.cycle != CycleFoot::none;
   options.loop_blend = *blend;
   options.looping = {0, a.loop_end, a.loop_turn, a.loop_climb};
   options.rounds = a.rounds;

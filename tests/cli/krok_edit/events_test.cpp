@@ -1,0 +1,101 @@
+// Cutting by gait events. Would fail if a cut did not begin and end at the keytimes, or if the
+// cycle that --cycle chooses did not repeat.
+#include <cmath>
+
+#include "cli/motion_fixture.h"
+
+namespace krok::test {
+namespace {
+
+// A walk at 60 frames/s whose cycle of two steps takes exactly 60 frames.
+class EditEvents : public MotionTest {
+ protected:
+  void SetUp() override {
+    samples::WalkOptions options;
+    options.cadence = 120;
+    options.steps = 10;
+    options.rate = 60;
+    write("walk.anim", samples::make_walk(options).value().clip);
+    ASSERT_EQ(run_here("krok-keys", {"walk.anim", "-o", "walk.keys.json", "-q"}).exit_code, 0);
+    keys_ = json::parse(get(path("walk.keys.json")))["keytimes"];
+  }
+
+  // Of the keytime of that name and number, from 1.
+  int frame_of(const std::string& name, int number) const {
+    for (const json& key : keys_) {
+      if (key["name"] == name && --number == 0) {
+        return static_cast<int>(std::lround(key["time"].get<double>() * 60));
+      }
+    }
+    ADD_FAILURE() << name;
+    return -1;
+  }
+
+  json cut_of(std::vector<std::string> options) const {
+    options.insert(options.begin(), {"walk.anim", "-o", "out.anim"});
+    return report_here("krok-edit", options)["result"]["steps"][0];
+  }
+
+  json keys_;
+};
+
+TEST_F(EditEvents, FromOneKeytimeToAnother) {
+  const json cut = cut_of({"--from", "left_strike[1]", "--to", "left_strike[2]"});
+  EXPECT_EQ(cut["first_frame"], frame_of("left_strike", 1));
+  EXPECT_EQ(cut["last_frame"], frame_of("left_strike", 2));
+  const Clip part = read("out.anim");
+  EXPECT_NEAR(part.frame_count() - 1, 60, 1);
+  // Without a number the first; a time and a keytime go together.
+  const json mixed = cut_of({"--from", "right_off", "--to", "2s"});
+  EXPECT_EQ(mixed["first_frame"], frame_of("right_off", 1));
+  EXPECT_EQ(mixed["last_frame"], 120);
+}
+
+TEST_F(EditEvents, WithoutASidecarKeytimesAreDetected) {
+  std::filesystem::remove(path("walk.keys.json"));
+  const json cut = cut_of({"--from", "left_strike[2]"});
+  EXPECT_EQ(cut["first_frame"], frame_of("left_strike", 2));
+}
+
+TEST_F(EditEvents, ACycleIsCutAndLooped) {
+  for (const std::string foot : {"auto", "left", "right"}) {
+    std::vector<std::string> options = {"walk.anim", "--cycle", foot, "-o", "out.anim"};
+    const json steps = report_here("krok-edit", options)["result"]["steps"];
+    ASSERT_EQ(steps.size(), 2U);
+    EXPECT_EQ(steps[1]["step"], "loop");
+    EXPECT_GE(steps[0]["cycle"]["compared"].get<int>(), 2);
+    const std::string from = steps[0]["cycle"]["from"];
+    if (foot != "auto") {
+      EXPECT_EQ(from.substr(0, foot.size()), foot);
+    }
+    EXPECT_EQ(read("out.anim").frame_count(), 61) << foot;
+    EXPECT_LT(steps[0]["cycle"]["angle"].get<double>(), 0.02) << "a generated walk repeats";
+  }
+  // Within the given ends.
+  const json late = cut_of({"--cycle", "left", "--from", "2s"});
+  EXPECT_GE(late["first_frame"].get<int>(), 120);
+}
+
+TEST_F(EditEvents, KeytimesThatAreNotThereAreNamed) {
+  const auto refused = [&](const std::string& from) {
+    const ToolRun run = run_here("krok-edit", {"walk.anim", "--from", from, "-o", "x.anim"});
+    EXPECT_EQ(run.exit_code, 2) << from;
+    return run.err;
+  };
+  const std::string misspelt = refused("left_strke[2]");
+  EXPECT_TRUE(has_code(misspelt, "edit-event")) << misspelt;
+  EXPECT_THAT(misspelt, AllOf(HasSubstr("did you mean 'left_strike'?"), HasSubstr("right_off (")));
+  EXPECT_THAT(refused("left_strike[40]"), HasSubstr("there are "));
+  for (const char* number : {"left_strike[0]", "left_strike[-1]", "left_strike[x]", "left_strike[]",
+                             "]", "left_strike[99999999999999999999]"}) {
+    EXPECT_TRUE(has_code(refused(number), "edit-event")) << number;
+  }
+  EXPECT_FALSE(has_code(refused("1.5x"), "edit-event"));
+  put("chain.bvh", capture(30));
+  const ToolRun chain = run_here("krok-edit", {"chain.bvh", "--cycle", "auto", "-o", "x.anim"});
+  EXPECT_EQ(chain.exit_code, 2);
+  EXPECT_TRUE(has_code(chain.err, "edit-cycle")) << chain.err;
+}
+
+}  // namespace
+}  // namespace krok::test
