@@ -57,6 +57,13 @@ Error exists_error(const std::string& path) {
 constexpr int kMaxKeptOpen = 16;
 std::atomic<int> kept_open{0};
 
+// What no text has: a terminal would take other bytes for commands.
+bool has_zero(std::span<const std::span<const std::byte>> parts) {
+  return std::ranges::any_of(parts, [](std::span<const std::byte> part) {
+    return std::ranges::find(part, std::byte{0}) != part.end();
+  });
+}
+
 std::string folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
@@ -79,6 +86,7 @@ struct OutputFile::State {
   enum class Placed { no, anew, exchanged, for_good } placed = Placed::no;
   bool no_clobber = false;
   bool stored_later = false;
+  bool to_terminal = false;
   AppendedBytes bytes;
   Status failure;
 
@@ -89,6 +97,7 @@ struct OutputFile::State {
 
   void open(int to, bool is_stream) {
     descriptor = to;
+    to_terminal = is_stream && isatty(to) == 1;
     bytes = AppendedBytes(to, is_stream);
   }
 
@@ -296,6 +305,12 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
 Status OutputFile::write(std::span<const std::span<const std::byte>> parts) {
   assert(!state_->sealed);
   if (!state_->failure) return state_->failure;
+  if (state_->to_terminal && has_zero(parts)) {
+    state_->failure =
+        file_error("file-terminal", state_->path, "is a terminal, and the output is not text",
+                   "redirect it (> FILE or a pipe), or use -o FILE");
+    return state_->failure;
+  }
   return state_->written(state_->bytes.append(parts));
 }
 

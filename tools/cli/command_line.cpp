@@ -2,6 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <filesystem>
+
+#include "core/glob.h"
+#include "core/nearest_name.h"
+#include "core/text.h"
 #include "tools/cli/help.h"
 #include "tools/cli/one_of.h"
 #include "tools/cli/option_kinds.h"
@@ -15,6 +21,15 @@ constexpr const char* kMany = "Batch mode";
 
 bool type_begins(const CLI::Option& option, const char* word) {
   return option.get_type_name().rfind(word, 0) == 0;
+}
+
+// "'a' 'b'", of at most three.
+std::string shown_list(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size() && i < 3; ++i) {
+    list += fmt::format("{}'{}'", i == 0 ? "" : " ", shown(words[i]));
+  }
+  return list + (words.size() > 3 ? " ..." : "");
 }
 
 bool is_flag(const CLI::Option& option) {
@@ -213,6 +228,15 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   } catch (const CLI::CallForVersion&) {
     return Wish::version;
   } catch (const CLI::ParseError& error) {
+    if (auto unknown = unknown_option(arguments)) return *std::move(unknown);
+    if (const auto left = app_.remaining(); !left.empty()) {
+      const bool file = form_ == Form::single && takes_many_;
+      return Error(
+          "usage",
+          fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),
+          file ? fmt::format("for several inputs, use --out-dir DIR; see {} --help", tool_)
+               : fmt::format("see {} --help", tool_));
+    }
     const bool too_many = form_ == Form::single && takes_many_ &&
                           dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     return Error("usage", error.what(),
@@ -222,6 +246,51 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   if (Status status = check_use_of_batch_options(); !status) return status.error();
   note_given();
   return Wish::run;
+}
+
+// The first word before "--" that looks like an option and is none.
+std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>& arguments) const {
+  std::vector<std::string> names;
+  for (const OptionFacts& option : facts_of(app_)) {
+    names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    const bool is_long = argument.starts_with("--");
+    const bool letter = argument.size() == 2 && argument[0] == '-' &&
+                        std::isalpha(static_cast<unsigned char>(argument[1])) != 0;
+    if (!is_long && !letter) continue;
+    const std::string name = argument.substr(0, argument.find('='));
+    if (app_.get_option_no_throw(name) != nullptr) continue;
+    const std::string near = is_long ? nearest_name(name, names) : std::string();
+    return Error("usage", fmt::format("unknown option '{}'", shown(name)),
+                 near.empty() ? fmt::format("see {} --help", tool_)
+                              : fmt::format("did you mean '{}'?", near));
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> CommandLine::expanded(const std::vector<std::string>& arguments) const {
+  std::map<std::string, std::vector<std::string>> patterns;
+  for (const CLI::Option* option : app_.get_options()) {
+    if (!option->get_positional() || !type_begins(*option, "IN")) continue;
+    for (const std::string& value : option->results()) {
+      std::error_code unknown;
+      if (!has_wildcards(value) || std::filesystem::exists(value, unknown)) continue;
+      auto found = find_files(value);
+      if (found && !found->empty()) patterns[value] = *std::move(found);
+    }
+  }
+  std::vector<std::string> result;
+  for (const std::string& argument : arguments) {
+    const auto found = patterns.find(argument);
+    if (found == patterns.end()) {
+      result.push_back(argument);
+    } else {
+      result.insert(result.end(), found->second.begin(), found->second.end());
+    }
+  }
+  return result;
 }
 
 std::string CommandLine::help() const {

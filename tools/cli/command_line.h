@@ -48,6 +48,13 @@ class CommandLine {
 
   std::string help() const;
 
+  // The same arguments with each positional that is a pattern, which the shell did not expand,
+  // replaced by the files that it matches; a pattern without a match is left. After parse().
+  std::vector<std::string> expanded(const std::vector<std::string>& arguments) const;
+
+  // What completion in shells needs to know.
+  std::vector<OptionFacts> options() const { return facts_of(app_); }
+
   // The tool's own options that were given, in declaration order.
   const std::vector<GivenOption>& given() const { return given_; }
 
@@ -87,6 +94,7 @@ class CommandLine {
   void remember_values();
   void note_given();
   Status check_use_of_batch_options() const;
+  std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
 
   Form form_;
   // Keeps the variables alive that the options of app_ write to.

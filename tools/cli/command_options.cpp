@@ -2,10 +2,18 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <sstream>
+#include <string_view>
+
+#include "core/nearest_name.h"
+#include "tools/cli/one_of.h"
 
 namespace krok::cli {
 
 namespace {
+
+// Begins the name of a validator whose rest is the words that it takes.
+constexpr std::string_view kWordsMark = "words ";
 
 // No description: CLI11 would print it beside the value name in the help.
 CLI::Validator validator(CheckValue check) {
@@ -57,6 +65,12 @@ CommandOption CommandOption::check(CheckValue check) const {
 }
 CommandOption CommandOption::transform(CheckValue check) const {
   option_->transform(validator(std::move(check)));
+  return *this;
+}
+CommandOption CommandOption::transform(WordCheck check) const {
+  std::string words;
+  for (const std::string& word : check.words) words += (words.empty() ? "" : " ") + word;
+  option_->transform(validator(std::move(check.check)).name(std::string(kWordsMark) + words));
   return *this;
 }
 CommandOption CommandOption::one_each_time() const {
@@ -136,4 +150,38 @@ CommandOption CommandOptions::get_option(const std::string& name) {
 std::size_t CommandOptions::count(const std::string& name) const {
   return app_.count(name);
 }
+std::string not_one_of(const std::string& text, const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  }
+  const std::string near = nearest_name(text, words);
+  return "'" + text + "' is not " + list + (near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+std::vector<OptionFacts> facts_of(const CLI::App& app) {
+  std::vector<OptionFacts> facts;
+  for (const CLI::Option* option : app.get_options()) {
+    OptionFacts one;
+    one.positional = option->get_positional();
+    for (const std::string& name : option->get_snames()) one.names.push_back("-" + name);
+    for (const std::string& name : option->get_lnames()) one.names.push_back("--" + name);
+    one.takes_value = option->get_items_expected_max() > 0;
+    one.value_name = option->get_type_name();
+    one.description = option->get_description();
+    // The validators of an option are found by number until there is none.
+    try {
+      for (int i = 0;; ++i) {
+        const std::string& name = const_cast<CLI::Option*>(option)->get_validator(i)->get_name();
+        if (name.rfind(kWordsMark, 0) != 0) continue;
+        std::istringstream words(name.substr(kWordsMark.size()));
+        for (std::string word; words >> word;) one.words.push_back(word);
+      }
+    } catch (const CLI::OptionNotFound&) {
+    }
+    facts.push_back(std::move(one));
+  }
+  return facts;
+}
+
 }  // namespace krok::cli

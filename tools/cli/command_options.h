@@ -19,6 +19,12 @@ namespace krok::cli {
 // Validates one option value and may replace it. Returns an error message, empty if valid.
 using CheckValue = std::function<std::string(std::string& value)>;
 
+// A CheckValue for a fixed list of words, which completion offers.
+struct WordCheck {
+  std::vector<std::string> words;
+  CheckValue check;
+};
+
 // Handle to a declared option or positional. Cheap to copy; the CommandOptions that created it must
 // outlive it. Setters return the option for chaining.
 class CommandOption {
@@ -34,6 +40,7 @@ class CommandOption {
   CommandOption excludes(CommandOption other) const;
   CommandOption check(CheckValue check) const;      // sees the value as written
   CommandOption transform(CheckValue check) const;  // its replacement is parsed
+  CommandOption transform(WordCheck check) const;
   // For list options: one value per occurrence; the option may be repeated.
   CommandOption one_each_time() const;
   CommandOption delimiter(char between) const;         // between values in one argument
@@ -42,6 +49,17 @@ class CommandOption {
  private:
   CLI::Option* option_;
 };
+
+// What a declared option is, for completion in shells.
+struct OptionFacts {
+  std::vector<std::string> names;  // "-o", "--output"; none for positionals
+  bool positional = false;
+  bool takes_value = false;
+  std::string value_name;          // "IN.bvh"
+  std::vector<std::string> words;  // that the value must be one of; none: any
+  std::string description;
+};
+std::vector<OptionFacts> facts_of(const CLI::App& app);
 
 class CommandOptions {
  public:

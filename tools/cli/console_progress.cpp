@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
+#include <string_view>
+#include <utility>
 
 #include "core/json_internal.h"
 
@@ -22,10 +24,19 @@ void put(const std::string& text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
+bool shows_colours() {
+  static const bool shown = std::getenv("NO_COLOR") == nullptr && isatty(STDERR_FILENO) == 1;
+  return shown;
+}
+
+// A message, in colours on a terminal.
+void put_message_text(const std::string& text) {
+  put(shows_colours() ? in_colours(text) : text);
+}
+
 class ConsoleProgress : public Console {
  public:
-  explicit ConsoleProgress(ProgressStyle style)
-      : style_(style), color_(std::getenv("NO_COLOR") == nullptr && isatty(STDERR_FILENO) == 1) {}
+  explicit ConsoleProgress(ProgressStyle style) : style_(style), color_(shows_colours()) {}
 
   ~ConsoleProgress() override { ConsoleProgress::end(); }
 
@@ -68,7 +79,7 @@ class ConsoleProgress : public Console {
   void write(const std::string& text) override {
     const std::lock_guard lock(mutex_);
     clear();
-    put(text);
+    put_message_text(text);
   }
 
  private:
@@ -89,10 +100,18 @@ class ConsoleProgress : public Console {
       const std::uint64_t filled =
           total_ > 0 ? std::min(kWidth, done_ * kWidth / total_) : std::uint64_t{0};
       put(fmt::format("\r\033[K{} {}{:#<{}}{}{:.<{}} {}", what_, color_ ? "\033[32m" : "", "",
-                      filled, color_ ? "\033[0m" : "", "", kWidth - filled, amount()));
+                      filled, color_ ? "\033[0m" : "", "", kWidth - filled, amount() + left()));
       drawn_ = true;
     }
     std::fflush(stderr);
+  }
+
+  // The time that is left at the speed so far.
+  std::string left() const {
+    const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (done_ == 0 || done_ >= total_ || spent < 1) return {};
+    const double seconds = spent * static_cast<double>(total_ - done_) / static_cast<double>(done_);
+    return ", " + time_left(seconds);
   }
 
   std::string amount() const {
@@ -112,14 +131,60 @@ class ConsoleProgress : public Console {
 }  // namespace
 
 void Console::write(const std::string& text) {
-  put(text);
+  put_message_text(text);
+}
+
+std::string in_colours(const std::string& text) {
+  constexpr std::string_view kRed = "\033[1;31m", kYellow = "\033[1;33m", kCyan = "\033[36m";
+  constexpr std::string_view kFaint = "\033[2m", kOff = "\033[0m";
+  std::string result;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    std::string line = text.substr(begin, end - begin);
+    if (line.starts_with("  hint: ")) {
+      line = fmt::format("  {}hint:{}{}", kCyan, kOff, line.substr(7));
+    } else {
+      std::size_t place = std::string::npos;
+      std::string_view found, colour;
+      for (const auto& [word, its_colour] :
+           {std::pair<std::string_view, std::string_view>{"error: ", kRed},
+            {"warning: ", kYellow},
+            {"note: ", kCyan}}) {
+        const std::size_t at = line.starts_with(word) ? 0 : line.find(fmt::format(": {}", word));
+        if (at >= place) continue;
+        place = at == 0 ? 0 : at + 2;
+        found = word;
+        colour = its_colour;
+      }
+      const std::size_t code = line.ends_with(']') ? line.rfind(" [") : std::string::npos;
+      if (place != std::string::npos && code != std::string::npos && code > place) {
+        line.insert(line.size(), kOff);
+        line.insert(code, kFaint);
+      }
+      if (place != std::string::npos) {
+        line.insert(place + found.size() - 1, kOff);
+        line.insert(place, colour);
+      }
+    }
+    result += line;
+    if (end < text.size()) result += '\n';
+    begin = end + 1;
+  }
+  return result;
+}
+
+std::string time_left(double seconds) {
+  const auto whole = static_cast<long long>(std::clamp(seconds, 0.0, 360000.0) + 0.5);
+  if (whole < 60) return fmt::format("{} s left", whole);
+  if (whole < 3600) return fmt::format("{}:{:02} min left", whole / 60, whole % 60);
+  return fmt::format("{}:{:02} h left", whole / 3600, whole / 60 % 60);
 }
 
 void write_message(Console* console, const std::string& text) {
   if (console != nullptr) {
     console->write(text);
   } else {
-    put(text);
+    put_message_text(text);
   }
 }
 

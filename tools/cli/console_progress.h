@@ -17,6 +17,12 @@ class Console : public Progress {
 };
 
 // Writes `text` to `console`, or to standard error if null.
+// A message with colours for terminals: severities, hints and codes.
+std::string in_colours(const std::string& text);
+
+// "12 s left", "3:05 min left", "1:20 h left".
+std::string time_left(double seconds);
+
 void write_message(Console* console, const std::string& text);
 
 // automatic: a bar on a terminal, otherwise nothing. plain: a line at the start and every 10 %.

@@ -10,34 +10,34 @@
 
 namespace krok::cli {
 
+// "'dq' is not linear, dual-quaternion or rigid", and which is near.
+std::string not_one_of(const std::string& text, const std::vector<std::string>& words);
+
 // For an option with a fixed list of values: add_option(...).transform(one_of(...)). Values are
 // case-sensitive; the error message lists them in this order.
 template <typename Value>
-CheckValue one_of(std::vector<std::pair<std::string, Value>> words) {
+WordCheck one_of(std::vector<std::pair<std::string, Value>> words) {
   static_assert(std::is_enum_v<Value>);
-  return [words = std::move(words)](std::string& text) {
-    std::string list;
-    for (const auto& [word, value] : words) {
-      if (text == word) {
-        text = std::to_string(static_cast<std::underlying_type_t<Value>>(value));
-        return std::string();
-      }
-      list += (list.empty() ? "" : word == words.back().first ? " or " : ", ") + word;
-    }
-    return "'" + text + "' is not " + list;
-  };
+  std::vector<std::string> names;
+  for (const auto& [word, value] : words) names.push_back(word);
+  return {names, [words = std::move(words), names](std::string& text) {
+            for (const auto& [word, value] : words) {
+              if (text != word) continue;
+              text = std::to_string(static_cast<std::underlying_type_t<Value>>(value));
+              return std::string();
+            }
+            return not_one_of(text, names);
+          }};
 }
 
 // The same for an option that stores the word itself; case-insensitive.
-inline CheckValue one_of_words(std::vector<std::string> words) {
-  return [words = std::move(words)](std::string& text) {
-    std::string list;
-    for (const std::string& word : words) {
-      if (ascii_lower(text) == ascii_lower(word)) return text = word, std::string();
-      list += (list.empty() ? "" : word == words.back() ? " or " : ", ") + word;
-    }
-    return "'" + text + "' is not " + list;
-  };
+inline WordCheck one_of_words(std::vector<std::string> words) {
+  return {words, [words](std::string& text) {
+            for (const std::string& word : words) {
+              if (ascii_lower(text) == ascii_lower(word)) return text = word, std::string();
+            }
+            return not_one_of(text, words);
+          }};
 }
 
 }  // namespace krok::cli

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/file.h"
+#include "core/text.h"
+
 namespace krok::cli {
 
 using registry::Kind;
@@ -30,8 +33,17 @@ std::string maker_of(Kind kind, Kind from) {
 
 Status check_output_kind(const std::string& path, const std::string& option, Kind written) {
   const Kind named = registry::kind_of_name(path);
-  if (named == Kind::unknown || named == written) return {};
+  if (named == written) return {};
   const std::string_view own = registry::kind_name(written);
+  if (named == Kind::unknown) {
+    // Devices and names without an extension are taken as they are.
+    const std::string ending = extension(path);
+    if (ending.empty()) return {};
+    return Error(
+        "usage",
+        fmt::format("{} {}: the output is a .{} file, not {}", option, path, own, shown(ending)),
+        fmt::format("use the extension .{}", own));
+  }
   const std::string maker = maker_of(named, written);
   return Error("usage",
                fmt::format("{} {}: the output is a .{} file, not .{}", option, path, own,

@@ -22,6 +22,9 @@ namespace krok::cli {
 
 namespace {
 
+// Prints what krok completion reads; not in the help.
+constexpr const char* kListOptions = "--list-options";
+
 // A program may be started with standard streams closed. The next opened file would get their
 // descriptor, and messages would be written into it.
 void open_missing_standard_streams() {
@@ -132,7 +135,13 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
   const Status status = spec.check ? spec.check() : Status();
   const Result<int> done = status ? run_guarded(spec, context) : Result<int>(status.error());
   console->end();
-  if (!done) return fail(context, report, done.error());
+  if (!done) {
+    Error error = done.error();
+    if (error.code == "file-directory" && spec.batch) {
+      error.hint = "to process a folder, use --out-dir DIR instead of -o";
+    }
+    return fail(context, report, error);
+  }
   if (!standard_output_written()) return fail(context, report, standard_output_error());
   return finish(context, report, *done);
 }
@@ -155,12 +164,34 @@ int fail_usage(const ToolSpec& spec, const std::vector<std::string>& arguments, 
   return status ? code : fail(context, status.error());
 }
 
+// A line for each option: names, V if it takes a value, that value's name, words that it must be
+// one of, description; separated by tabs. For krok completion.
+int list_options(const ToolSpec& spec) {
+  std::string text;
+  for (const OptionFacts& option : CommandLine(spec, CommandLine::Form::single).options()) {
+    const auto joined = [](const std::vector<std::string>& words) {
+      std::string list;
+      for (const std::string& word : words) list += (list.empty() ? "" : " ") + word;
+      return list;
+    };
+    std::string description = option.description;
+    std::ranges::replace(description, '\n', ' ');
+    text += fmt::format("{}\t{}\t{}\t{}\t{}\n", joined(option.names), option.takes_value ? "V" : "",
+                        option.value_name, joined(option.words), description);
+  }
+  return print_and_end(spec.name, text);
+}
+
 int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>& arguments,
                   const ManyFiles& many_files) {
   const ToolSpec spec = make_spec();
+  if (arguments.size() == 1 && arguments[0] == kListOptions) return list_options(spec);
   const bool many = spec.batch && many_files.asked_for && many_files.asked_for(arguments);
   CommandLine line(spec, many ? CommandLine::Form::many : CommandLine::Form::single);
-  const auto wish = line.parse(arguments);
+  auto wish = line.parse(arguments);
+  // In batch mode the list expands patterns.
+  const auto expanded = many || !wish ? arguments : line.expanded(arguments);
+  if (expanded != arguments) wish = line.parse(expanded);
   if (!wish) return fail_usage(spec, arguments, many, wish.error());
   if (*wish == CommandLine::Wish::version) {
     return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version()));

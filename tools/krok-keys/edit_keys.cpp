@@ -7,7 +7,9 @@
 #include <cmath>
 #include <tuple>
 
+#include "core/nearest_name.h"
 #include "core/numbers.h"
+#include "core/text.h"
 
 namespace krok::cli::keys {
 
@@ -112,6 +114,17 @@ Vec3 place_of(const Clip& clip, int joint, double from, double to) {
   return place;
 }
 
+// Fails for a name that no keytime has, which may be misspelt, unless such names are wanted.
+Status check_name(const std::string& name, const std::vector<MarkedKeytime>& list, bool new_names) {
+  std::vector<std::string> known = {"left_strike", "left_off", "right_strike", "right_off"};
+  for (const MarkedKeytime& one : list) known.push_back(one.key.name);
+  if (new_names || std::ranges::find(known, name) != known.end()) return {};
+  const std::string near = nearest_name(name, known);
+  return Error("keys-name", fmt::format("there is no keytime '{}'", shown(name)),
+               fmt::format("{}--new adds one of a new name",
+                           near.empty() ? "" : fmt::format("did you mean '{}'? ", near)));
+}
+
 Status set_keytimes(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
   std::vector<MarkedKeytime> list = keytimes_of(sidecar);
   for (const KeytimeChange& change : changes.remove) {
@@ -134,6 +147,7 @@ Status set_keytimes(const Changes& changes, const Clip& clip, krok::keys::Sideca
   for (const KeytimeChange& change : changes.set) {
     const auto time = seconds_of(*change.time, clip);
     if (!time) return time.error();
+    if (Status status = check_name(change.name, list, changes.new_names); !status) return status;
     const auto found = nearest(list, change.name, *time);
     if (found != list.end()) list.erase(found);
     list.push_back({{*time, change.name}, true});

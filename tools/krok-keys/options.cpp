@@ -92,6 +92,9 @@ void declare(CommandOptions& command, Options& options) {
   list("--set NAME=TIME", options.set,
        "Move the keytime of that name within 0.15 s to this time, or add one; several separated by "
        "commas, or repeat the option. Times: 1.25s, 250ms, or 120f (frame)");
+  command.add_flag("--new", options.new_names,
+                   "Allow --set to add a keytime of a name that is neither a gait event nor in the "
+                   "file, such as clap");
   list("--remove NAME[@TIME]", options.remove, "Remove a keytime, or all with that name");
   list("--add-contact JOINT=TIME..TIME", options.add_contact,
        "Add a contact of a joint, replacing those it overlaps; its position is that of the joint "
@@ -102,6 +105,7 @@ void declare(CommandOptions& command, Options& options) {
 
 Result<Changes> changes_of(const Options& options) {
   Changes changes;
+  changes.new_names = options.new_names;
   for (const std::string& text : options.set) {
     auto change = parse_keytime(text, "=", "--set", true);
     if (!change) return change.error();

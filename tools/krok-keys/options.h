@@ -20,6 +20,7 @@ struct Options {
   Find find = Find::automatic;
   bool discard_edits = false;
   std::vector<std::string> set, remove, add_contact, remove_contact;  // unparsed
+  bool new_names = false;                                             // --new
   std::string plot;
 };
 
@@ -34,6 +35,7 @@ struct ContactChange {
 };
 struct Changes {
   std::vector<KeytimeChange> set, remove;
+  bool new_names = false;  // of `set`: names that no keytime has are wanted
   std::vector<ContactChange> add_contact, remove_contact;
 
   bool empty() const {

@@ -10,7 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/nearest_name.h"
 #include "tools/cli/tool.h"
+#include "tools/krok/completion.h"
 
 // krok VERB ... runs krok-VERB ... from this program's folder, or else from the PATH.
 
@@ -40,6 +42,7 @@ constexpr std::array kVerbs = {
     Verb{"synth", "synthesise motions from a step library for given parameters"},
     Verb{"walk", "walk a character along footprints, a way or to goals, on any ground"},
     Verb{"view", "create a web page that plays motions"},
+    Verb{"render", "render films: mp4, gif, webp or PNG frames"},
     Verb{"plot", "plot charts of motions and tables"},
     Verb{"diff", "compare two files: differences and where they are"},
 };
@@ -49,10 +52,12 @@ std::string help() {
       "Usage: krok VERB [options] ...\n       krok VERB --help\n\n"
       "Motion processing, from motion capture to character animation.\n\nVerbs:\n";
   for (const Verb& verb : kVerbs) text += fmt::format("  {:<10}{}\n", verb.name, verb.does);
+  text += "\nOther:\n  completion SHELL    print completion for bash, zsh or fish\n";
   text +=
       "\nExamples:\n"
       "  krok import walk.bvh -o walk.anim\n      converts a capture to Krok's format\n"
-      "  krok skin hero.model walk.anim -o walk.glb --as rig\n      an animated character\n"
+      "  krok skin hero.model walk.anim -o walk.glb\n      an animated character\n"
+      "  source <(krok completion bash)\n      completes verbs, options and their values\n"
       "\nExit codes:\n  those of the verb; 2 for an unknown verb\n";
   return text;
 }
@@ -62,6 +67,58 @@ bool is_verb(std::string_view name) {
     if (verb.name == name) return true;
   }
   return false;
+}
+
+std::vector<std::string> verb_names() {
+  std::vector<std::string> names;
+  for (const Verb& verb : kVerbs) names.emplace_back(verb.name);
+  return names;
+}
+
+// The folder of this program; empty if it is not known.
+std::string own_folder() {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string() : self.parent_path().string();
+}
+
+int fail(const std::string& message, const std::string& hint) {
+  fmt::print(stderr, "krok: error: {} [usage]\n  hint: {}\n", message, hint);
+  return krok::cli::kExitTrouble;
+}
+
+// What a program prints on standard output; empty if it fails.
+std::string output_of(const std::string& program, const char* argument) {
+  std::string command = "'";
+  for (const char c : program) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  command += fmt::format("' {}", argument);
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return {};
+  std::string text;
+  std::array<char, 4096> room{};
+  for (std::size_t count; (count = std::fread(room.data(), 1, room.size(), pipe)) > 0;) {
+    text.append(room.data(), count);
+  }
+  return pclose(pipe) == 0 ? text : std::string();
+}
+
+int complete(const std::string& shell) {
+  using krok::cli::Shell;
+  if (shell != "bash" && shell != "zsh" && shell != "fish") {
+    return fail(shell.empty() ? "no shell given" : fmt::format("unknown shell '{}'", shell),
+                "krok completion bash, zsh or fish");
+  }
+  std::vector<krok::cli::CompletedVerb> verbs;
+  for (const Verb& verb : kVerbs) {
+    const std::string program = fmt::format("{}/krok-{}", own_folder(), verb.name);
+    std::string options = output_of(program, "--list-options");
+    // Tools may be installed in part.
+    if (!options.empty()) {
+      verbs.push_back({std::string(verb.name), std::string(verb.does), std::move(options)});
+    }
+  }
+  const Shell chosen = shell == "bash" ? Shell::bash : shell == "zsh" ? Shell::zsh : Shell::fish;
+  return krok::cli::print_and_end("krok", krok::cli::completion_script(chosen, verbs));
 }
 
 }  // namespace
@@ -74,18 +131,18 @@ int main(int argc, char** argv) {
   if (verb == "--version") {
     return krok::cli::print_and_end("krok", fmt::format("krok {}\n", krok::cli::version()));
   }
+  if (verb == "completion") return complete(argc > 2 ? argv[2] : "");
   if (!is_verb(verb)) {
-    fmt::print(stderr, "krok: error: {} [usage]\n  hint: see krok --help\n",
-               verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb));
-    return krok::cli::kExitTrouble;
+    const std::string near = krok::nearest_name(verb, verb_names());
+    return fail(verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb),
+                near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near));
   }
   const std::string program = "krok-" + verb;
-  std::error_code error;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::string folder = own_folder();
   std::vector<char*> arguments(argv + 1, argv + argc);
   arguments.push_back(nullptr);
-  if (!error) {
-    const std::string beside = (self.parent_path() / program).string();
+  if (!folder.empty()) {
+    const std::string beside = folder + "/" + program;
     std::string name = program;
     arguments[0] = name.data();
     execv(beside.c_str(), arguments.data());

@@ -68,10 +68,10 @@ TEST_F(KrokKeys, SetMovesMarksAndStays) {
   ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
   const std::size_t count = written()["keytimes"].size();
   const double before = time_of(written(), "left_off");
-  ASSERT_EQ(
-      keys({"-o", file_, "--set", "left_off=" + std::to_string(before + 0.05) + "s,clap=120f"})
-          .exit_code,
-      0);
+  ASSERT_EQ(keys({"-o", file_, "--set", "left_off=" + std::to_string(before + 0.05) + "s,clap=120f",
+                  "--new"})
+                .exit_code,
+            0);
   EXPECT_NEAR(time_of(written(), "left_off"), before + 0.05, 1e-6);
   EXPECT_EQ(time_of(written(), "clap"), 2.0);
   EXPECT_EQ(written()["keytimes"].size(), count + 1);

@@ -1,0 +1,141 @@
+// Plausible mistakes on the command line, and what helps against them: near names, completion,
+// colours. Would fail if a typing mistake were answered with a riddle.
+#include "cli/motion_fixture.h"
+#include "tools/cli/console_progress.h"
+
+namespace krok::test {
+namespace {
+
+class Mistakes : public MotionTest {
+ protected:
+  Mistakes() { put("in.bvh", capture(30)); }
+
+  // The messages of a run that must end with 2 and leave nothing.
+  std::string refused(const std::string& tool, std::vector<std::string> arguments) const {
+    const ToolRun run = run_here(tool, std::move(arguments));
+    EXPECT_EQ(run.exit_code, 2) << run.err;
+    EXPECT_EQ(run.out, "");
+    return run.err;
+  }
+};
+
+TEST_F(Mistakes, UnknownOptionsGetTheNearestName) {
+  EXPECT_THAT(refused("krok-import", {"in.bvh", "--ouput", "a.anim"}),
+              AllOf(HasSubstr("unknown option '--ouput'"), HasSubstr("did you mean '--output'?")));
+  // A tool that needs -o names the mistake, not what is missing by it.
+  EXPECT_THAT(refused("krok-export", {"in.bvh", "--ouput=a.glb"}), HasSubstr("'--output'"));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--mirorr", "-o", "a.anim"}), HasSubstr("--mirror"));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "-Z", "-o", "a.anim"}),
+              HasSubstr("unknown option '-Z'"));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--xyzzy", "-o", "a.anim"}), HasSubstr("--help"));
+  EXPECT_THAT(refused("krok-skin", {"a.model", "in.bvh", "--as", "rgi", "-o", "a.glb"}),
+              HasSubstr("did you mean 'rig'?"));
+}
+
+TEST_F(Mistakes, UnknownVerbsToo) {
+  EXPECT_THAT(refused("krok", {"improt", "in.bvh"}),
+              AllOf(HasSubstr("unknown verb 'improt'"), HasSubstr("did you mean 'import'?")));
+}
+
+TEST_F(Mistakes, ArgumentsTooManyAreListedInTheirOrder) {
+  const std::string text = refused("krok-import", {"in.bvh", "b.bvh", "c.bvh", "-o", "a.anim"});
+  EXPECT_THAT(text, AllOf(HasSubstr("'b.bvh' 'c.bvh'"), HasSubstr("--out-dir")));
+}
+
+TEST_F(Mistakes, AFolderAsInputLeadsToOutDir) {
+  std::filesystem::create_directory(path("takes"));
+  EXPECT_THAT(refused("krok-import", {"takes", "-o", "a.anim"}), HasSubstr("--out-dir"));
+}
+
+TEST_F(Mistakes, EndingsThatAreNoFormatOfTheToolAreRefused) {
+  EXPECT_THAT(refused("krok-import", {"in.bvh", "-o", "a.txt"}), HasSubstr(".anim"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.txt")));
+  EXPECT_EQ(run_here("krok-import", {"in.bvh", "-o", "a.kanim"}).exit_code, 0)
+      << "another extension of motions";
+  EXPECT_EQ(run_here("krok-info", {"a.kanim"}).exit_code, 0);
+  EXPECT_EQ(run_here("krok-import", {"in.bvh", "-o", "plain"}).exit_code, 0);
+}
+
+TEST_F(Mistakes, ATolerancesUnitIsNotGuessed) {
+  const std::string text = refused("krok-diff", {"in.bvh", "in.bvh", "--tolerance", "0.1"});
+  EXPECT_THAT(text, AllOf(HasSubstr("no unit"), HasSubstr("0.1mm")));
+  EXPECT_EQ(run_here("krok-diff", {"in.bvh", "in.bvh", "--tolerance", "0"}).exit_code, 0);
+}
+
+TEST_F(Mistakes, PatternsThatTheShellLeftAreExpanded) {
+  put("take_1.bvh", capture(5));
+  put("take_2.bvh", capture(6));
+  const json report = report_here("krok-plot", {"take_*.bvh", "-o", "a.svg"});
+  EXPECT_EQ(report["inputs"].size(), 2U);
+  EXPECT_THAT(refused("krok-plot", {"none_*.bvh", "-o", "a.svg"}), HasSubstr("none_*.bvh"));
+}
+
+TEST_F(Mistakes, BinaryDataIsNotWrittenToATerminal) {
+  // `script` gives the tool a terminal; without it there is none to test with.
+  if (!std::filesystem::exists("/usr/bin/script")) GTEST_SKIP() << "script is not installed";
+  const std::string tool = std::string(KROK_BIN_DIR) + "/krok-import";
+  const ToolRun run = test::run(
+      {"/usr/bin/script", "-qec", "'" + tool + "' '" + path("in.bvh") + "' -o -", "/dev/null"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.out, HasSubstr("file-terminal"));
+  EXPECT_EQ(run.out.find("KROKANIM"), std::string::npos);
+}
+
+TEST_F(Mistakes, BashCompletesVerbsOptionsAndTheirValues) {
+  const std::string krok = std::string(KROK_BIN_DIR) + "/krok";
+  ASSERT_EQ(run_tool("krok", {"completion", "tcsh"}).exit_code, 2);
+  const ToolRun script = run_tool("krok", {"completion", "bash"});
+  ASSERT_EQ(script.exit_code, 0) << script.err;
+  put("completion.bash", script.out);
+  const auto completed = [&](const std::string& words, int at) {
+    const ToolRun run = test::run({"/bin/bash", "-c",
+                                   "source '" + path("completion.bash") + "'; COMP_WORDS=(" +
+                                       words + "); COMP_CWORD=" + std::to_string(at) +
+                                       "; _krok; printf '%s ' \"${COMPREPLY[@]}\""});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    return run.out;
+  };
+  EXPECT_EQ(completed("krok imp", 1), "import ");
+  EXPECT_EQ(completed("krok skin a.model --as ''", 4), "rig motion baked pose frames ");
+  EXPECT_EQ(completed("krok-skin a.model --as = p", 4), "pose ");
+  EXPECT_THAT(completed("krok edit --mir", 2), HasSubstr("--mirror "));
+  EXPECT_THAT(completed("krok-edit --", 1), AllOf(HasSubstr("--from "), HasSubstr("--help ")));
+  EXPECT_THAT(completed("krok info '" + path("in") + "'", 2), HasSubstr("in.bvh"));
+}
+
+TEST_F(Mistakes, OtherShellsAcceptTheirScripts) {
+  for (const auto& [shell, check] : {std::pair<std::string, std::string>{"/usr/bin/zsh", "-n"},
+                                     {"/usr/bin/fish", "--no-execute"}}) {
+    const std::string name = std::filesystem::path(shell).filename();
+    const ToolRun script = run_tool("krok", {"completion", name});
+    ASSERT_EQ(script.exit_code, 0);
+    EXPECT_THAT(script.out, HasSubstr("krok-render"));
+    if (!std::filesystem::exists(shell)) continue;
+    put("script", script.out);
+    const ToolRun run = test::run({shell, check, path("script")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+}
+
+TEST(ConsoleText, SeveritiesHintsAndCodesHaveColours) {
+  EXPECT_EQ(cli::in_colours("walk.bvh:2:3: error: no value [bvh-value]\n  hint: repair it\n"),
+            "walk.bvh:2:3: \033[1;31merror:\033[0m no value\033[2m [bvh-value]\033[0m\n"
+            "  \033[36mhint:\033[0m repair it\n");
+  EXPECT_EQ(cli::in_colours("krok-edit: warning: odd [edit-odd]\n"),
+            "krok-edit: \033[1;33mwarning:\033[0m odd\033[2m [edit-odd]\033[0m\n");
+  EXPECT_EQ(cli::in_colours("walk.anim: 30 frames\nno error here"),
+            "walk.anim: 30 frames\nno error here");
+  EXPECT_EQ(cli::in_colours(""), "");
+}
+
+TEST(ConsoleText, TimeThatIsLeftReadsAsTime) {
+  EXPECT_EQ(cli::time_left(0.4), "0 s left");
+  EXPECT_EQ(cli::time_left(59.4), "59 s left");
+  EXPECT_EQ(cli::time_left(185), "3:05 min left");
+  EXPECT_EQ(cli::time_left(4800), "1:20 h left");
+  EXPECT_EQ(cli::time_left(1e300), "100:00 h left");
+}
+
+}  // namespace
+}  // namespace krok::test
