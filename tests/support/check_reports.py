@@ -1,4 +1,5 @@
-"""Reads the reports that tools wrote during the tests, with a parser that is not theirs.
+"""Reads the reports that tools wrote during the tests, with a parser that is not theirs, and holds
+them against the schema of formats/report where the package jsonschema is installed.
 
 Usage: check_reports.py FOLDER. Prints what is wrong with them; exit code 1 if anything is, or if
 there is no report.
@@ -7,6 +8,13 @@ there is no report.
 import json
 import pathlib
 import sys
+
+try:
+    from jsonschema import Draft202012Validator
+    SCHEMA = pathlib.Path(__file__).parents[2] / "formats/report/report.schema.json"
+    VALIDATOR = Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+except ImportError:
+    VALIDATOR = None
 
 
 def refuse_constant(text):
@@ -51,6 +59,9 @@ def fault_of(data):
     for text in strings(report):
         if any(0xD800 <= ord(c) < 0xE000 for c in text):
             return "half of a surrogate pair"
+    if VALIDATOR is not None and report["schema"] == "krok.report/1":
+        for fault in VALIDATOR.iter_errors(report):
+            return f"{fault.json_path}: {fault.message}"
     return ""
 
 
