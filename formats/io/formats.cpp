@@ -87,6 +87,7 @@ std::vector<std::string> motion_endings() {
     const std::string_view ending =
         format.kind == Kind::unknown ? format.ending : registry::kind_name(format.kind);
     if (!ending.empty()) endings.push_back("." + std::string(ending));
+    if (format.kind == Kind::anim) endings.emplace_back(registry::kOtherAnimEnding);
   }
   return endings;
 }

@@ -213,6 +213,7 @@ Kind kind_of_content(std::span<const std::byte> content) {
 Kind kind_of_name(const std::string& path) {
   const std::string ending = extension(path);
   if (ending.size() < 2) return Kind::unknown;
+  if (ending == kOtherAnimEnding) return Kind::anim;
   const auto found =
       std::ranges::find(kFormats, std::string_view(ending).substr(1), &Format::ending);
   return found == kFormats.end() ? Kind::unknown : found->kind;

@@ -46,6 +46,9 @@ inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
 inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', 'R'};
 inline constexpr Magic kStepsMagic = {'K', 'R', 'O', 'K', 'S', 'T', 'E', 'P'};
 
+// Another extension of motions, for projects with the .anim files of Unity or Maya.
+inline constexpr std::string_view kOtherAnimEnding = ".kanim";
+
 // The file extension of a kind, without the dot: "anim", "dae", "3ds" and so on; or "unknown".
 std::string_view kind_name(Kind kind);
 

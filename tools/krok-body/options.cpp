@@ -68,7 +68,7 @@ ToolSpec make_spec() {
                     "a body for the actor of a capture, about 10,000 vertices"},
                    {"krok-body dog.anim --detail high -o dog.model",
                     "bodies of other skeletons follow the bone lengths"}};
-  spec.batch = {{".anim"}, always(".model")};
+  spec.batch = {{".anim", ".kanim"}, always(".model")};
   return spec;
 }
 

@@ -208,6 +208,7 @@ ToolSpec make_spec() {
   // Only files with motion; an Acclaim skeleton or an MD5 mesh is read with the motion beside it.
   std::vector<std::string> endings = io::motion_endings();
   std::erase(endings, ".anim");
+  std::erase(endings, registry::kOtherAnimEnding);
   for (const char* scene : {".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"}) {
     endings.emplace_back(scene);
   }
