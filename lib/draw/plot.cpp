@@ -28,7 +28,11 @@ constexpr const char* kStyle =
     ".grid{stroke:#e2e5e9;stroke-width:1}.frame{fill:none;stroke:#7b8794;stroke-width:1}"
     ".line{fill:none;stroke-width:1.6;stroke-linejoin:round}"
     ".name{paint-order:stroke;stroke:#fff;stroke-width:3px}"
-    ".moment{stroke:#555;stroke-width:1;stroke-dasharray:3 3}</style>\n";
+    ".moment{stroke:#555;stroke-width:1;stroke-dasharray:3 3}.paper{fill:#fff}"
+    "@media (prefers-color-scheme:dark){text{fill:#e4e7eb}.small{fill:#a3abb4}"
+    ".paper{fill:#16191d}.grid{stroke:#2c3238}.frame{stroke:#6b7580}.name{stroke:#16191d}"
+    ".moment{stroke:#a3abb4}[stroke='#000000']{stroke:#e4e7eb}[fill='#000000']{fill:#e4e7eb}"
+    "[stroke='#0072b2']{stroke:#4aa3df}[fill='#0072b2']{fill:#4aa3df}}</style>\n";
 
 Status check_chart(const Chart& chart) {
   if (chart.panels.empty()) return Error("plot-empty", "a chart needs at least one panel");
@@ -125,7 +129,7 @@ Result<std::string> to_svg(const Chart& chart) {
       width, height);
   if (!chart.title.empty()) svg += fmt::format("<title>{}</title>\n", to_markup(chart.title));
   svg += kStyle;
-  svg += fmt::format("<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>\n", width, height);
+  svg += fmt::format("<rect class=\"paper\" width=\"{}\" height=\"{}\"/>\n", width, height);
   svg += body;
   svg += "</svg>\n";
   return svg;

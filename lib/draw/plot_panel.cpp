@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "core/markup.h"
+#include "core/numbers.h"
 #include "draw/plot_field_internal.h"
 #include "draw/plot_style_internal.h"
 #include "draw/svg_text_internal.h"
@@ -25,6 +26,19 @@ std::string opacity_of(const Series& series) {
 int ticks_wanted(double length, double apart, double close) {
   const int least = std::clamp(static_cast<int>(length / close), 1, 5);
   return std::clamp(static_cast<int>(length / apart), least, 20);
+}
+
+// What a pointer over a line shows: its name and range.
+std::string hover_text(const Series& series, const Axis& axis) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double value : series.y) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(low <= high)) return series.name;
+  return fmt::format("{}: {} to {}{}{}", series.name, readable(low, 4), readable(high, 4),
+                     axis.unit.empty() ? "" : " ", axis.unit);
 }
 
 }  // namespace
@@ -227,9 +241,12 @@ void PanelWriter::series(std::size_t index) {
   }
   if (series.style != SeriesStyle::points) {
     const std::string dash = dash_pattern(series.dash, place);
-    put("<path class=\"line\" stroke=\"{}\"{}{} d=\"{}\"/>\n", colour,
+    put("<path class=\"line\" stroke=\"{}\"{}{} d=\"{}\"{}\n", colour,
         dash.empty() ? "" : fmt::format(" stroke-dasharray=\"{}\"", dash), opacity_of(series),
-        path_of(runs));
+        path_of(runs),
+        series.name.empty()
+            ? "/>"
+            : fmt::format("><title>{}</title></path>", to_markup(hover_text(series, panel_.y))));
   }
   if (series.arrow) {
     if (const auto head = arrow_head(runs); !head.empty()) {
