@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "core/nearest_name.h"
 #include "core/text.h"
 #include "motion/ground_frame.h"
 
@@ -33,9 +34,11 @@ bool matches(std::string_view name, std::string_view pattern) {
   return p == pattern.size();
 }
 
-Error no_such_joint(const std::string& text) {
+Error no_such_joint(const std::string& text, const Skeleton& skeleton) {
+  const std::string near = nearest_name(text, skeleton.names);
   return Error("motion-joint", fmt::format("no joint is called '{}'", shown(text)),
-               "krok-info lists the joints; * matches any characters");
+               near.empty() ? "krok-info lists the joints; * matches any characters"
+                            : fmt::format("did you mean '{}'?", shown(near)));
 }
 
 }  // namespace
@@ -51,11 +54,11 @@ Result<std::vector<std::uint8_t>> select_joints(const Skeleton& skeleton,
       selected[j] = 1;
       any = true;
     }
-    if (!any) return no_such_joint(pattern);
+    if (!any) return no_such_joint(pattern, skeleton);
   }
   for (const std::string& name : selection.below) {
     const int joint = skeleton.find(name);
-    if (joint < 0) return no_such_joint(name);
+    if (joint < 0) return no_such_joint(name, skeleton);
     const auto within = subtree(skeleton, joint);
     for (std::size_t j = 0; j < selected.size(); ++j) selected[j] |= within[j];
   }

@@ -32,6 +32,15 @@ TEST_F(Mistakes, UnknownOptionsGetTheNearestName) {
               HasSubstr("did you mean 'rig'?"));
 }
 
+TEST_F(Mistakes, UnknownJointsToo) {
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--joint", "Spin", "-o", "a.svg"}),
+              HasSubstr("did you mean 'Spine'?"));
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--show", "angle", "-o", "a.svg"}),
+              HasSubstr("did you mean 'angles'?"));
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--sides", "fornt", "--sheet", "a.png"}),
+              HasSubstr("did you mean 'front'?"));
+}
+
 TEST_F(Mistakes, UnknownVerbsToo) {
   EXPECT_THAT(refused("krok", {"improt", "in.bvh"}),
               AllOf(HasSubstr("unknown verb 'improt'"), HasSubstr("did you mean 'import'?")));

@@ -98,8 +98,9 @@ Result<std::vector<ChartKind>> parse_charts(const std::vector<std::string>& list
       const auto found = std::find_if(kCharts.begin(), kCharts.end(),
                                       [&](const ChartName& name) { return name.name == word; });
       if (found == kCharts.end()) {
-        return usage(fmt::format(
-            "--show: '{}' is not one of path, feet, angles, positions, difference", shown(word)));
+        std::vector<std::string> names;
+        for (const ChartName& name : kCharts) names.emplace_back(name.name);
+        return usage("--show: " + not_one_of(shown(word), names));
       }
       if (std::find(charts.begin(), charts.end(), found->chart) == charts.end()) {
         charts.push_back(found->chart);

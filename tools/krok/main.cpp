@@ -91,7 +91,7 @@ int fail(const std::string& message, const std::string& hint) {
 std::string output_of(const std::string& program, const char* argument) {
   std::string command = "'";
   for (const char c : program) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  command += fmt::format("' {}", argument);
+  command += fmt::format("' {} 2>/dev/null", argument);
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return {};
   std::string text;

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/file.h"
+#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
@@ -91,6 +92,12 @@ const std::vector<ImageSide>& known_sides() {
   return sides;
 }
 
+std::vector<std::string> names_of_sides() {
+  std::vector<std::string> names;
+  for (const ImageSide& side : known_sides()) names.push_back(side.name);
+  return names;
+}
+
 }  // namespace
 
 void declare_image_options(CommandOptions& command, ImageOptions& options, int by_default) {
@@ -155,8 +162,7 @@ Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options) {
                                     [word](const ImageSide& side) { return side.name == word; });
     if (found == known.end()) {
       return Error("usage", fmt::format("--sides: unknown side '{}'", shown(word)),
-                   "front, left, back, right, front-left, front-right, back-left, back-right or "
-                   "top");
+                   nearest_hint(word, names_of_sides()));
     }
     sides.push_back(*found);
     if (found->elevation == 0) sides.back().elevation = *elevation;

@@ -111,7 +111,8 @@ MovingActor actor_of(const std::string& path, Clip clip, const Body& body, SkinM
 // A node scene, drawn as its meshes or as its joints.
 class SceneActor {
  public:
-  // Textured or with vertex colours; without both, in the default body colour.
+  // With the base colours, textures and vertex colours of its meshes; if all are one grey, in the
+  // default body colour.
   static Result<std::shared_ptr<const SceneActor>> create(nodes::Scene scene, int animation,
                                                           bool bones, const DecodedImages& images) {
     auto actor = std::make_shared<SceneActor>(std::move(scene));
@@ -202,7 +203,8 @@ class SceneActor {
   }
 
   void set_looks(const DecodedImages& images) {
-    bool painted = false, drawn = false;
+    bool chosen = false, drawn = false;
+    std::optional<render::Colour> before;
     vertex_colours_.resize(triangles_.size());
     for (const nodes::Instance& instance : evaluator_->instances()) {
       const nodes::Primitive& primitive = evaluator_->primitive(instance);
@@ -211,18 +213,25 @@ class SceneActor {
       const Material& material = primitive.material_index >= 0 ? scene_.materials[place] : kUsual;
       looks_.push_back(look_of(material, primitive.texture_coordinates, images));
       drawn = drawn || (looks_.back() && !primitive.triangles.empty());
-      painted = painted || (looks_.back() && looks_.back()->paint != nullptr);
-      if (primitive.colours == nullptr || !looks_.back()) continue;
-      painted = true;
-      // A texture has the base colour as its factor.
-      const Vec3f factor = looks_.back()->paint != nullptr ? Vec3f(Vec3f::Ones())
-                                                           : Vec3f(material.base_color.head<3>());
-      for (const Vec4f& colour : *primitive.colours) {
-        vertex_colours_[looks_.size() - 1].push_back(
-            render::to_colour(factor.cwiseProduct(colour.head<3>())));
+      if (!looks_.back()) continue;
+      if (primitive.colours != nullptr) {
+        chosen = true;
+        // A texture has the base colour as its factor.
+        const Vec3f factor = looks_.back()->paint != nullptr ? Vec3f(Vec3f::Ones())
+                                                             : Vec3f(material.base_color.head<3>());
+        for (const Vec4f& colour : *primitive.colours) {
+          vertex_colours_[looks_.size() - 1].push_back(
+              render::to_colour(factor.cwiseProduct(colour.head<3>())));
+        }
       }
+      const render::Colour& colour = looks_.back()->colour;
+      const bool grey = colour.red == colour.green && colour.green == colour.blue;
+      chosen =
+          chosen || looks_.back()->paint != nullptr || !grey || (before && !(*before == colour));
+      before = colour;
     }
-    if (!painted || !drawn) looks_.assign(triangles_.size(), SurfaceLook{kBodyColour, nullptr});
+    // One grey for all is what exporters write where nobody chose a colour.
+    if (!chosen || !drawn) looks_.assign(triangles_.size(), SurfaceLook{kBodyColour, nullptr});
   }
 
   // Joint colours by name; names need not be unique here.

@@ -49,10 +49,10 @@ Result<ImageSpan> span_of(const MovingActor& actor, const std::string& from, con
 // Reads motions (captures, .anim), models and characters (.model, .character; animated by the
 // motions of their skeleton or static, faces at rest) and glTF files, in the order of `paths`. With
 // BodyChoice::none, motions, models and glTF files with joints are drawn as bones. glTF files are
-// drawn with their materials if one of them has an image, see look_of(), or with vertex colours;
-// otherwise in the default body colour. BodyChoice::automatic is low for more than two motions without a body, otherwise
-// medium; motions with the same skeleton and reference pose share one. Codes figure-input for a
-// file without an actor, clip-name.
+// drawn with their materials, see look_of(), and vertex colours, but in the default body colour if
+// all are one grey without an image. BodyChoice::automatic is low for more than two motions without
+// a body, otherwise medium; motions with the same skeleton and reference pose share one. Codes
+// figure-input for a file without an actor, clip-name.
 Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths,
                                              const ActorOptions& options, ToolContext& context);
 

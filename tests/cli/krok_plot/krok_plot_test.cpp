@@ -236,7 +236,7 @@ TEST_F(KrokPlot, FitsThePaper) {
   EXPECT_THAT(svg(), HasSubstr(">A &amp; B<"));
   expect_trouble({kWalk, "--panel", "400"}, "usage", "340x170");
   expect_trouble({kWalk, "--panel", "0x100"}, "usage", "340x170");
-  expect_trouble({kWalk, "--show", "toes"}, "usage", "'toes' is not one of path, feet");
+  expect_trouble({kWalk, "--show", "toes"}, "usage", "'toes' is not path, feet");
   expect_trouble({kWalk, "--moments", "3"}, "usage", "for --sheet and --strip");
 }
 

@@ -162,9 +162,15 @@ TEST_F(PlotTexture, WhiteSurfacesKeepTheirShape) {
   for (std::size_t i = 1; i < greys.size(); ++i) EXPECT_LT(greys[i], greys[i - 1]) << i;
 }
 
-TEST_F(PlotTexture, FilesWithoutImagesHaveTheColourOfBodies) {
+// As their .character does.
+TEST_F(PlotTexture, FilesWithoutImagesHaveTheirBaseColours) {
   GlbBuilder builder = painted(png());
   builder.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 1, 0, 1}}};
+  const render::Colour green = shot(put_glb(builder)).at(0.25, 0.75);
+  EXPECT_GT(green.green, green.red + 60);
+  EXPECT_GT(green.green, green.blue + 60);
+  // One grey for all, which exporters write by themselves, is the colour of bodies.
+  builder.json["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0.5, 0.5, 0.5, 1}}};
   expect_plain(shot(put_glb(builder)));
 }
 
