@@ -1,8 +1,8 @@
 """Imports a glTF file into Blender and holds the joints of its clips against tables of krok-export.
 
 Usage: blender -b --factory-startup --python blender_clips.py -- FILE.glb NAME=POSITIONS.csv...
-POSITIONS.csv has world positions in long form of a motion at 60 frames per second. Prints "OK" and
-the largest distance in millimetres, or what differs.
+POSITIONS.csv has world positions in long form. Prints "OK" and the largest distance in millimetres, or
+what differs.
 """
 
 import csv
@@ -19,12 +19,12 @@ TOLERANCE = 1e-4  # metres
 
 
 def positions(path):
-    frames = {}
+    moments = {}
     with open(path, encoding="utf-8") as file:
         for row in csv.DictReader(file):
-            frames.setdefault(int(row["frame"]), {})[row["joint"]] = [
+            moments.setdefault(float(row["time"]), {})[row["joint"]] = [
                 float(row[axis]) for axis in "xyz"]
-    return frames
+    return moments
 
 
 def main():
@@ -43,12 +43,12 @@ def main():
             track.mute = True
         armature.animation_data.action = next(
             action for action in bpy.data.actions if action.name.startswith(name + "_"))
-        frames = positions(path)
+        moments = positions(path)
         compared = 0
-        for frame in sorted(frames)[::20]:
-            time = frame / 60 * scene.render.fps
-            scene.frame_set(int(time), subframe=time - int(time))
-            for joint, (x, y, z) in frames[frame].items():
+        for time in sorted(moments)[::20]:
+            frame = time * scene.render.fps
+            scene.frame_set(int(frame), subframe=frame - int(frame))
+            for joint, (x, y, z) in moments[time].items():
                 # Blender's axes: +Z up, the character faces -Y.
                 at = armature.matrix_world @ armature.pose.bones[joint].head
                 worst = max(worst, abs(at.x - x), abs(at.y + z), abs(at.z - y))

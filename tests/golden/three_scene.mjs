@@ -25,6 +25,7 @@ export class ThreeScene {
 
   constructor(gltf) {
     this.root = gltf.scene;
+    this.animations = gltf.animations;
     this.meshes = [];
     this.joints = new Map();
     const names = new Map();
