@@ -17,13 +17,14 @@ namespace krok::compare {
 
 namespace {
 
-constexpr std::size_t kMaxProbes = 5;    // times used to choose between touching surfaces
-constexpr std::size_t kMaxTried = 1024;  // touching points, to bound the run time
-constexpr double kNoShare = 1e-9;        // smaller coordinates are rounding errors
-constexpr std::size_t kSampled = 1024;   // vertices, for the median distance
-constexpr double kOfMedian = 4;          // distances at which a point is as good as the nearest
-constexpr double kMaxNear = 1e-3;        // of the size, the same
-constexpr std::size_t kFewOf = 50;       // one vertex of that many may lie at a sharp edge
+constexpr std::size_t kSpreadProbes = 5;  // times used to choose between touching surfaces
+constexpr std::size_t kMaxProbes = 16;    // with those of the animations
+constexpr std::size_t kMaxTried = 1024;   // touching points, to bound the run time
+constexpr double kNoShare = 1e-9;         // smaller coordinates are rounding errors
+constexpr std::size_t kSampled = 1024;    // vertices, for the median distance
+constexpr double kOfMedian = 4;           // distances at which a point is as good as the nearest
+constexpr double kMaxNear = 1e-3;         // of the size, the same
+constexpr std::size_t kFewOf = 50;        // one vertex of that many may lie at a sharp edge
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;
@@ -75,12 +76,22 @@ bool finite(const SceneState& state) {
   });
 }
 
-std::vector<std::size_t> probes_of(std::size_t moments) {
+// The first of the moments, some spread over all, and the middle one of each animation: surfaces
+// that touch in one may part in another.
+std::vector<std::size_t> probes_of(const std::vector<Moment>& moments) {
   std::vector<std::size_t> probes;
-  const std::size_t count = std::min(moments, kMaxProbes);
-  for (std::size_t i = 0; i < count; ++i) {
-    probes.push_back(count == 1 ? 0 : i * (moments - 1) / (count - 1));
+  const std::size_t spread = std::min(moments.size(), kSpreadProbes);
+  for (std::size_t i = 0; i < spread; ++i) {
+    probes.push_back(spread == 1 ? 0 : i * (moments.size() - 1) / (spread - 1));
   }
+  for (std::size_t begin = 0, end = 0; begin < moments.size(); begin = end) {
+    while (end < moments.size() && moments[end].first_animation == moments[begin].first_animation) {
+      ++end;
+    }
+    if (probes.size() < kMaxProbes) probes.push_back((begin + end) / 2);
+  }
+  std::ranges::sort(probes);
+  probes.erase(std::unique(probes.begin(), probes.end()), probes.end());
   return probes;
 }
 
@@ -253,7 +264,7 @@ void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bo
 Status match_surfaces(SceneComparison& comparison, int jobs) {
   if (comparison.groups.empty()) return {};
   std::vector<SceneState> first, second;
-  for (const std::size_t probe : probes_of(comparison.moments.size())) {
+  for (const std::size_t probe : probes_of(comparison.moments)) {
     const Moment& moment = comparison.moments[probe];
     comparison.first.evaluate(moment.first_animation, moment.first_time, first.emplace_back());
     comparison.second.evaluate(moment.second_animation, moment.second_time, second.emplace_back());
