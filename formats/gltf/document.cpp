@@ -155,7 +155,7 @@ int Document::add_short_rotations(std::span<const Quatf> rotations) {
 }
 
 int Document::add_rotations(std::span<const Quatf> rotations) {
-  if (options_.quantized) return add_short_rotations(rotations);
+  if (options_.short_rotations) return add_short_rotations(rotations);
   return add_floats({rotations.data()->coeffs().data(), rotations.size() * 4}, TINYGLTF_TYPE_VEC4,
                     Use::data, false, Keep::view);
 }

@@ -36,9 +36,11 @@ struct WriteOptions {
   std::span<const Material> materials{};
   // Eye nodes as children of their joints, named like "left_eye"; write_rig only.
   std::span<const Character::Eye> eyes{};
-  // For write_rig: vertices as integers of 16 bits (directions of 8; KHR_mesh_quantization) and
-  // rotations of 16, see quantize.h; tracks should have been through round_rotations().
+  // For write_rig: vertices as integers of 16 bits, directions of 8 (KHR_mesh_quantization), see
+  // quantize.h.
   bool quantized = false;
+  // Rotation keys of 16 bits a component; tracks should have been through round_rotations().
+  bool short_rotations = false;
   // For a GLB: buffer views encoded by meshoptimizer (EXT_meshopt_compression), without loss. Best
   // after order_for_compression().
   bool compressed = false;

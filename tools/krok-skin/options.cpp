@@ -100,9 +100,10 @@ void declare(CommandOptions& command, Options& options) {
   command.add_option("--reduce", options.reduce,
                      "For --as rig: remove keys while no vertex moves by more than a tolerance, "
                      "such as 0.1mm, at any frame or half-way between two");
-  command.add_flag("--quantize", options.quantize,
-                   "For --as rig: vertices and rotations of 16 bits, normals of 8 "
-                   "(KHR_mesh_quantization); the error is measured on the mesh");
+  command.add_flag(
+      "--quantize", options.quantize,
+      "For --as rig: vertices and, within the tolerance, rotations of 16 bits, normals of 8 "
+      "(KHR_mesh_quantization); the error is measured on the mesh");
   command.add_flag("--compress", options.compress,
                    "For --as rig as .glb: compress meshes and keys without further loss "
                    "(EXT_meshopt_compression); reorders vertices");

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
+#include <utility>
 
 #include "core/numbers.h"
 #include "formats/gltf/quantize.h"
@@ -74,11 +74,6 @@ void warn_of_second_set(const Model& model, ToolContext& context) {
                "use --influences 4 to keep the largest; what that moves is measured");
 }
 
-Json error_json(const MeshError& error) {
-  return {
-      {"largest_error", error.largest}, {"vertex", error.vertex}, {"frame", 0.5 * error.moment}};
-}
-
 }  // namespace
 
 void apply_influence_limit(const Options& options, Subject& subject, ToolContext& context) {
@@ -134,37 +129,87 @@ Result<Clips> clips_of(const Subject& subject, const std::string& still_name,
 
 namespace {
 
-// What --reduce and --quantize did to all clips.
-struct Loss {
+// What --reduce does to all clips.
+struct Reduction {
   std::size_t keys = 0, keys_before = 0;
-  MeshError error;     // the largest of all clips
-  std::string clip;    // in which that is
-  double rounded = 0;  // the largest error of reduced clips, metres
+  double largest = 0;  // error, metres
 };
 
-Result<Loss> make_small(const Options& options, std::optional<double> tolerance, SmallRig& rig,
-                        ToolContext& context) {
-  Loss loss;
-  const Model shown = options.quantize ? gltf::quantized(rig.model) : rig.model;
-  for (std::size_t i = 0; i < rig.clips.names.size(); ++i) {
-    gltf::JointTracks& tracks = rig.clips.tracks[i];
-    const gltf::JointTracks full = tracks;
-    if (tolerance) {
-      const auto reduction =
-          gltf::reduce_for_mesh(rig.model, *tolerance, options.quantize, context.jobs, tracks);
-      if (!reduction) return reduction.error();
-      loss.keys += reduction->keys_after;
-      loss.keys_before += reduction->keys_before;
-      loss.rounded = std::max(loss.rounded, reduction->error.largest);
-    } else {
-      gltf::round_rotations(tracks);
-    }
-    const MeshError error = gltf::mesh_error(rig.model, full, shown, tracks, context.jobs);
-    if (i > 0 && error.largest <= loss.error.largest) continue;
-    loss.error = error;
-    loss.clip = rig.clips.names[i];
+Result<Reduction> reduce(const Model& model, double tolerance, bool short_rotations, int jobs,
+                         std::vector<gltf::JointTracks>& clips) {
+  Reduction all;
+  for (gltf::JointTracks& tracks : clips) {
+    const auto one = gltf::reduce_for_mesh(model, tolerance, short_rotations, jobs, tracks);
+    if (!one) return one.error();
+    all.keys += one->keys_after;
+    all.keys_before += one->keys_before;
+    all.largest = std::max(all.largest, one->error.largest);
   }
-  return loss;
+  return all;
+}
+
+// Fewer keys, and rotations of 16 bits if the tolerance allows them in all clips.
+Result<Reduction> reduce(double tolerance, int jobs, SmallRig& rig) {
+  const std::vector<gltf::JointTracks> full = rig.clips.tracks;
+  auto reduction = reduce(rig.model, tolerance, rig.short_rotations, jobs, rig.clips.tracks);
+  if (!reduction || !rig.short_rotations || reduction->largest <= tolerance) return reduction;
+  rig.short_rotations = false;
+  rig.clips.tracks = full;
+  return reduce(rig.model, tolerance, false, jobs, rig.clips.tracks);
+}
+
+// The largest error on the mesh of all clips, and the clip's index.
+std::pair<MeshError, std::size_t> largest_error(const Model& model,
+                                                const std::vector<gltf::JointTracks>& full,
+                                                const Model& shown,
+                                                const std::vector<gltf::JointTracks>& clips,
+                                                int jobs) {
+  std::pair<MeshError, std::size_t> largest;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const MeshError error = gltf::mesh_error(model, full[i], shown, clips[i], jobs);
+    if (i == 0 || error.largest > largest.first.largest) largest = {error, i};
+  }
+  return largest;
+}
+
+// Applies --reduce and --quantize, and reports the error of both.
+Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
+  const std::vector<gltf::JointTracks> full = rig.clips.tracks;
+  const Model shown = options.quantize ? gltf::quantized(rig.model) : rig.model;
+  Json facts;
+  std::string words;
+  rig.short_rotations = options.quantize;
+  if (!options.reduce.empty()) {
+    const auto tolerance = reduce_tolerance(options);
+    if (!tolerance) return tolerance.error();
+    // What vertices lose already is not left for keys.
+    const double lost = largest_error(rig.model, full, shown, full, context.jobs).first.largest;
+    const auto reduction =
+        reduce(std::max(*tolerance - lost, 0.25 * *tolerance), context.jobs, rig);
+    if (!reduction) return reduction.error();
+    facts["keys"] = reduction->keys;
+    facts["keys_before"] = reduction->keys_before;
+    words = fmt::format("{} of {}, ", grouped(static_cast<long long>(reduction->keys)),
+                        counted(static_cast<long long>(reduction->keys_before), "key"));
+  } else {
+    for (gltf::JointTracks& tracks : rig.clips.tracks) gltf::round_rotations(tracks);
+  }
+  const auto [error, clip] = largest_error(rig.model, full, shown, rig.clips.tracks, context.jobs);
+  facts["largest_error"] = error.largest;
+  facts["vertex"] = error.vertex;
+  facts["frame"] = 0.5 * error.moment;
+  std::string where;
+  if (full.size() > 1) {
+    facts["clip"] = rig.clips.names[clip];
+    where = rig.clips.names[clip] + ", ";
+  }
+  facts["rotation_bits"] = rig.short_rotations ? 16 : 32;
+  if (options.quantize) facts["quantization_bound"] = gltf::quantization_bound(rig.model);
+  context.report.result["rig"] = std::move(facts);
+  context.log(fmt::format("{}max error on the mesh {} (vertex {}, {}frame {})", words,
+                          millimetres(error.largest), error.vertex, where,
+                          readable(0.5 * error.moment)));
+  return {};
 }
 
 }  // namespace
@@ -179,37 +224,7 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
   warn_of_second_set(subject.model, context);
   SmallRig rig{subject.model, subject.morphs, *std::move(clips)};
   if (!options.reduce.empty() || options.quantize) {
-    std::optional<double> tolerance;
-    if (!options.reduce.empty()) {
-      const auto given = reduce_tolerance(options);
-      if (!given) return given.error();
-      tolerance = *given;
-    }
-    const auto loss = make_small(options, tolerance, rig, context);
-    if (!loss) return loss.error();
-    Json facts;
-    std::string words;
-    if (tolerance) {
-      facts["keys"] = loss->keys;
-      facts["keys_before"] = loss->keys_before;
-      words = fmt::format("{} of {}, ", grouped(static_cast<long long>(loss->keys)),
-                          counted(static_cast<long long>(loss->keys_before), "key"));
-      if (loss->rounded > *tolerance) {
-        context.warn("skin-reduce",
-                     fmt::format("rotations of 16 bits are up to {} off by themselves: all keys "
-                                 "are kept",
-                                 millimetres(loss->rounded)),
-                     "use a larger tolerance, or leave out --quantize");
-      }
-    }
-    facts.update(error_json(loss->error));
-    if (rig.clips.names.size() > 1) facts["clip"] = loss->clip;
-    if (options.quantize) facts["quantization_bound"] = gltf::quantization_bound(rig.model);
-    context.report.result["rig"] = std::move(facts);
-    context.log(fmt::format("{}max error on the mesh {} (vertex {}, {}frame {})", words,
-                            millimetres(loss->error.largest), loss->error.vertex,
-                            rig.clips.names.size() > 1 ? loss->clip + ", " : "",
-                            readable(0.5 * loss->error.moment)));
+    if (Status status = lose_bits(options, rig, context); !status) return status.error();
   }
   if (options.compress) gltf::order_for_compression(rig.model, rig.morphs);
   return rig;

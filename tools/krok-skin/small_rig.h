@@ -33,6 +33,7 @@ struct SmallRig {
   Model model;
   MorphSet morphs;
   Clips clips;
+  bool short_rotations = false;  // rotations are of 16 bits
 };
 
 // Reports the error of what is lost. Warns where the file needs a second set of influences. Codes:
