@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <initializer_list>
 #include <tuple>
 #include <utility>
 
@@ -56,9 +55,10 @@ class StanceBuilder {
                     -kUpwards, kLeft},
                Limb{Role::root, Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
                     -kUpwards, kLeft});
-    const std::vector<FootOnGround> on_ground = feet_on_ground({Role::left_foot, Role::right_foot});
-    flatten(Role::left_foot, Role::left_toes, on_ground);
-    flatten(Role::right_foot, Role::right_toes, on_ground);
+    const std::vector<FootOnGround> on_ground = feet_on_ground();
+    flatten(Role::left_foot, on_ground);
+    flatten(Role::right_foot, on_ground);
+    bend_toes(on_ground);
     return std::move(pose_);
   }
 
@@ -350,9 +350,8 @@ class StanceBuilder {
     Role foot;
   };
 
-  // Turns a foot about the ankle's hinge to the pitch that feet have on the ground, and bends its
-  // toes as they are then.
-  void flatten(Role role, Role toes, const std::vector<FootOnGround>& on_ground) {
+  // Turns a foot about the ankle's hinge to the pitch that feet have on the ground.
+  void flatten(Role role, const std::vector<FootOnGround>& on_ground) {
     const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
     if (foot < 0 || front < 0) return;
     const Vec3 now = place(front) - place(foot);
@@ -363,32 +362,42 @@ class StanceBuilder {
     // What of it points aside stays.
     const Vec3 wanted = std::cos(pitch) * kForward + std::sin(pitch) * kUpwards;
     roll(foot, kLeft, now, wanted);
-    const bool stood =
-        std::ranges::any_of(on_ground, [&](const FootOnGround& one) { return one.foot == role; });
-    bend_toes(role, roles_.joint(toes), stood ? on_ground : feet_on_ground({role}));
   }
 
-  void bend_toes(Role foot, int toes, const std::vector<FootOnGround>& on_ground) {
-    const int parent = toes < 0 ? -1 : clip_.skeleton.parents[at(toes)];
-    if (parent < 0 || parent != roles_.joint(foot)) return;
-    Vec4 sum = Vec4::Zero();
+  // Bends the toes as they are then: by the median of both sides, about the ankle's hinge alone.
+  void bend_toes(const std::vector<FootOnGround>& on_ground) {
+    std::vector<double> bends;
     for (const FootOnGround& one : on_ground) {
-      if (one.foot != foot) continue;
+      const int toes = toes_of(one.foot);
+      if (toes < 0) continue;
+      const std::size_t parent = at(clip_.skeleton.parents[at(toes)]);
       const auto orientations = clip_.frame_orientations(one.frame);
-      const Quat local = orientations[at(parent)].cast<double>().conjugate() *
-                         orientations[at(toes)].cast<double>();
-      sum += sum.dot(local.coeffs()) < 0 ? Vec4(-local.coeffs()) : local.coeffs();
+      const Quat local =
+          orientations[parent].cast<double>().conjugate() * orientations[at(toes)].cast<double>();
+      const Quat bend = pose_[parent].orientation * local * pose_[at(toes)].orientation.conjugate();
+      const double angle = 2 * std::atan2(bend.vec().dot(kLeft), bend.w());
+      bends.push_back(std::remainder(angle, 2 * kPi));
     }
-    if (!(sum.norm() > 0)) return;
-    const Quat wanted = pose_[at(parent)].orientation * Quat(Vec4(sum.normalized()));
-    turn(toes, wanted * pose_[at(toes)].orientation.conjugate());
+    if (bends.empty()) return;
+    const auto middle = bends.begin() + static_cast<std::ptrdiff_t>(bends.size() / 2);
+    std::ranges::nth_element(bends, middle);
+    for (const Role foot : {Role::left_foot, Role::right_foot}) {
+      const int toes = toes_of(foot);
+      if (toes >= 0) turn(toes, from_rotation_vector(*middle * kLeft));
+    }
+  }
+
+  // The first joint of a foot's toes if it is the foot's child, else -1.
+  int toes_of(Role foot) const {
+    const int toes = roles_.joint(foot == Role::left_foot ? Role::left_toes : Role::right_toes);
+    return toes >= 0 && clip_.skeleton.parents[at(toes)] == roles_.joint(foot) ? toes : -1;
   }
 
   // By pitch. A foot is flat where ankle and ball are both low: on tiptoe and on the heel one of
   // them is not. Of both feet together, as a take may hold one of them up.
-  std::vector<FootOnGround> feet_on_ground(std::initializer_list<Role> feet) const {
+  std::vector<FootOnGround> feet_on_ground() const {
     std::vector<FootOnGround> frames;
-    for (const Role role : feet) {
+    for (const Role role : {Role::left_foot, Role::right_foot}) {
       const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
       if (foot < 0 || front < 0) continue;
       for (int f = 0; f < clip_.frame_count(); f += step_) {
