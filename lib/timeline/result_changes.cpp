@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxFrames = 4000;  // frames per motion sampled by usual_speed()
 constexpr double kUsual = 0.99;
+constexpr double kTravels = 0.5;  // metres per second
 
 struct Angle {
   double angle = 0;
@@ -171,17 +172,32 @@ class ChangeFinder {
     return facts;
   }
 
-  // Warns if a change cuts across steps.
+  // Warns if a change cuts across steps: those of keytimes that do not match, or of motions that
+  // both travel.
   void check_steps(std::size_t i) {
-    if (!parts_.base.items()[i].has_other_keys) return;
-    Diagnostic warning =
-        make_warning("timeline-clock",
-                     fmt::format("{}: the change into it is not in step: its keytimes have other "
-                                 "names or another order than those before it",
-                                 shown(parts_.timeline.base[i].name)),
-                     "set keytimes with krok-keys, or \"sync\": \"clock\" if it is wanted");
+    const ScheduledItem& item = parts_.base.items()[i];
+    const bool unknown = item.lacks_keys && travels(i - 1, item) && travels(i, item);
+    if (!item.has_other_keys && !unknown) return;
+    Diagnostic warning = make_warning(
+        "timeline-clock",
+        fmt::format(
+            "{}: the change into it is not in step: {}", shown(parts_.timeline.base[i].name),
+            unknown ? "both motions travel, and one has no keytimes"
+                    : "its keytimes have other names or another order than those before it"),
+        "set keytimes with krok-keys, or \"sync\": \"clock\" if it is wanted");
     warning.where = parts_.timeline.base[i].where;
     warnings_.push_back(std::move(warning));
+  }
+
+  // Whether an item's hips travel during a change.
+  bool travels(std::size_t i, const ScheduledItem& change) const {
+    const ScheduledItem& item = parts_.base.items()[i];
+    const auto place = [&](double time) {
+      return parts_.base.player(i).actor(item.play_time(time)).place;
+    };
+    const GroundFrame from = place(change.begin), to = place(change.settled);
+    return std::hypot(to.x - from.x, to.z - from.z) >
+           kTravels * std::max(1e-3, change.settled - change.begin);
   }
 
   // Warns if a loop jumps from its end to its start.

@@ -165,6 +165,7 @@ class Scheduler {
           return found != nullptr && found->keytimes.size() > 1;
         };
         item.has_other_keys = has_keys(before) && has_keys(item);
+        item.lacks_keys = !item.has_other_keys;
         return {};
       }
       return Error("timeline-sync",

@@ -29,6 +29,7 @@ struct ScheduledItem {
   double skipped = 0;    // play time at its start, from time alignment
   bool in_step = false;  // whether the change into it is time-aligned by keytimes
   bool has_other_keys = false;  // not, although both have keytimes and it was not ruled out
+  bool lacks_keys = false;      // not, since one of them has no keytimes, and it was not ruled out
   TimeWarp in, out;
 
   // Play time at a result time; may be outside the played range.

@@ -151,6 +151,46 @@ INSTANTIATE_TEST_SUITE_P(Files, StraightWalks,
                                          "optitrack_arena_bvh-matlab/walk.bvh"),
                          name_of_file);
 
+// A capture kept at a lower rate has its strikes where they were. Would fail if they came later the
+// lower the rate is: at 30 Hz it was half a frame.
+TEST(WalksAtLowerRates, HaveTheirStrikesWhereTheyWere) {
+  for (const double rate : {60.0, 30.0}) {
+    std::vector<double> errors;
+    for (const char* name : {"007_02", "007_03", "007_06", "007_09", "007_10", "007_12"}) {
+      FIND_OR_SKIP(found, std::string("walkset_cmu07/") + name + ".bvh");
+      const int step = static_cast<int>(std::lround(found.clip.rate / rate));
+      Clip thin;
+      thin.skeleton = found.clip.skeleton;
+      thin.rate = found.clip.rate / step;
+      thin.resize((found.clip.frame_count() - 1) / step + 1);
+      for (int f = 0; f < thin.frame_count(); ++f) {
+        std::ranges::copy(found.clip.frame_positions(f * step), thin.frame_positions(f).begin());
+        std::ranges::copy(found.clip.frame_orientations(f * step),
+                          thin.frame_orientations(f).begin());
+      }
+      const RoleMap roles = find_roles(thin.skeleton);
+      const auto contacts = find_contacts(thin, roles);
+      ASSERT_TRUE(contacts.ok());
+      const Gait gait = find_gait(thin, roles, *contacts);
+      for (const Keytime& key : found.gait.keytimes) {
+        if (!key.name.ends_with("strike") || key.time < 0.1) continue;
+        double error = 1;
+        for (const Keytime& other : gait.keytimes) {
+          const double apart = other.time - key.time;
+          if (other.name == key.name && std::abs(apart) < std::abs(error)) error = apart;
+        }
+        errors.push_back(error);
+      }
+    }
+    std::ranges::sort(errors);
+    ASSERT_GE(errors.size(), 24U);
+    EXPECT_NEAR(errors[errors.size() / 2], 0, 0.004) << rate;
+    const auto near =
+        std::ranges::count_if(errors, [](double error) { return std::abs(error) <= 1.0 / 60; });
+    EXPECT_GE(static_cast<double>(near), 0.85 * static_cast<double>(errors.size())) << rate;
+  }
+}
+
 // In a run no two feet are down at once.
 TEST(Run, HasFlight) {
   FIND_OR_SKIP(found, "iclone_cmu/002_03.bvh");

@@ -308,6 +308,29 @@ TEST(Crossfade, AWalkAndARunAreAlignedByTheirStrikes) {
   EXPECT_EQ(result.warnings[0].code, "timeline-clock");
 }
 
+// Would fail if a walk without keytimes changed into another by the clock without a warning, or if
+// a walk that ends in standing, or a clock that is asked for, gave one.
+TEST(Crossfade, AWalkWithoutKeytimesIsReported) {
+  const KeyedWalk slow = keyed_walk(slow_walk());
+  KeyedWalk bare = keyed_walk(quick_walk());
+  bare.keys.keytimes.clear();
+  Timeline timeline{0, {played(0), changed(1, ChangeKind::crossfade, 0.9)}, {}};
+  timeline.base[0].play.to = seconds(2.6);
+  const Mixed result = mixed(timeline, {source_of(slow, "slow"), source_of(bare, "bare")});
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_EQ(result.warnings[0].code, "timeline-clock");
+
+  KeyedWalk still = bare;
+  for (int f = 1; f < still.clip.frame_count(); ++f) {
+    std::ranges::copy(still.clip.frame_positions(0), still.clip.frame_positions(f).begin());
+    std::ranges::copy(still.clip.frame_orientations(0), still.clip.frame_orientations(f).begin());
+  }
+  EXPECT_TRUE(
+      mixed(timeline, {source_of(slow, "slow"), source_of(still, "still")}).warnings.empty());
+  timeline.base[1].change.sync = Sync::clock;
+  EXPECT_TRUE(mixed(timeline, {source_of(slow, "slow"), source_of(bare, "bare")}).warnings.empty());
+}
+
 TEST(Crossfade, BothGoAtTheirOwnSpeedAtItsEnds) {
   const KeyedWalk slow = keyed_walk(slow_walk()), quick = keyed_walk(quick_walk());
   const std::vector<Source> sources = {source_of(slow, "slow"), source_of(quick, "quick")};
