@@ -95,12 +95,16 @@ class Motion:
     """A motion (.anim): frame i is at i / `rate` seconds.
 
     `positions` (frames, joints, 3) are metres. `raw_orientations` (frames, joints, 3 or 4) are as the file has
-    them: with four components (`krok-import --orientation xyzw`) `orientations` is a view, too.
+    them: with four components (`krok-import --orientation xyzw`) `orientations` is a view, too. Joints
+    `stretched` (s,) are not rigid: `stretches` (frames, s, 6) are xx, yy, zz, xy, xz, yz of their symmetric
+    matrices U, and the joint maps p to R U p + position.
     """
     skeleton: Skeleton
     rate: float
     positions: np.ndarray
     raw_orientations: np.ndarray
+    stretched: np.ndarray | None = None
+    stretches: np.ndarray | None = None
     provenance: dict[str, Any] = field(default_factory=dict)
     path: str | None = None
 
@@ -249,10 +253,10 @@ class _Container:
         self.magic, version, flags, written, _, count = struct.unpack_from("<8sIIQQI", self.data)
         self.require(self.magic in _READERS, "is none of Krok's binary files")
         self.require(version == 1, f"version {version}, expected 1")
-        self.require(flags in (0, 1), f"unknown flags {flags:#x}")
+        self.require(flags <= (3 if self.magic == b"KROKANIM" else 1), f"unknown flags {flags:#x}")
         self.require(written == size, f"{size} bytes, expected {written}")
         self.require(count <= 64 and 64 + 32 * count <= size, f"impossible number of sections, {count}")
-        self.components = 3 + flags
+        self.components, self.stretched = 3 + (flags & 1), flags & 2 != 0
         self.sections: dict[str, tuple[int, int]] = {}
         for name, offset, length, _ in struct.iter_unpack("<8sQQQ", self.data[64:64 + 32 * count]):
             self.require(offset % 64 == 0 and offset <= size and length <= size - offset, "a section out of place")
@@ -309,7 +313,14 @@ class _Container:
 def _read_motion(file: _Container) -> Motion:
     rate, frames, joints, _ = file.rate_and("QII")
     records = file.array("FRAMES", "<f4", frames, joints, 3 + file.components)
-    return Motion(file.skeleton(joints), rate, records[..., :3], records[..., 3:], file.page("META"), file.path)
+    motion = Motion(file.skeleton(joints), rate, records[..., :3], records[..., 3:], provenance=file.page("META"),
+                    path=file.path)
+    if file.stretched:
+        count = file.sections.get("SJOINTS", (0, 0))[1] // 4
+        motion.stretched = file.array("SJOINTS", "<u4", count)
+        motion.stretches = file.array("STRETCH", "<f4", frames, count, 6)
+        file.require(bool(np.all(motion.stretched < joints)), "a stretched joint out of range")
+    return motion
 
 
 def _read_camera(file: _Container) -> Camera:
@@ -392,6 +403,9 @@ def write(data: Motion | Model | Camera, path: Path) -> None:
             info = struct.pack("<dQII", data.rate, len(data.positions), len(skeleton.names), 0)
             frames = _records(data.positions, data.orientations)
             magic, sections = b"KROKANIM", [("INFO", info), *bones, ("FRAMES", frames.tobytes())]
+            if data.stretched is not None:
+                sections += [("SJOINTS", np.asarray(data.stretched, "<u4").tobytes()),
+                             ("STRETCH", _finite(data.stretches, "<f4").tobytes())]
         else:
             info = struct.pack("<6I", len(skeleton.names), len(data.positions), len(data.triangles), len(data.parts),
                                data.weights.shape[1], 0)
@@ -407,7 +421,8 @@ def write(data: Motion | Model | Camera, path: Path) -> None:
         body += [b"\0" * (-end % 64), content]
         table += struct.pack("<8sQQQ", name.encode(), end + len(body[-2]), len(content), 0)
         end += len(body[-2]) + len(content)
-    head, rest = struct.pack("<8sIIQ", magic, 1, 1, end), struct.pack("<I28x", len(sections)) + table
+    flags = 3 if isinstance(data, Motion) and data.stretched is not None else 1
+    head, rest = struct.pack("<8sIIQ", magic, 1, flags, end), struct.pack("<I28x", len(sections)) + table
     checksum = xxhash.xxh3_64_intdigest(b"".join([*body, head, b"\0" * 8, rest]))
     temporary = f"{os.fspath(path)}.{os.getpid()}.tmp"
     try:
