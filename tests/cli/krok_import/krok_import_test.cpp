@@ -162,8 +162,9 @@ TEST_F(ImportTest, OutputsNamedAfterAnotherFormatAreRefused) {
   EXPECT_EQ(model.exit_code, 2);
   EXPECT_NE(model.err.find("krok-skin"), std::string::npos) << model.err;
   EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh"}));
-  // A name that promises nothing is the user's choice.
-  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("x.out")}).exit_code, 0);
+  // A name that promises nothing is the user's choice, another ending is a mistake.
+  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("x")}).exit_code, 0);
+  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("x.out")}).exit_code, 2);
 }
 
 TEST_F(ImportTest, WrongValuesAreUsageErrors) {

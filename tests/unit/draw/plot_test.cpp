@@ -99,7 +99,7 @@ TEST(Plot, AGapInTheDataIsAGapInTheLine) {
   panel.series[0].y.push_back(1);
   const std::string svg = svg_of(panel);
   const std::string line = svg.substr(svg.find("class=\"line\""));
-  const std::string path = line.substr(0, line.find("/>"));
+  const std::string path = line.substr(0, line.find('>'));
   EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 2);
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
 }
