@@ -75,21 +75,15 @@ void turn(const Mat3& linear, bool mirrors, Vec4& tangent) {
   if (mirrors) tangent.w() = -tangent.w();
 }
 
-Affine blended_at(const Primitive& primitive, const std::vector<Affine>& palette,
-                  std::size_t vertex) {
-  const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
-  Affine blended = Affine::Zero();
-  for (std::size_t k = vertex * per_vertex; k < (vertex + 1) * per_vertex; ++k) {
-    const auto weight = static_cast<double>(primitive.influence_weights[k]);
-    if (weight != 0) blended += weight * palette[primitive.influence_joints[k]];
-  }
-  return blended;
-}
-
 void skin(const Primitive& primitive, const std::vector<Affine>& palette, const Vertices& out) {
   auto& [positions, normals, tangents] = out;
+  const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    const Affine blended = blended_at(primitive, palette, v);
+    Affine blended = Affine::Zero();
+    for (std::size_t k = v * per_vertex; k < (v + 1) * per_vertex; ++k) {
+      const auto weight = static_cast<double>(primitive.influence_weights[k]);
+      if (weight != 0) blended += weight * palette[primitive.influence_joints[k]];
+    }
     positions[v] = blended.leftCols<3>() * positions[v] + blended.col(3);
     if (!normals.empty()) normals[v] = blended.leftCols<3>() * normals[v];
     if (tangents.empty()) continue;
@@ -146,16 +140,35 @@ void normalize(std::vector<Vector>& vectors) {
   }
 }
 
-// The displacement of a direction that `linear` places, in lengths of the undisplaced one.
+// Directions of vertices, to be placed as vertices are.
+struct Directions {
+  std::vector<Vec3> positions, normals;
+  std::vector<Vec4> tangents;
+
+  template <typename Tangents>
+  Directions(std::size_t vertices, const Shared<Vec3f>& from_positions,
+             const Shared<Vec3f>& from_normals, const Tangents& from_tangents) {
+    load_vectors(from_positions, positions);
+    positions.resize(vertices, Vec3::Zero());
+    load_vectors(from_normals, normals);
+    for (std::size_t v = 0; from_tangents && v < vertices; ++v) {
+      tangents.emplace_back(Vec4::Zero());
+      tangents[v].template head<3>() =
+          (*from_tangents)[v].template head<3>().template cast<double>();
+    }
+  }
+};
+
+// Displacements in lengths of what they displace.
 template <typename Vector>
-Vec3f displaced(const Mat3& linear, const Shared<Vector>& directions, std::size_t vertex,
-                const Vec3f& displacement) {
-  const double length =
-      directions
-          ? (linear * (*directions)[vertex].template head<3>().template cast<double>()).norm()
-          : 0.0;
-  const Vec3 change = linear * displacement.cast<double>();
-  return (length > 0 ? Vec3(change / length) : change).cast<float>();
+void in_lengths(const std::vector<Vector>& displacements, const std::vector<Vector>& displaced,
+                std::vector<Vec3f>& out) {
+  out.resize(displacements.size());
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    const double length = displaced.empty() ? 0 : displaced[v].template head<3>().norm();
+    const Vec3 change = displacements[v].template head<3>();
+    out[v] = (length > 0 ? Vec3(change / length) : change).template cast<float>();
+  }
 }
 
 }  // namespace
@@ -354,34 +367,36 @@ bool Evaluator::displace(const Instance& instance, std::size_t target, const Eva
                          Displacements& out) const {
   const Primitive& shape = primitive(instance);
   const Node& node = scene_->nodes[static_cast<std::size_t>(instance.node)];
-  const Mat4& place = moment.node_to_world[static_cast<std::size_t>(instance.node)];
+  const Mat4& matrix = moment.node_to_world[static_cast<std::size_t>(instance.node)];
   const bool skinned = node.skin >= 0 && shape.influences_per_vertex > 0;
-  const Mat3 of_node = place.topLeftCorner<3, 3>();
-  if (!skinned && of_node == Mat3::Identity()) return false;
+  if (!skinned && matrix.topLeftCorner<3, 3>() == Mat3::Identity()) return false;
+  // Without the offsets, which directions do not have.
+  Mat4 linear = matrix;
+  linear.topRightCorner<3, 1>().setZero();
   std::vector<Affine> palette;
   if (skinned) {
     fill_palette(scene_->skins[static_cast<std::size_t>(node.skin)], moment.node_to_world, palette);
+    for (Affine& joint : palette) joint.col(3).setZero();
   }
-  // Normals as evaluate_instance() turns them.
-  const Mat3 normals_of_node = cofactors_of(of_node);
+  const auto place_all = [&](Directions& directions) {
+    const Vertices vertices{directions.positions, directions.normals, directions.tangents};
+    if (skinned) {
+      skin(shape, palette, vertices);
+    } else {
+      place(linear, vertices);
+    }
+  };
   const MorphTarget& from = shape.targets[target];
-  const auto size = [](const Shared<Vec3f>& values) { return values ? values->size() : 0; };
-  out.positions.resize(size(from.positions));
-  out.normals.resize(size(from.normals));
-  out.tangents.resize(size(from.tangents));
-  for (std::size_t v = 0; v < shape.vertex_count(); ++v) {
-    const Mat3 linear = skinned ? Mat3(blended_at(shape, palette, v).leftCols<3>()) : of_node;
-    if (from.positions) {
-      out.positions[v] = (linear * (*from.positions)[v].cast<double>()).cast<float>();
-    }
-    if (from.normals) {
-      out.normals[v] =
-          displaced(skinned ? linear : normals_of_node, shape.normals, v, (*from.normals)[v]);
-    }
-    if (from.tangents) {
-      out.tangents[v] = displaced(linear, shape.tangents, v, (*from.tangents)[v]);
-    }
+  Directions changes(shape.vertex_count(), from.positions, from.normals, from.tangents);
+  Directions whole(shape.vertex_count(), nullptr, shape.normals, shape.tangents);
+  place_all(changes);
+  place_all(whole);
+  out.positions.clear();
+  for (const Vec3& change : changes.positions) {
+    if (from.positions) out.positions.push_back(change.cast<float>());
   }
+  in_lengths(changes.normals, whole.normals, out.normals);
+  in_lengths(changes.tangents, whole.tangents, out.tangents);
   return true;
 }
 
