@@ -19,6 +19,7 @@ struct Surfaces {
   const SurfaceMoments& other;
   const FacetTree& tree;  // of `other`
   double near = 0;        // a point at most this far away is as good as the nearest
+  double tried = 0;       // points at most this far away are tried
   SameMaterials same_materials{};
 };
 

@@ -137,9 +137,13 @@ std::vector<std::uint32_t> by_place(const Points& vertices) {
   return order;
 }
 
-// How far a point may be to be as good as the nearest: the right one may be farther, where a mesh
-// is quantised and its edges are hard.
-double near_of(const SurfaceMoments& own, const std::vector<int>& meshes, const FacetTree& tree,
+// How far a point may be to be as good as the nearest, and to be tried at all: the right one may be
+// farther, where a mesh is quantised and its edges are hard, or where other surfaces touch.
+struct Reach {
+  double near = 0, tried = 0;
+};
+
+Reach reach_of(const SurfaceMoments& own, const std::vector<int>& meshes, const FacetTree& tree,
                double tolerance) {
   std::vector<double> distances;
   std::vector<FoundFacet> found;
@@ -153,10 +157,13 @@ double near_of(const SurfaceMoments& own, const std::vector<int>& meshes, const 
       distances.push_back(nearest);
     }
   }
-  if (distances.empty()) return 0;
+  if (distances.empty()) return {};
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
   std::nth_element(distances.begin(), middle, distances.end());
-  return std::min(std::max(kOfMedian * *middle, tolerance), kMaxNear * tree.size());
+  const double most = kMaxNear * tree.size();
+  const double near = std::min(std::max(kOfMedian * *middle, tolerance), most);
+  const double largest = *std::max_element(distances.begin(), distances.end());
+  return {near, std::min(std::max(near, largest), most)};
 }
 
 // For each vertex of a mesh, the nearest point of the other surface.
@@ -175,7 +182,7 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t v = order[i];
       if (i == begin || vertices[v] != vertices[order[i - 1]]) {
-        tree.find(vertices[v], found, surfaces.near);
+        tree.find(vertices[v], found, surfaces.tried);
         points = distinct_points(tree, vertices[v], found);
       }
       std::tie(match.points[v], match.fits[v]) = choose(points, surfaces, mesh, v);
@@ -249,7 +256,10 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
 // Matches the meshes of a group of one scene with the other's, whose facets are in the tree.
 void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bool in_second,
                  Surfaces surfaces, int jobs) {
-  surfaces.near = near_of(surfaces.own, meshes, surfaces.tree, comparison.options.tolerance.length);
+  const Reach reach =
+      reach_of(surfaces.own, meshes, surfaces.tree, comparison.options.tolerance.length);
+  surfaces.near = reach.near;
+  surfaces.tried = reach.tried;
   surfaces.same_materials = same_materials(comparison, surfaces.own, surfaces.other);
   for (const int mesh : meshes) {
     SurfaceMatch match = match_surface(surfaces, mesh, jobs);
