@@ -133,7 +133,8 @@ Status read_tangents(const tinygltf::Primitive& source, Accessors& accessors,
 
 // Normalises weights to sum to 1, which rounding to bytes may break. A vertex without weights is
 // bound to its first joint, as in common viewers.
-void normalize_weights(Primitive& primitive, const std::string& name, Diagnostics& diagnostics) {
+void normalize_weights(Primitive& primitive, bool all_kept, const std::string& name,
+                       Diagnostics& diagnostics) {
   const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
   // Bytes may be off by this much in sum without the exporter's fault.
   constexpr double kRounding = 0.02;
@@ -146,7 +147,7 @@ void normalize_weights(Primitive& primitive, const std::string& name, Diagnostic
       weight = std::max(weight, 0.0f);
       sum += static_cast<double>(weight);
     }
-    if (sum > 0 && std::abs(sum - 1) > kRounding) {
+    if (all_kept && sum > 0 && std::abs(sum - 1) > kRounding) {
       ++unnormalized;
       least = std::min(least, sum);
       most = std::max(most, sum);
@@ -243,7 +244,7 @@ Status read_influences(const tinygltf::Primitive& source, Accessors& accessors,
                      "dropped is up to {}% of a vertex's weight",
                      name, dropped.vertices, readable(100 * dropped.largest, 3)));
   }
-  normalize_weights(primitive, name, diagnostics);
+  normalize_weights(primitive, dropped.vertices == 0, name, diagnostics);
   return {};
 }
 
