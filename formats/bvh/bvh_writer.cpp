@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "capture/unique_names.h"
+#include "core/numbers.h"
 #include "formats/bvh/text_cursor.h"
 #include "math/quaternion.h"
 
@@ -124,7 +125,7 @@ class Writer {
     }
   }
 
-  // A name on one line and without braces, unique after the replacements.
+  // A name on one line, printable and without braces, unique after the replacements.
   std::string written_name(const std::string& name) {
     std::string result;
     for (const char c : trimmed(name)) {
@@ -134,7 +135,7 @@ class Writer {
         result += static_cast<unsigned char>(c) < 0x20 || c == '{' || c == '}' ? '_' : c;
       }
     }
-    return names_.make(result.empty() ? "joint" : result);
+    return names_.make(result.empty() ? "joint" : printable(result));
   }
 
   void length(double metres) { number(metres * scale_, length_decimals_); }
@@ -277,6 +278,21 @@ Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   for (const Axis axis : options.order) ++axes[static_cast<std::size_t>(axis)];
   if (axes != std::array{1, 1, 1}) {
     return Error("bvh-options", "the rotation order names an axis twice");
+  }
+  // Readers take numbers that floats hold; those of a joint are relative to its parent.
+  double farthest = 0;
+  for (const Vec3f& position : clip.positions) {
+    farthest = std::max(farthest, static_cast<double>(position.cwiseAbs().maxCoeff()));
+  }
+  for (const Transform& joint : clip.skeleton.reference) {
+    farthest = std::max(farthest, joint.position.cwiseAbs().maxCoeff());
+  }
+  if (!(2 * farthest / options.unit_metres <= std::numeric_limits<float>::max())) {
+    return Error(
+        "bvh-far",
+        fmt::format("a joint is {} m from the origin, too far for numbers in units of {} m",
+                    readable(farthest), readable(options.unit_metres)),
+        "scale the motion, or write it in a larger unit");
   }
   return Writer(clip, options, file).write();
 }

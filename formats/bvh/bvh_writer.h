@@ -50,7 +50,7 @@ struct WriteOptions {
 // same rate.
 //
 // Returns an Error if check() fails, before anything is written; code bvh-options for options out
-// of range.
+// of range, bvh-far for positions that no float holds in the unit.
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file);
 
 }  // namespace krok::bvh

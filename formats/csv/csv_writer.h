@@ -16,8 +16,10 @@ namespace krok::csv {
 // Appends the header "frame,time,joint,x,y,z" and a row for each frame and joint, in that order, to
 // `file`; the caller commits. Frames are zero-based; time is frame / rate in seconds; x, y, z are
 // metres in Krok's axes. Numbers have the fewest digits that round-trip (time as a double,
-// positions as floats); names with a comma, a quote or a line break are quoted (RFC 4180). Lines
-// end with LF. A clip without frames gives only the header. An Error if check() fails.
+// positions as floats); names with a comma, a quote or a line break are quoted (RFC 4180), what
+// printable() replaces is replaced (core/text.h), and names that a spreadsheet would run as a
+// formula, with '=', '+', '-' or '@' in front, get an apostrophe, which Table removes. Lines end
+// with LF. A clip without frames gives only the header. An Error if check() fails.
 Status write(const Clip& clip, OutputFile& file);
 
 // Contacts: the header "joint,start,end,x,y,z" and a row for each, in seconds and metres; `names`

@@ -8,6 +8,7 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/csv/formula_internal.h"
 
 namespace krok::csv {
 
@@ -92,12 +93,16 @@ Result<Table::Cell> Table::cell_at(std::size_t at) const {
 
 std::string Table::text_of(const Cell& cell) const {
   const std::string_view raw = text_.substr(cell.begin, cell.end - cell.begin);
-  if (!cell.quoted) return std::string(trimmed(raw));
   std::string text;
-  for (std::size_t i = 0; i < raw.size(); ++i) {
-    text += raw[i];
-    if (raw[i] == '"') ++i;
+  if (!cell.quoted) {
+    text = trimmed(raw);
+  } else {
+    for (std::size_t i = 0; i < raw.size(); ++i) {
+      text += raw[i];
+      if (raw[i] == '"') ++i;
+    }
   }
+  if (text.starts_with('\'') && is_formula(text)) text.erase(0, 1);
   return text;
 }
 

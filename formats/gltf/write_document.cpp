@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/base64.h"
+#include "core/json_controls_internal.h"
 #include "core/json_internal.h"
 #include "formats/gltf/baked_writer.h"
 #include "formats/gltf/document_internal.h"
@@ -93,7 +94,7 @@ std::string Document::json_text() const {
   std::ostringstream stream;
   tinygltf::TinyGLTF().WriteGltfSceneToStream(const_cast<tinygltf::Model*>(&gltf), stream,
                                               !options_.binary, false);
-  std::string text = stream.str();
+  std::string text = with_escaped_controls(stream.str());
   text.pop_back();  // the newline
   if (size_ == 0 || !options_.binary) return text;
   // Insert in alphabetical order, after the buffer views, which contain no other list.

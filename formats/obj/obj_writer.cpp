@@ -1,4 +1,5 @@
 #include "formats/obj/obj_writer.h"
+#include "core/text.h"
 #include "math/vector_arrays.h"
 
 #include <fmt/compile.h>
@@ -75,7 +76,7 @@ class Names {
           return static_cast<unsigned char>(c) <= ' ' || c == 0x7F || c == '\\' || c == '#';
         },
         '_');
-    return name.empty() ? "default" : name;
+    return name.empty() ? "default" : printable(name);
   }
 
   std::string unique(const std::string& wanted) {

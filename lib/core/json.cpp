@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/json_controls_internal.h"
 #include "core/text.h"
 
 namespace krok {
@@ -18,13 +19,9 @@ nlohmann::json parse_json_or_throw(std::string_view text) {
   return nlohmann::json::parse(text);
 }
 
-namespace {
-
-// What printable() replaces, as escape sequences. It occurs in strings alone; the control
-// characters below U+0020 are escaped already.
-std::string without_controls(const std::string& text) {
+std::string with_escaped_controls(const std::string& text) {
   const std::string safe = printable(text, true);
-  if (safe.size() == text.size()) return text;
+  if (safe == text) return text;
   std::string result;
   std::size_t i = 0;
   for (const char c : safe) {
@@ -44,14 +41,13 @@ std::string without_controls(const std::string& text) {
   return result;
 }
 
-}  // namespace
-
 std::string json_text(const nlohmann::json& value, int indent) {
-  return without_controls(value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace));
+  return with_escaped_controls(
+      value.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 std::string json_text(const nlohmann::ordered_json& value, int indent) {
-  return without_controls(
+  return with_escaped_controls(
       value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 

@@ -9,7 +9,7 @@ std::string to_markup(std::string_view text) {
   const auto is_no_character = [](std::string_view rest) {
     return rest.substr(0, 3) == "\xEF\xBF\xBE" || rest.substr(0, 3) == "\xEF\xBF\xBF";
   };
-  const std::string safe = to_utf8(text);
+  const std::string safe = printable(to_utf8(text), true);
   std::string result;
   for (std::size_t i = 0; i < safe.size(); ++i) {
     const char c = safe[i];
@@ -28,11 +28,10 @@ std::string to_markup(std::string_view text) {
         break;
       default:
         if (is_no_character(std::string_view(safe).substr(i))) {
-          result += ' ';
+          result += '?';
           i += 2;
         } else {
-          // XML does not allow other control characters.
-          result += static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' ? ' ' : c;
+          result += c;
         }
     }
   }

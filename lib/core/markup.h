@@ -5,8 +5,8 @@
 
 namespace krok {
 
-// `text` for XML and HTML, including attributes: UTF-8, with &, <, > and " escaped and characters
-// that XML does not allow replaced by spaces.
+// `text` for XML and HTML, including attributes: UTF-8, with &, <, > and " escaped and '?' in place
+// of what printable() replaces (see core/text.h) and of characters that XML does not allow.
 std::string to_markup(std::string_view text);
 
 }  // namespace krok

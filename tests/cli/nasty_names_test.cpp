@@ -11,8 +11,8 @@ namespace {
 class NastyNames : public MotionTest {
  protected:
   static constexpr const char* kNasty =
-      "a\xc2\x9b"
-      "31mb\xe2\x80\xae";
+      "=a\x1b[31m\xc2\x9b"
+      "31mb\n\xe2\x80\xae</script><script>alert(1)</script>";
 
   void SetUp() override {
     Clip clip = write_walk(2);
@@ -63,6 +63,43 @@ TEST_F(NastyNames, ReachNoTerminal) {
     }
     EXPECT_FALSE((run.out + run.err).empty() && run.exit_code != 0) << words[0];
   }
+}
+
+// What is written to be looked at, or to be read by another program, has the name without what a
+// terminal, a browser or a spreadsheet would run.
+TEST_F(NastyNames, ReachNoFile) {
+  const std::vector<std::vector<std::string>> runs = {
+      {"krok-export", "nasty.anim", "-o", "out.csv"},
+      {"krok-export", "nasty.anim", "-o", "out.bvh"},
+      {"krok-export", "nasty.anim", "-o", "out.gltf"},
+      {"krok-plot", "nasty.anim", "--joint", "*", "-o", "out.svg"},
+      {"krok-plot", "out.csv", "--y", "y", "-o", "table.svg"},
+      {"krok-view", "nasty.anim", "--body", "none", "-o", "out.html"},
+      {"krok-keys", "nasty.anim", "-o", "out.keys.json", "--plot", "keys.svg"},
+      {"krok-ik", "nasty.anim", "--learn-limits", "walk.anim", "--write-limits", "out.limits.json"},
+      {"krok-import", "out.gltf", "-o", "back.anim", "--json=report.json"}};
+  for (const auto& words : runs) {
+    const ToolRun run = run_here(words[0], {words.begin() + 1, words.end()});
+    EXPECT_LE(run.exit_code, 2);
+  }
+  int files = 0;
+  for (const std::string& name : listing()) {
+    if (name.starts_with("nasty") || name.ends_with(".anim") || name == "goals.json" ||
+        name == "limits.json" || name == "broken.json" || name == "steps.csv") {
+      continue;
+    }
+    ++files;
+    const std::string text = get(path(name));
+    std::vector<std::string> wrong = {"\x1b", "\xc2\x9b", "\xe2\x80\xae"};
+    if (name.ends_with(".csv")) wrong.insert(wrong.end(), {"\n=a", ",=a", "\"=a"});
+    if (name.ends_with(".svg") || name.ends_with(".html")) wrong.emplace_back("<script>alert");
+    for (const std::string& what : wrong) {
+      EXPECT_EQ(text.find(what), std::string::npos) << name << " has " << what;
+    }
+  }
+  EXPECT_GE(files, 7);
+  // The name is still the same where a format can say it.
+  EXPECT_EQ(read("back.anim").skeleton.names[4], read("nasty.anim").skeleton.names[4]);
 }
 
 }  // namespace

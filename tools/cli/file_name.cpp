@@ -9,9 +9,8 @@ namespace krok::cli {
 
 std::string file_name_of(const std::string& name) {
   std::string result;
-  for (const char c : name) {
-    const bool odd = static_cast<unsigned char>(c) < 32 || c == 127 ||
-                     std::string_view("/\\:*?\"<>|{}$`'&;!").find(c) != std::string_view::npos;
+  for (const char c : printable(to_utf8(name))) {
+    const bool odd = std::string_view("/\\:*?\"<>|{}$`'&;!").find(c) != std::string_view::npos;
     result += odd ? '_' : c;
   }
   while (result.starts_with('.') || result.starts_with('-')) result[0] = '_';

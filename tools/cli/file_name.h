@@ -5,7 +5,8 @@
 namespace krok::cli {
 
 // Turns a name (of an animation, a shape) into a file name: no path separators, no characters that
-// are special in shells or invalid on other systems, no leading dot or dash, at most 100 bytes.
+// are special in shells, obeyed by terminals or invalid on other systems, no leading dot or dash,
+// at most 100 bytes.
 std::string file_name_of(const std::string& name);
 
 // Display name of an input: the base name, "walk.bvh", or "standard input" for "-".

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "tools/cli/json_object.h"
 
 namespace krok::cli {
@@ -78,19 +79,34 @@ bool only_a_report_stands_at(const std::string& path) {
   return file && file->text().substr(0, 100).find("\"schema\": \"krok.") != std::string::npos;
 }
 
+namespace {
+
+// On one line, so that a name with a line end does not look like another message, and of a length
+// that can be read: a parser may quote a number of a million digits.
+std::string on_one_line(const std::string& text) {
+  constexpr std::size_t kMax = 2000;
+  if (text.size() <= kMax) return printable(text);
+  std::size_t length = kMax;
+  while (length > kMax - 4 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80) --length;
+  return printable(std::string_view(text).substr(0, length)) + "...";
+}
+
+}  // namespace
+
 std::string to_text(const Diagnostic& diagnostic) {
   const Location& where = diagnostic.where;
   std::string text;
   if (!where.file.empty()) {
-    text = where.file;
+    text = on_one_line(where.file);
     if (where.line > 0) text += fmt::format(":{}", where.line);
     if (where.line > 0 && where.column > 0) text += fmt::format(":{}", where.column);
     text += ": ";
   }
-  text += fmt::format("{}: {}", severity_name(diagnostic.severity), diagnostic.message);
+  text +=
+      fmt::format("{}: {}", severity_name(diagnostic.severity), on_one_line(diagnostic.message));
   if (where.byte_offset >= 0) text += fmt::format(" (at byte {})", where.byte_offset);
   if (!diagnostic.code.empty()) text += fmt::format(" [{}]", diagnostic.code);
-  if (!diagnostic.hint.empty()) text += fmt::format("\n  hint: {}", diagnostic.hint);
+  if (!diagnostic.hint.empty()) text += "\n  hint: " + on_one_line(diagnostic.hint);
   return text;
 }
 

@@ -19,11 +19,19 @@ TEST(Markup, HasNoCharacterThatXmlHasNot) {
   EXPECT_EQ(to_markup(std::string("a\0b\x1B"
                                   "c\rd",
                                   7)),
-            "a b c d");
+            "a?b?c?d");
   EXPECT_EQ(to_markup("a\xEF\xBF\xBE"
                       "b\xEF\xBF\xBF"
                       "c\xEF\xBF\xBD"),
-            "a b c\xEF\xBF\xBD");
+            "a?b?c\xEF\xBF\xBD");
+}
+
+// A chart or page in a terminal or an editor would colour it, or show its text in another order.
+TEST(Markup, HasNoControlsAboveAscii) {
+  EXPECT_EQ(to_markup("a\xC2\x9B"
+                      "31m\x7F\xE2\x80\xAE"
+                      "b"),
+            "a?31m??b");
 }
 
 TEST(Markup, BytesThatAreNoUtf8AreLatin1) {

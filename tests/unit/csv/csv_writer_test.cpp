@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "core/numbers.h"
+#include "formats/csv/table.h"
 #include "support/test_scenes.h"
 
 namespace krok {
@@ -48,6 +49,26 @@ TEST(CsvWriter, WritesARowForEachFrameAndJoint) {
             "0,0,\"arm, \"\"left\"\"\",0.1,0,1e-07\n"
             "1,0.03333333333333333,hips,1e+20,16777216,3\n"
             "1,0.03333333333333333,\"arm, \"\"left\"\"\",1,2,3\n");
+}
+
+// If this failed, a spreadsheet would run a stranger's joint name, a terminal would obey it, or a
+// table would no longer find the name that it was written under.
+TEST(CsvWriter, NamesAreNoFormulasAndReadBack) {
+  Clip clip = two_joints();
+  const std::vector<std::string> names = {
+      "=cmd|' /C calc'!A0", "@sum(1)", "+1,2", "-x", "'=y", "it's", "'a"};
+  for (const std::string& name : names) {
+    clip.skeleton.names[1] = name;
+    const std::string text = written(clip);
+    for (const char* raw : {",=", ",@", ",+", ",\"=", ",\"+", ",-x"}) {
+      EXPECT_EQ(text.find(raw), std::string::npos) << text;
+    }
+    const auto table = csv::Table::read(text, "walk.csv");
+    ASSERT_TRUE(table.ok());
+    EXPECT_EQ(table->texts(2)[1], name) << text;
+  }
+  clip.skeleton.names[1] = "a\x1b[31m\xc2\x9b";
+  EXPECT_NE(written(clip).find(",a?[31m?,"), std::string::npos);
 }
 
 TEST(CsvWriter, NumbersReadBackTheSame) {

@@ -118,7 +118,7 @@ TEST(Plot, TextIsTextAndSafe) {
   Panel panel = line_panel();
   panel.title = "a < b & \"c\"\x01";
   const std::string svg = svg_of(panel);
-  EXPECT_THAT(svg, HasSubstr(">a &lt; b &amp; &quot;c&quot; <"));
+  EXPECT_THAT(svg, HasSubstr(">a &lt; b &amp; &quot;c&quot;?<"));
   EXPECT_THAT(svg, HasSubstr(">time (s)<"));
   EXPECT_THAT(svg, HasSubstr(">knee<"));
 }
