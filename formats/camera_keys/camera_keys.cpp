@@ -10,6 +10,7 @@
 #include "core/quantity.h"
 #include "core/text.h"
 #include "formats/json/members.h"
+#include "scene/frame_moment.h"
 
 namespace krok::camera_keys {
 
@@ -71,7 +72,7 @@ class Reader {
 
   Status read_defaults(const Value& root) {
     if (root.find("rate") != nullptr) {
-      const auto rate = in_.number(root, kWhole, "rate", 1e-3, 1e6);
+      const auto rate = in_.number(root, kWhole, "rate", kMinRate, kMaxRate);
       if (!rate) return rate.error();
       rate_ = *rate;
       file_.rate = *rate;

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "formats/json/members.h"
 #include "motion/ground_frame.h"
+#include "scene/frame_moment.h"
 
 namespace krok::goals {
 
@@ -56,7 +57,7 @@ class Reader {
     static constexpr std::array kMetres = {1.0, 0.01, 0.001, 0.0254, 0.3048};
     if (*unit) metres_ = kMetres[**unit];
     if (root.find("rate") != nullptr) {
-      const auto rate = in_.number(root, kWhole, "rate", 1e-3, 1e6);
+      const auto rate = in_.number(root, kWhole, "rate", kMinRate, kMaxRate);
       if (!rate) return rate.error();
       rate_ = *rate;
     }

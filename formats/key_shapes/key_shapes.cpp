@@ -4,6 +4,7 @@
 
 #include "core/numbers.h"
 #include "formats/json/members.h"
+#include "scene/frame_moment.h"
 
 namespace krok::key_shapes {
 
@@ -62,7 +63,7 @@ Result<KeyShapeFile> read(std::string_view text) {
   if (Status status = in.has_schema(*root, kWhole, kSchema); !status) return status.error();
   KeyShapeFile file;
   if (root->find("rate") != nullptr) {
-    const auto rate = in.number(*root, kWhole, "rate", 1e-3, 1e6);
+    const auto rate = in.number(*root, kWhole, "rate", kMinRate, kMaxRate);
     if (!rate) return rate.error();
     file.rate = *rate;
   }

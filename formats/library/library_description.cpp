@@ -8,6 +8,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/members.h"
+#include "scene/frame_moment.h"
 
 namespace krok::library {
 
@@ -96,6 +97,17 @@ class Reader {
                                                what, readable(*number)));
   }
 
+  Status take_rate(const Value& root) {
+    if (Status status = take_positive(root, "the file", "rate", library_.rate); !status) {
+      return status;
+    }
+    if (!library_.rate) return {};
+    if (const Status status = check_frame_rate(*library_.rate, "rate"); !status) {
+      return members_.wrong(*root.find("rate"), status.error().message);
+    }
+    return {};
+  }
+
   Status take_moment(const Value& object, std::string_view what, std::string_view key,
                      std::optional<ClipTime>& time) const {
     const Value* value = object.find(key);
@@ -132,7 +144,7 @@ class Reader {
     if (status) status = take(root, "the file", "skeleton", library_.skeleton);
     if (status) status = take(root, "the file", "map", library_.map);
     if (status) status = take_flag(root, "the file", "mirror", library_.mirror);
-    if (status) status = take_positive(root, "the file", "rate", library_.rate);
+    if (status) status = take_rate(root);
     if (status) status = read_swing(root);
     if (status) status = read_kind(root);
     if (status && library_.kind == StepKind::walks)

@@ -8,6 +8,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/members.h"
+#include "scene/frame_moment.h"
 
 namespace krok::sequences {
 
@@ -38,9 +39,12 @@ class Reader {
     }
     SequenceFile file;
     if (root->find("rate") != nullptr) {
-      const auto rate = positive(*root, "the file", "rate");
+      const auto rate = members_.get(*root, "the file", "rate", Kind::number);
       if (!rate) return rate.error();
-      file.rate = *rate;
+      if (const Status status = check_frame_rate((*rate)->number, "rate"); !status) {
+        return members_.wrong(**rate, status.error().message);
+      }
+      file.rate = (*rate)->number;
     }
     const auto list = members_.get(*root, "the file", "sequences", Kind::array);
     if (!list) return list.error();
@@ -82,9 +86,7 @@ class Reader {
   // Sequences become files, so the name must be a valid file name.
   Status check_name(const Value& name, const SequenceFile& file) const {
     const std::string& text = name.text;
-    const bool plain = std::ranges::none_of(text, [](char c) {
-      return c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
-    });
+    const bool plain = text.find_first_of("/\\") == std::string::npos && printable(text) == text;
     if (text.empty() || text == "." || text == ".." || !plain || text.size() > kLongestName) {
       return members_.wrong(
           name, fmt::format("'{}' is not a valid sequence name", shown(text)),

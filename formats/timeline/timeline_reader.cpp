@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/timeline/fields_internal.h"
 #include "formats/timeline/items_internal.h"
 #include "formats/timeline/timeline_file.h"
+#include "scene/frame_moment.h"
 
 namespace krok::timeline_file {
 
@@ -13,7 +15,6 @@ using json::Value;
 using Kind = Value::Kind;
 
 constexpr std::string_view kSchema = "krok.timeline/1";
-constexpr double kMinRate = 1e-3, kMaxRate = 1e6;
 
 class Reader {
  public:
@@ -46,7 +47,8 @@ class Reader {
     take("rate", document_.timeline.rate, [&](const Field& field) -> Result<double> {
       auto rate = fields_.number(field);
       if (rate && (*rate < kMinRate || *rate > kMaxRate)) {
-        return fields_.wrong(field, "frames per second from 0.001 to 1000000");
+        return fields_.wrong(field, fmt::format("frames per second from {} to {}",
+                                                readable(kMinRate), readable(kMaxRate)));
       }
       return rate;
     });

@@ -5,6 +5,7 @@
 #include "core/numbers.h"
 #include "formats/json/members.h"
 #include "formats/weights/weights_internal.h"
+#include "scene/frame_moment.h"
 
 // Reader for weights as keys (JSON).
 
@@ -38,7 +39,7 @@ class Reader {
     }
     if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
     if (root->find("rate") != nullptr) {
-      const auto rate = in_.number(*root, kWhole, "rate", 1e-3, 1e6);
+      const auto rate = in_.number(*root, kWhole, "rate", kMinRate, kMaxRate);
       if (!rate) return rate.error();
       file_.rate = *rate;
     }

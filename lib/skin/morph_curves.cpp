@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "math/hermite.h"
+#include "scene/frame_moment.h"
 
 namespace krok {
 
@@ -14,12 +15,6 @@ namespace {
 
 constexpr double kMaxFrames = 10e6;
 constexpr double kMaxWeights = 100e6;
-constexpr double kMinRate = 1e-3, kMaxRate = 1e6;
-
-Status check_rate(double rate) {
-  if (rate >= kMinRate && rate <= kMaxRate) return {};
-  return Error("morph-rate", fmt::format("rate {} is not between 0.001 and 1000000", rate));
-}
 
 bool all_finite(const std::vector<double>& numbers) {
   return std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); });
@@ -91,7 +86,7 @@ double weight_at(const MorphCurve& curve, double time) {
 
 Result<int> frames_of(const MorphCurves& curves, double rate) {
   if (Status status = check(curves); !status) return status.error();
-  if (Status status = check_rate(rate); !status) return status.error();
+  if (Status status = check_frame_rate(rate, "morph-rate"); !status) return status.error();
   // Tolerates rounding that puts the last key just after a frame.
   const double frames = std::ceil(curves.duration() * rate - 1e-6) + 1;
   if (frames <= kMaxFrames) return static_cast<int>(frames);
@@ -102,7 +97,7 @@ Result<int> frames_of(const MorphCurves& curves, double rate) {
 Result<MorphWeights> sample(const MorphCurves& curves, double rate, int frames) {
   assert(frames >= 0);
   if (Status status = check(curves); !status) return status.error();
-  if (Status status = check_rate(rate); !status) return status.error();
+  if (Status status = check_frame_rate(rate, "morph-rate"); !status) return status.error();
   const std::size_t targets = curves.names.size();
   if (static_cast<double>(frames) * static_cast<double>(targets) > kMaxWeights) {
     return Error("morph-too-long",

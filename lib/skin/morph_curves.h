@@ -45,7 +45,8 @@ double weight_at(const MorphCurve& curve, double time);
 Result<int> frames_of(const MorphCurves& curves, double rate);
 
 // The weights at i / rate for i = 0 .. frames - 1. Codes: those of check(), morph-rate (not within
-// 0.001 to 1,000,000), morph-too-long (more than 100 million weights in all).
+// kMinRate to kMaxRate of scene/frame_moment.h), morph-too-long (more than 100 million weights in
+// all).
 Result<MorphWeights> sample(const MorphCurves& curves, double rate, int frames);
 
 }  // namespace krok

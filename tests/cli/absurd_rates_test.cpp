@@ -67,5 +67,36 @@ TEST_F(AbsurdRates, OfCapturesAreRefused) {
   }
 }
 
+// Nor are they taken from a JSON file beside the motion.
+TEST_F(AbsurdRates, OfJsonFilesAreRefused) {
+  write_walk(2);
+  put("sequences.json",
+      R"({"schema": "krok.sequences/1", "rate": 1e300,
+          "sequences": [{"name": "a", "first": 0, "last": 10}]})");
+  put("goals.json",
+      R"({"schema": "krok.goals/1", "rate": 200000,
+          "goals": [{"joint": "RightHand", "keys": [{"time": "5f", "target": [0, 1, 0]}]}]})");
+  put("mix.json",
+      R"({"schema": "krok.timeline/1", "rate": 200000, "sources": {"a": "walk.anim"},
+          "base": [{"source": "a"}]})");
+  put("camera.json",
+      R"({"schema": "krok.camera-keys/1", "rate": 200000,
+          "keys": [{"time": 0, "position": [0, 1, 4], "target": [0, 1, 0]}]})");
+  put("library.json",
+      R"({"schema": "krok.library/1", "rate": 1e-17, "steps": "auto",
+          "parameters": [{"measures": "step.length"}], "examples": [{"clip": "walk.anim"}]})");
+  const std::vector<std::vector<std::string>> runs = {
+      {"krok-edit", "walk.anim", "--sequences", "sequences.json", "-o", "{sequence}.anim"},
+      {"krok-ik", "walk.anim", "--goals", "goals.json", "-o", "out.anim"},
+      {"krok-mix", "mix.json", "-o", "out.anim"},
+      {"krok-cam", "camera.json", "-o", "out.cam"},
+      {"krok-fit", "library.json", "-o", "out.steps"}};
+  for (const auto& words : runs) {
+    const ToolRun run = run_here(words[0], {words.begin() + 1, words.end()});
+    EXPECT_EQ(run.exit_code, 2) << words[0] << run.err;
+    EXPECT_NE(run.err.find("100000"), std::string::npos) << words[0] << run.err;
+  }
+}
+
 }  // namespace
 }  // namespace krok::test
