@@ -23,10 +23,11 @@ enum class Keep : unsigned char {
 // Input shared by all chunks of a motion.
 struct ReductionTask {
   std::span<const int> parents;
-  std::span<const double> times;        // of all frames
-  std::span<const Transform> local;     // [frames x joints]
-  std::vector<Keep> keep;               // [tracks]
-  std::vector<std::vector<int>> below;  // [joints]: the joint and its descendants, increasing
+  std::span<const double> times;     // of all frames
+  std::span<const Transform> local;  // [frames x joints]
+  std::vector<Keep> keep;            // [tracks]
+  // [joints]: the joint and its descendants, increasing; empty for those that keep their keys.
+  std::vector<std::vector<int>> below;
   ReduceOptions options;
 
   double shell_of(std::size_t joint) const {

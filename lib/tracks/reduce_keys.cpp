@@ -34,11 +34,37 @@ Status check(const ReduceOptions& options) {
   return {};
 }
 
-std::vector<std::vector<int>> joints_below(std::span<const int> parents) {
-  std::vector<std::vector<int>> below(parents.size());
-  for (int j = 0; j < static_cast<int>(parents.size()); ++j) {
-    for (int a = j; a >= 0; a = parents[static_cast<std::size_t>(a)]) {
-      below[static_cast<std::size_t>(a)].push_back(j);
+// The joints of tracks that keys are removed from, with their descendants. Each removal places all
+// of these, so skeletons in which they are too many are refused.
+Result<std::vector<std::vector<int>>> joints_below(const ReductionTask& task) {
+  constexpr std::size_t kMaxPairs = 1'000'000;
+  const std::size_t joints = task.parents.size();
+  const auto at = [](int joint) { return static_cast<std::size_t>(joint); };
+  std::vector<int> above(joints, -1);  // the next such joint from here on upwards
+  std::vector<std::size_t> depth(joints, 0);
+  std::size_t pairs = 0;
+  for (std::size_t j = 0; j < joints; ++j) {
+    const int parent = task.parents[j];
+    const bool moves = task.keep[kTracksPerJoint * j] == tracks_detail::Keep::needed ||
+                       task.keep[kTracksPerJoint * j + 1] == tracks_detail::Keep::needed;
+    depth[j] = (parent < 0 ? 0 : depth[at(parent)]) + (moves ? 1 : 0);
+    above[j] = moves ? static_cast<int>(j) : parent < 0 ? -1 : above[at(parent)];
+    pairs += depth[j];
+  }
+  if (pairs > kMaxPairs) {
+    return Error(
+        "reduce-joints",
+        fmt::format("{} joints are too deep below each other for their keys to be reduced: "
+                    "{} pairs of one below another that moves, at most {}",
+                    joints, pairs, kMaxPairs),
+        "export without reducing keys");
+  }
+  std::vector<std::vector<int>> below(joints);
+  for (std::size_t j = 0; j < joints; ++j) {
+    for (int a = above[j]; a >= 0;) {
+      below[at(a)].push_back(static_cast<int>(j));
+      const int parent = task.parents[at(a)];
+      a = parent < 0 ? -1 : above[at(parent)];
     }
   }
   return below;
@@ -156,8 +182,11 @@ Result<Reduction> choose_keys(std::span<const int> parents, std::span<const doub
     nothing.joints.resize(joints);
     return nothing;
   }
-  ReductionTask task{parents, times, joint_to_parent, {}, joints_below(parents), options};
+  ReductionTask task{parents, times, joint_to_parent, {}, {}, options};
   task.keep = moving_tracks(task, frames);
+  auto below = joints_below(task);
+  if (!below) return below.error();
+  task.below = *std::move(below);
   Reduction reduction = reduce_all(task, jobs);
   // Tracks that get all their keys back leave more tolerance to the others, and remove errors that
   // others compensated for. So everything is reduced again, and the result of the last round is

@@ -286,5 +286,33 @@ TEST(ReduceKeys, OfRealCapturesLeavesAFewKeysWithinTheTolerance) {
   }
 }
 
+// Joints below each other, half of the frames turned at `moving` of them.
+Reduction reduced_chain(int joints, int moving, std::string& code) {
+  std::vector<int> parents(static_cast<std::size_t>(joints));
+  for (int j = 0; j < joints; ++j) parents[static_cast<std::size_t>(j)] = j - 1;
+  const std::vector<double> times = {0, 0.1, 0.2};
+  Transform still;
+  still.position = Vec3(0, 0.01, 0);
+  std::vector<Transform> local(3 * parents.size(), still);
+  for (int j = 0; j < moving; ++j) {
+    local[parents.size() + static_cast<std::size_t>(j)].orientation =
+        Quat(Eigen::AngleAxisd(0.5, Vec3::UnitX()));
+  }
+  auto result = choose_keys(parents, times, local, {.tolerance = 0.001});
+  code = result ? std::string() : result.error().code;
+  return result ? *std::move(result) : Reduction();
+}
+
+// If this failed, a chain of tens of thousands of joints would take minutes and gigabytes.
+TEST(ReduceKeys, LongChainsAreQuickOrRefused) {
+  std::string code;
+  EXPECT_EQ(reduced_chain(60'000, 0, code).keys_after, 2u * 60'000);
+  EXPECT_EQ(code, "");
+  EXPECT_EQ(reduced_chain(60'000, 2, code).keys_after, 2u * 60'000 + 2 * 2);
+  EXPECT_EQ(code, "");
+  (void)reduced_chain(2'000, 2'000, code);
+  EXPECT_EQ(code, "reduce-joints");
+}
+
 }  // namespace
 }  // namespace krok
