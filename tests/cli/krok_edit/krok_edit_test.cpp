@@ -86,7 +86,8 @@ TEST_F(KrokEdit, RangesThatCannotBeAreErrors) {
   refused({"--from", "1.001s", "--to", "1.002s"}, "edit-range");
   refused({"--from", "-1s"}, "usage");
   refused({"--from", "1deg"}, "quantity-unit");
-  refused({"--from", "soon"}, "quantity-number");
+  refused({"--from", "soon"}, "edit-event");
+  refused({"--from", "1.5x"}, "quantity-unit");
 }
 
 TEST_F(KrokEdit, NamedSequencesWithSpeedAndLoop) {
