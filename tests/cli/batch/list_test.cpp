@@ -96,6 +96,14 @@ TEST_F(BatchList, MissingInputsOfAManifestAreListedFirst) {
   EXPECT_THAT(run.err, HasSubstr("list.tsv:2:1: error: no such file: none.bvh"));
   EXPECT_THAT(run.err, HasSubstr("list.tsv:3:1: error: no such file: also/none.bvh"));
   EXPECT_EQ(listing(), (Names{"a.bvh", "list.tsv"}));
+  // Beside other errors of the list, too.
+  put("faulty.tsv", "none.bvh\ty.anim\t--unit furlong\na.bvh\tx.anim\t--unit ell\n");
+  const ToolRun faulty = import({"--manifest", "faulty.tsv"});
+  EXPECT_EQ(faulty.exit_code, 2);
+  EXPECT_THAT(faulty.err, HasSubstr("faulty.tsv:1:1: error: no such file: none.bvh"));
+  EXPECT_THAT(faulty.err, HasSubstr("'furlong' is not a unit of length"));
+  EXPECT_THAT(faulty.err, HasSubstr("'ell' is not a unit of length"));
+  std::filesystem::remove(path("faulty.tsv"));
   EXPECT_EQ(import({"--manifest", "list.tsv", "--keep-going"}).exit_code, 3);
   EXPECT_EQ(files_below("."), (Names{"a.bvh", "list.tsv", "x.anim"}));
 }
