@@ -10,9 +10,10 @@
 #include <cstdlib>
 #include <cstring>
 
-// For LD_PRELOAD: lets one call of a program's fail. KROK_FAIL_CALL names it (open, write, rename,
-// sync or mmap), KROK_FAIL_AT says which of them in order, from 1. When it fails, the empty file
-// KROK_FAIL_MARK is created. What ends in /dev/null and messages on standard error do not count.
+// For LD_PRELOAD: lets one call of a program's fail. KROK_FAIL_CALL names it (open, read, write,
+// rename, sync, mmap or close), KROK_FAIL_AT says which of them in order, from 1. When it fails,
+// the empty file KROK_FAIL_MARK is created. What ends in /dev/null and messages on standard error
+// do not count.
 
 namespace {
 
@@ -30,7 +31,7 @@ bool fails(const char* kind) {
   if (++count != at) return false;
   const int mark = next<int(const char*, int, ...)>("open")(std::getenv("KROK_FAIL_MARK"),
                                                             O_WRONLY | O_CREAT, 0666);
-  if (mark >= 0) close(mark);
+  if (mark >= 0) next<int(int)>("close")(mark);
   return true;
 }
 
@@ -69,6 +70,18 @@ int open64(const char* path, int flags, ...) {
   va_end(list);
   if (!is_device(path) && fails("open")) return refuse(EIO);
   return next<int(const char*, int, ...)>("open64")(path, flags, mode);
+}
+
+ssize_t read(int descriptor, void* bytes, size_t count) {
+  if (fails("read")) return refuse(EIO);
+  return next<ssize_t(int, void*, size_t)>("read")(descriptor, bytes, count);
+}
+
+// Closes all the same, as Linux does.
+int close(int descriptor) {
+  const bool failing = descriptor > STDERR_FILENO && fails("close");
+  const int result = next<int(int)>("close")(descriptor);
+  return failing ? refuse(EIO) : result;
 }
 
 ssize_t write(int descriptor, const void* bytes, size_t count) {
