@@ -6,7 +6,8 @@ Targets share N minutes of so many processes. Starts from what `krok_targets --s
 examples in the formats' SPEC pages, small files of samples/ and, if it is there, the corpus beside
 the project; from the second run on also from what the last one found. Prints per target the inputs
 tried, the edges of the code reached and the findings, and for each finding the command that shows
-it. Exit code 1 if there are findings. A finding that was mended belongs into tests/guided/kept/TARGET.
+it. Exit code 1 if there are findings. A finding that was mended belongs into
+tests/guided/kept/TARGET. coverage.py beside this file prints which lines inputs reach.
 """
 
 import argparse
@@ -22,10 +23,10 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # A page's folder, where its name is not the target's.
-FOLDERS = {"ground": "height_field"}
+FOLDERS = {"ground": "height_field", "import_scene": "gltf"}
 ENDINGS = {"bvh": [".bvh"], "acclaim_skeleton": [".asf"], "acclaim_motion": [".amc"],
            "csv": [".csv", ".tsv"], "gltf": [".glb", ".gltf"], "obj": [".obj"], "path": [".svg"],
-           "image": [".png", ".jpg"], "exr": [".exr"], "zip": [".zip"]}
+           "import_scene": [".glb", ".gltf"], "image": [".png", ".jpg"], "exr": [".exr"], "zip": [".zip"]}
 EXAMPLE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 MOST_SEED = 20_000
 SECONDS_TO_HANG = 10
@@ -79,14 +80,20 @@ def collect(target, folder, program):
         (folder / "empty_page").write_text('{"schema": "krok.%s/1"}' % target)
 
 
-def write_dictionary(seeds, path):
-    """Words and quoted keys of the seeds, and numbers that trouble readers."""
+def write_dictionary(target, seeds, path):
+    """Words and quoted keys of the seeds and of the format's page, and numbers that trouble readers."""
     words = set()
+    page = ROOT / "formats" / FOLDERS.get(target, target) / "SPEC.md"
+    if page.exists():
+        for word in re.findall(r"`([^`\n]{1,40})`", page.read_text(encoding="utf-8")):
+            words.add(word.encode())
+            if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_-]*", word):
+                words.add(f'"{word}"'.encode())
     for seed in seeds.iterdir():
         data = seed.read_bytes()[:MOST_SEED]
         words.update(re.findall(rb'"[A-Za-z_][A-Za-z0-9_./ -]{1,30}"', data))
         words.update(re.findall(rb"[A-Za-z_:][A-Za-z_]{2,20}", data))
-    chosen = sorted(words, key=lambda w: (not w.startswith(b'"'), w))[:250]
+    chosen = sorted(words, key=lambda w: (not w.startswith(b'"'), w))[:400]
     lines = []
     for number, word in enumerate(chosen + [n.encode() for n in NUMBERS]):
         escaped = "".join(chr(b) if 32 <= b < 127 and b not in b'"\\' else f"\\x{b:02x}" for b in word)
@@ -110,10 +117,10 @@ def fuzz(program, target, seconds, out, seed_source):
     if earlier.exists():
         for number, path in enumerate(sorted(earlier.iterdir())):
             shutil.copy(path, seeds / f"earlier_{number}")
-    write_dictionary(seeds, work / "dictionary")
+    write_dictionary(target, seeds, work / "dictionary")
     temporary = tempfile.mkdtemp(prefix="krok-fuzz-", dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
     environment = dict(os.environ, AFL_NO_UI="1", AFL_SKIP_CPUFREQ="1", AFL_NO_AFFINITY="1",
-                       AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES="1", AFL_FAST_CAL="1", AFL_CMPLOG_ONLY_NEW="1",
+                       AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES="1", AFL_FAST_CAL="1",
                        AFL_IGNORE_PROBLEMS="1", AFL_IGNORE_SEED_PROBLEMS="1",
                        AFL_HANG_TMOUT=str(1000 * SECONDS_TO_HANG), TMPDIR=temporary,
                        ASAN_OPTIONS="abort_on_error=1:symbolize=0:detect_leaks=0:"
@@ -123,7 +130,7 @@ def fuzz(program, target, seconds, out, seed_source):
     log = work / "log"
     with open(log, "wb") as stream:
         subprocess.run(["afl-fuzz", "-i", str(seeds), "-o", str(work / "afl"), "-V", str(seconds),
-                        "-m", "none", "-t", str(1000 * SECONDS_TO_HANG), "-x", str(work / "dictionary"),
+                        "-m", "none", "-c", "0", "-t", str(1000 * SECONDS_TO_HANG), "-x", str(work / "dictionary"),
                         "--", str(program), target],
                        env=environment, stdout=stream, stderr=subprocess.STDOUT, check=False)
     shutil.rmtree(temporary, ignore_errors=True)

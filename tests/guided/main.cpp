@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "guided/memory_watch.h"
 #include "guided/seeds.h"
 #include "guided/targets.h"
 
@@ -23,7 +25,15 @@ void run_exact(const Target& target, const unsigned char* bytes, std::size_t siz
   // An exact-size copy, so that the sanitizer detects reads past the end.
   const std::unique_ptr<std::byte[]> copy(new std::byte[size]);
   for (std::size_t i = 0; i < size; ++i) copy[i] = static_cast<std::byte>(bytes[i]);
+  krok::guided::begin_memory_watch();
   target.run(std::span<const std::byte>(copy.get(), size));
+  if (target.writes) return;  // measures by itself
+  // The limit that the process of another library has by default.
+  const auto most = static_cast<std::int64_t>((std::size_t{256} << 20) + 64 * size);
+  if (krok::guided::peak_memory() > most) {
+    krok::guided::fail(std::to_string(krok::guided::peak_memory() >> 20) + " MiB for " +
+                       std::to_string(size) + " bytes");
+  }
 }
 
 void run_file(const Target& target, const std::filesystem::path& path) {

@@ -1,39 +1,39 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "core/file.h"
 #include "formats/anim/anim.h"
 #include "formats/bvh/bvh_reader.h"
-#include "formats/csv/table.h"
-#include "formats/gltf/gltf_reader.h"
 #include "guided/targets.h"
+#include "guided/tool_runs.h"
 #include "support/human_skeleton.h"
-#include "tools/cli/tool.h"
+#include "tools/krok-blend/options.h"
+#include "tools/krok-body/options.h"
+#include "tools/krok-cam/options.h"
+#include "tools/krok-diff/options.h"
 #include "tools/krok-edit/options.h"
 #include "tools/krok-export/options.h"
+#include "tools/krok-ik/options.h"
 #include "tools/krok-info/options.h"
 #include "tools/krok-keys/options.h"
 #include "tools/krok-plot/options.h"
+#include "tools/krok-retarget/options.h"
+#include "tools/krok-skin/options.h"
+#include "tools/krok-view/options.h"
 
 namespace krok::guided {
 
 namespace {
 
-namespace fs = std::filesystem;
-
-// Takes choices from the input; zeros once it is used up.
+// Takes choices from the input, from its front or from its end backwards; zeros once it is used up.
 class Choices {
  public:
-  explicit Choices(std::span<const std::byte> input) : input_(input) {}
+  enum class From : unsigned char { front, back };
+  Choices(std::span<const std::byte> input, From from) : input_(input), from_(from) {}
 
   std::size_t below(std::size_t count) { return byte() % count; }
   bool one_in(std::size_t count) { return below(count) == 0; }
@@ -54,10 +54,13 @@ class Choices {
  private:
   unsigned byte() {
     if (at_ == input_.size()) return 0;
-    return static_cast<unsigned>(input_[at_++]);
+    const std::size_t place = from_ == From::front ? at_ : input_.size() - 1 - at_;
+    ++at_;
+    return static_cast<unsigned>(input_[place]);
   }
 
   std::span<const std::byte> input_;
+  From from_;
   std::size_t at_ = 0;
 };
 
@@ -67,7 +70,7 @@ Skeleton chosen_skeleton(Choices& choices) {
   const std::size_t joints = 1 + choices.below(6);
   for (std::size_t j = 0; j < joints; ++j) {
     Transform transform;
-    transform.position = Vec3(choices.number(), choices.number(), choices.number());
+    transform.position = Vec3{choices.number(), choices.number(), choices.number()};
     const int parent = j == 0 ? -1 : static_cast<int>(choices.below(j));
     skeleton.add(fmt::format("{}{}", choices.one_in(2) ? "LeftFoot" : "joint", j), parent,
                  transform, j > 0 && choices.one_in(4));
@@ -90,13 +93,18 @@ Clip chosen_clip(Choices& choices) {
       if (choices.one_in(2)) {
         joint.position[static_cast<int>(choices.below(3))] = choices.number();
       } else {
-        const Quat turned(choices.number(), choices.number(), choices.number(), choices.number());
+        const Quat turned{choices.number(), choices.number(), choices.number(), choices.number()};
         if (turned.norm() > 1e-30 && turned.norm() < 1e30) joint.orientation = turned.normalized();
       }
     }
     clip.set_pose(f, pose);
   }
   return clip;
+}
+
+std::string place(Choices& choices) {
+  const double numbers[] = {choices.number(), choices.number(), choices.number()};
+  return fmt::format("{}m,{}m,{}m", numbers[0], numbers[1], numbers[2]);
 }
 
 std::string value(Choices& choices, const char* unit = "") {
@@ -177,8 +185,7 @@ std::vector<std::string> edit_options(Choices& choices, const std::string& input
         options.push_back("--turn=" + value(choices, "deg"));
         break;
       case 22:
-        options.push_back(fmt::format("--move={}m,{}m,{}m", choices.number(), choices.number(),
-                                      choices.number()));
+        options.push_back("--move=" + place(choices));
         break;
       default:
         options.push_back(choices.one_in(2) ? "--ground" : "--plant");
@@ -188,155 +195,184 @@ std::vector<std::string> edit_options(Choices& choices, const std::string& input
   return options;
 }
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+// A number for an option, or nothing.
+void maybe(Choices& choices, std::vector<std::string>& options, const char* name,
+           const char* unit = "") {
+  if (choices.one_in(3)) options.push_back(fmt::format("{}={}{}", name, choices.number(), unit));
 }
 
-std::span<const std::byte> bytes_of(const std::string& text) {
-  return std::as_bytes(std::span(text));
-}
-
-// The program's folder for files, removed with it.
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / fmt::format("krok-targets-{}", getpid())) {
-    fs::create_directories(path_);
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-  // An earlier input's file must not be taken for a result.
-  void clear() const {
-    for (const auto& entry : fs::directory_iterator(path_)) fs::remove_all(entry.path());
-  }
-
- private:
-  fs::path path_;
+// What a motion came from, and the motion itself after some edits.
+struct Motions {
+  std::string given, edited;
+  std::vector<std::string> joints;
 };
 
-// Returns whether the tool has done its work.
-bool run_tool(const cli::MakeToolSpec& make_spec, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), "tool");
-  arguments.insert(arguments.end(), {"--jobs=1", "--quiet", "--progress=none"});
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  const int code = cli::run_tool(make_spec, static_cast<int>(argv.size()), argv.data());
-  if (code != cli::kExitDone && code != cli::kExitNo && code != cli::kExitTrouble) {
-    fail(fmt::format("exit code {}", code));
-  }
-  return code != cli::kExitTrouble;
+using Options = std::vector<std::string>;
+using Use = void (*)(Choices& choices, const Motions& motions, Options options);
+
+void export_bvh(Choices& choices, const Motions& motions, Options options) {
+  const std::string out = scratch("out.bvh");
+  options.insert(options.end(),
+                 {motions.edited, "-o", out, fmt::format("--digits={}", 1 + choices.below(15))});
+  if (!run_tool(cli::exporting::make_spec, options)) return;
+  const auto back = bvh::read(content_of(out), "out.bvh");
+  if (!back) fail("BVH that does not read back: " + back.error().message);
 }
 
-void judge_report(const std::string& path) {
-  if (!nlohmann::json::accept(text_of(path))) fail("a report that is not JSON");
+void export_gltf(Choices& choices, const Motions& motions, Options options) {
+  const std::string out = scratch("out.glb");
+  options.insert(options.end(), {motions.edited, "-o", out});
+  if (choices.one_in(2)) options.push_back("--reduce=" + value(choices, "mm"));
+  if (choices.one_in(2)) options.push_back("--no-bones");
+  if (run_tool(cli::exporting::make_spec, options)) judge_gltf(out);
 }
 
-void judge_table(const std::string& text) {
-  const auto table = csv::Table::read(text, "out.csv");
-  if (!table) return;  // without frames, a header alone
-  for (std::size_t c = 0; c < table->columns().size(); ++c) {
-    if (table->numeric()[c] == 0) continue;
-    const std::size_t columns[] = {c};
-    const auto numbers = table->numbers(columns);
-    if (!numbers) fail("a table that does not read back: " + numbers.error().message);
-    if (!std::ranges::all_of(numbers->front(), [](double x) { return std::isfinite(x); })) {
-      fail("a table with numbers that are not finite");
-    }
-  }
+void export_table(Choices& /*choices*/, const Motions& motions, Options options) {
+  const std::string out = scratch("out.csv");
+  options.insert(options.end(), {motions.edited, "-o", out});
+  if (run_tool(cli::exporting::make_spec, options)) judge_table(out);
 }
 
-void export_and_judge(Choices& choices, const Folder& folder, const std::string& motion) {
-  const std::string bvh = folder.file("out.bvh"), glb = folder.file("out.glb");
-  const std::string csv = folder.file("out.csv");
-  switch (choices.below(4)) {
-    case 0: {
-      if (!run_tool(cli::exporting::make_spec,
-                    {motion, "-o", bvh, fmt::format("--digits={}", 1 + choices.below(15))})) {
-        return;
-      }
-      const auto back = bvh::read(text_of(bvh), "out.bvh");
-      if (!back) fail("BVH that does not read back: " + back.error().message);
-      break;
-    }
-    case 1:
-    case 2: {
-      std::vector<std::string> arguments = {motion, "-o", glb};
-      if (choices.one_in(2)) arguments.push_back("--reduce=" + value(choices, "mm"));
-      if (choices.one_in(2)) arguments.push_back("--no-bones");
-      if (!run_tool(cli::exporting::make_spec, arguments)) return;
-      const std::string written = text_of(glb);
-      const auto back = gltf::read(bytes_of(written));
-      if (!back) fail("glTF that does not read back: " + back.error().message);
-      break;
-    }
-    default:
-      if (run_tool(cli::exporting::make_spec, {motion, "-o", csv})) judge_table(text_of(csv));
-      break;
-  }
+void plot(Choices& choices, const Motions& motions, Options options) {
+  const std::string svg = scratch("out.svg");
+  options.insert(options.end(), {motions.edited, "-o", svg});
+  if (choices.one_in(2)) options.push_back("--joint=*");
+  if (choices.one_in(3)) options.push_back("--log-y");
+  maybe(choices, options, "--from", "s");
+  maybe(choices, options, "--to", "s");
+  if (run_tool(cli::plot::make_spec, options)) judge_chart(svg);
 }
 
-void plot_and_judge(Choices& choices, const Folder& folder, const std::string& motion) {
-  const std::string svg = folder.file("out.svg");
-  std::vector<std::string> arguments = {motion, "-o", svg};
-  if (choices.one_in(2)) arguments.push_back("--joint=*");
-  if (choices.one_in(3)) arguments.push_back("--from=" + value(choices, "s"));
-  if (choices.one_in(3)) arguments.push_back("--to=" + value(choices, "s"));
-  if (choices.one_in(3)) arguments.push_back("--log-y");
-  if (!run_tool(cli::plot::make_spec, arguments)) return;
-  const std::string drawn = text_of(svg);
-  for (const char* wrong :
-       {"\"nan", "\"inf", "\"-inf", " nan", " inf", ",nan", ",inf", ">inf", ">nan"}) {
-    if (drawn.find(wrong) != std::string::npos) fail("a chart with numbers that are not finite");
-  }
+void keys(Choices& /*choices*/, const Motions& motions, Options options) {
+  options.insert(options.end(), {motions.edited, "-o", scratch("out.keys.json")});
+  run_tool(cli::keys::make_spec, options);
 }
+
+void info(Choices& /*choices*/, const Motions& motions, Options options) {
+  options.push_back(motions.edited);
+  run_tool(cli::info::make_spec, options);
+}
+
+void blend(Choices& choices, const Motions& motions, Options options) {
+  constexpr const char* kWarps[] = {"pchip", "linear", "dtw"};
+  constexpr const char* kSpaces[] = {"auto", "root", "stance", "none"};
+  const double weight = choices.number();
+  const std::string out = scratch("out.anim"), warp = scratch("warp.csv");
+  options.insert(options.end(),
+                 {fmt::format("{}:{}", motions.given, weight),
+                  fmt::format("{}:{}", motions.edited, choices.one_in(2) ? 1 - weight : weight),
+                  "-o", out, "--save-warp=" + warp, "--modifier",
+                  std::string("--warp=") + kWarps[choices.below(std::size(kWarps))],
+                  std::string("--align=") + kSpaces[choices.below(std::size(kSpaces))]});
+  if (choices.one_in(2)) options.push_back("--keys=none");
+  maybe(choices, options, "--rate");
+  if (!run_tool(cli::blend::make_spec, options)) return;
+  judge_motion(out);
+  judge_table(warp);
+}
+
+void retarget(Choices& choices, const Motions& motions, Options options) {
+  const std::string out = scratch("out.anim");
+  const bool forth = choices.one_in(2);
+  options.insert(options.end(), {forth ? motions.edited : motions.given, "--onto",
+                                 forth ? motions.given : motions.edited, "-o", out});
+  if (choices.one_in(2)) options.push_back("--feet=free");
+  maybe(choices, options, "--scale");
+  if (run_tool(cli::retarget::make_spec, options)) judge_motion(out);
+}
+
+void ik(Choices& choices, const Motions& motions, Options options) {
+  constexpr const char* kMethods[] = {"least-squares", "ccd", "two-bone"};
+  const std::string out = scratch("out.anim");
+  std::string reach = "--reach=" + motions.joints[choices.below(motions.joints.size())];
+  reach += "=" + place(choices);
+  reach += "@" + value(choices, "s");
+  options.insert(options.end(),
+                 {motions.edited, "-o", out, reach,
+                  std::string("--method=") + kMethods[choices.below(std::size(kMethods))]});
+  if (choices.one_in(3)) options.push_back("--root-moves");
+  if (choices.one_in(3)) options.push_back("--limits=auto");
+  if (choices.one_in(3)) options.push_back("--plant");
+  maybe(choices, options, "--fade", "s");
+  maybe(choices, options, "--tolerance", "mm");
+  maybe(choices, options, "--margin", "deg");
+  if (run_tool(cli::ik::make_spec, options)) judge_motion(out);
+}
+
+void body(Choices& choices, const Motions& motions, Options options) {
+  const std::string model = scratch("out.model"), baked = scratch("out.glb");
+  options.insert(options.end(), {motions.edited, "--detail=low", "-o", model});
+  if (choices.one_in(2)) options.push_back(fmt::format("--pose={}", choices.below(4)));
+  if (!run_tool(cli::body::make_spec, options)) return;
+  judge_model(model);
+  constexpr const char* kKinds[] = {"rig", "pose", "clip"};
+  constexpr const char* kMethods[] = {"linear", "dual-quaternion", "rigid"};
+  std::vector<std::string> skinning = {
+      model,
+      motions.edited,
+      "-o",
+      baked,
+      "--every=8",
+      std::string("--as=") + kKinds[choices.below(std::size(kKinds))],
+      std::string("--method=") + kMethods[choices.below(std::size(kMethods))]};
+  if (run_tool(cli::skin::make_spec, skinning)) judge_gltf(baked);
+}
+
+void view(Choices& choices, const Motions& motions, Options options) {
+  options.insert(options.end(), {motions.edited, motions.given, "-o", scratch("out.html"),
+                                 choices.one_in(4) ? "--body=low" : "--body=none"});
+  run_tool(cli::view::make_spec, options);
+}
+
+void film(Choices& choices, const Motions& motions, Options options) {
+  const std::string out = scratch("out.glb");
+  options.insert(options.end(), {motions.edited, "-o", out});
+  options.push_back(choices.one_in(3)   ? "--still"
+                    : choices.one_in(2) ? "--orbit=" + value(choices, "s")
+                                        : "--follow=" + motions.joints[0]);
+  maybe(choices, options, "--distance", "m");
+  maybe(choices, options, "--fov", "deg");
+  maybe(choices, options, "--smooth", "s");
+  maybe(choices, options, "--dead-zone", "m");
+  maybe(choices, options, "--margin");
+  if (run_tool(cli::cam::make_spec, options)) judge_gltf(out);
+}
+
+void compare(Choices& choices, const Motions& motions, Options options) {
+  options.insert(options.end(), {motions.given, motions.edited});
+  maybe(choices, options, "--tolerance", "mm");
+  run_tool(cli::diff::make_spec, options);
+}
+
+constexpr Use kUses[] = {export_bvh, export_gltf, export_table, plot, keys, info,   blend,
+                         retarget,   ik,          body,         view, film, compare};
 
 }  // namespace
 
 void run_operations(std::span<const std::byte> input) {
-  static const Folder folder;
-  folder.clear();
-  Choices choices(input);
-  const Clip clip = chosen_clip(choices);
+  clear_scratch();
+  // What is done comes first and the motion from the other end, so that each changes by itself.
+  Choices choices(input, Choices::From::front), shape(input, Choices::From::back);
+  const Use use = kUses[choices.below(std::size(kUses))];
+  const Clip clip = chosen_clip(shape);
   if (!check(clip)) return;
-  std::string motion = folder.file("in.anim");
-  auto file = OutputFile::create(motion, {.stored_later = true});
+  Motions motions{scratch("in.anim"), scratch("in.anim"), clip.skeleton.names};
+  auto file = OutputFile::create(motions.given, {.stored_later = true});
   if (!file || !anim::write(clip, {}, *file) || !file->commit()) return;
 
-  const std::string report = folder.file("report.json"), edited = folder.file("edited.anim");
-  std::vector<std::string> arguments = {motion, "-o", edited, "--json=" + report};
-  for (std::string& option : edit_options(choices, motion)) arguments.push_back(std::move(option));
+  const std::string report = scratch("report.json"), edited = scratch("edited.anim");
+  std::vector<std::string> arguments = {motions.given, "-o", edited, "--json=" + report};
+  for (std::string& option : edit_options(choices, motions.given)) {
+    arguments.push_back(std::move(option));
+  }
   if (run_tool(cli::edit::make_spec, arguments)) {
     judge_report(report);
-    const std::string written = text_of(edited);
-    const auto result = anim::read(bytes_of(written));
-    if (!result) fail("a motion that does not read back: " + result.error().message);
-    if (const Status status = check(*result); !status) {
-      fail("a motion that does not hold: " + status.error().message);
-    }
-    motion = edited;
+    judge_motion(edited);
+    motions.edited = edited;
   }
-  switch (choices.below(4)) {
-    case 0:
-      if (run_tool(cli::keys::make_spec,
-                   {motion, "-o", folder.file("out.keys.json"), "--json=" + report})) {
-        judge_report(report);
-      }
-      break;
-    case 1:
-      plot_and_judge(choices, folder, motion);
-      break;
-    case 2:
-      if (run_tool(cli::info::make_spec, {motion, "--json=" + report})) judge_report(report);
-      break;
-    default:
-      export_and_judge(choices, folder, motion);
-      break;
-  }
+  std::filesystem::remove(report);
+  use(choices, motions, {"--json=" + report});
+  if (std::filesystem::exists(report)) judge_report(report);
 }
 
 }  // namespace krok::guided

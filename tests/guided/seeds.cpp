@@ -5,12 +5,15 @@
 #include <functional>
 #include <string>
 
+#include "formats/assimp/scene_transfer.h"
 #include "formats/bvh/bvh_writer.h"
+#include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/obj/obj_writer.h"
 #include "formats/pc2/pc2.h"
 #include "golden/samples/samples.h"
+#include "guided/mended_input.h"
 #include "support/glb_builder.h"
 #include "support/height_images.h"
 #include "support/mesh_motions.h"
@@ -33,6 +36,12 @@ class Seeds {
   void put(const std::string& target, const std::string& name,
            const std::vector<std::byte>& bytes) const {
     put(target, name, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+  // For each target that takes scenes.
+  void scene(const std::string& name, const std::vector<std::byte>& bytes) const {
+    put("gltf", name, bytes);
+    put("import_scene", name, bytes);
+    if (const auto read = gltf::read(bytes)) put("assimp_result", name, assimp::pack(*read));
   }
   void written(const std::string& target, const std::string& name,
                const std::function<Status(OutputFile&)>& write) const {
@@ -78,8 +87,10 @@ constexpr const char* kCapture =
 void write_seeds(const std::string& folder) {
   const Seeds seeds(folder);
   for (const samples::Sample& sample : samples::all()) {
-    seeds.written(fs::path(sample.file_name).extension().string().substr(1), sample.file_name,
-                  sample.write);
+    const std::string target = fs::path(sample.file_name).extension().string().substr(1);
+    const std::vector<std::byte> bytes = samples::bytes_of(sample.write);
+    seeds.put(target, sample.file_name, bytes);
+    seeds.put(target, sample.file_name + "_sections", taken_apart(bytes));
   }
   for (const samples::Sample& sample : samples::texts()) {
     seeds.written(fs::path(sample.file_name).extension().string().substr(1), sample.file_name,
@@ -98,14 +109,20 @@ void write_seeds(const std::string& folder) {
     const std::string name = binary ? "rig.glb" : "rig.gltf";
     gltf::WriteOptions writing;
     writing.binary = binary;
-    seeds.written("gltf", name,
-                  [&](OutputFile& file) { return gltf::write_rig(model, clip, writing, file); });
+    seeds.scene(name, samples::bytes_of([&](OutputFile& file) {
+                  return gltf::write_rig(model, clip, writing, file);
+                }));
   }
-  seeds.put("gltf", "square.glb", test::square().glb());
-  seeds.put("gltf", "baked.glb", test::baked_rig().glb());
+  seeds.scene("square.glb", test::square().glb());
+  seeds.scene("baked.glb", test::baked_rig().glb());
   seeds.written("exr", "morphs.exr",
                 [](OutputFile& file) { return morph_exr::write(morphs(), file); });
   seeds.put("exr", "heights.exr", test::exr_image(3, 2, {{"Y", {0, 1, 2, 3, 4, 5}}}));
+  seeds.put("weights", "keys.csv", "frame,time,smile,\"blink, left\"\n0,0,0.5,1\n1,0.04,-0.5,2\n");
+  seeds.put(
+      "prints", "prints.csv",
+      "side,x [m],z [m],heading [deg],height [m],time [s]\nleft,0.1,0,0,0,0\nright,-0.1,0.7,5,,"
+      "0.5\n");
   seeds.put("image", "small.png", test::png());
   seeds.put("image", "small.jpg", test::jpeg());
   seeds.written("obj", "model.obj", [&](OutputFile& file) {
@@ -114,16 +131,18 @@ void write_seeds(const std::string& folder) {
   seeds.written("pc2", "wobble.pc2", [&](OutputFile& file) {
     return pc2::write(model, test::wobble(model, 3), {}, file);
   });
-  // Each operation by itself, then several: see run_operations for what the bytes choose.
-  for (int operation = 0; operation < 24; ++operation) {
-    for (int then = 0; then < 4; ++then) {
-      std::string bytes(40, '\0');
-      for (std::size_t i = 0; i < bytes.size(); ++i) {
-        bytes[i] = static_cast<char>(i * 37 + static_cast<std::size_t>(operation * 11 + then));
+  // Each use and each edit by itself, of several motions: see run_operations for what bytes choose.
+  for (int use = 0; use < 13; ++use) {
+    for (int edit = 0; edit < 24; edit += use < 2 ? 1 : 6) {
+      std::string bytes = {static_cast<char>(use), 1, static_cast<char>(edit)};
+      for (int i = 0; i < 90; ++i) {
+        bytes += static_cast<char>(i < 20 ? 140 - i : 60 + (i * (37 + edit) + use * 11) % 190);
       }
-      bytes += static_cast<char>(operation);
-      bytes += static_cast<char>(then);
-      seeds.put("operations", std::to_string(operation) + "_" + std::to_string(then), bytes);
+      // Backwards: a human or another skeleton, one of the usual rates, 40 frames.
+      for (const int last : {40, 1, edit % 9, 1, use % 3 == 2 ? 1 : 0}) {
+        bytes += static_cast<char>(last);
+      }
+      seeds.put("operations", std::to_string(use) + "_" + std::to_string(edit), bytes);
     }
   }
 }

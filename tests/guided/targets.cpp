@@ -10,6 +10,7 @@
 #include "formats/acclaim/acclaim_reader.h"
 #include "formats/alignment/alignment_format.h"
 #include "formats/anim/anim.h"
+#include "formats/assimp/scene_transfer.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/cam/cam.h"
 #include "formats/camera_keys/camera_keys.h"
@@ -38,6 +39,8 @@
 #include "formats/weights/weights.h"
 #include "formats/zip/zip_archive.h"
 #include "golden/samples/samples.h"
+#include "guided/mended_input.h"
+#include "nodes/evaluate.h"
 #include "support/human_skeleton.h"
 
 namespace krok::guided {
@@ -50,10 +53,10 @@ std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-// Terminals obey escape codes in a message: readers keep control characters out of it.
 void judge_error(const Error& error) {
   if (error.code.empty()) fail("an error without a code");
   if (error.message.empty()) fail("an error without a message");
+  if (error.message.size() > 5000) fail("an error that no one reads: " + error.message);
 }
 
 template <typename Value>
@@ -126,7 +129,6 @@ void read_amc(Bytes input) {
   if (!input.empty()) read_acclaim(kAsf, text_of(input));
 }
 
-// A checksum that does not match would end the reader before it sees what a fuzzer has changed.
 Result<Clip> read_motion(Bytes input) {
   Stretches stretches;
   auto clip = anim::read(input, &stretches);
@@ -135,14 +137,41 @@ Result<Clip> read_motion(Bytes input) {
   return clip;
 }
 
+// Calls `use` with a copy of exactly these bytes, so that the sanitizer detects reads past the end.
+template <typename Use>
+void with_exact(const std::vector<std::byte>& bytes, const Use& use) {
+  const std::unique_ptr<std::byte[]> exact(new std::byte[bytes.size()]);
+  std::ranges::copy(bytes, exact.get());
+  use(Bytes(exact.get(), bytes.size()));
+}
+
+// A file as it is and with its checksum made right, without which the reader would not see what a
+// fuzzer has changed. What is no file is a list of sections, of which the table is made: inserting
+// a byte into a file breaks all offsets behind it.
 template <auto read>
-void read_binary(Bytes input) {
-  judge_checked(read(input));
-  std::vector<std::byte> repaired(input.begin(), input.end());
-  samples::repair_header(repaired);
-  const std::unique_ptr<std::byte[]> exact(new std::byte[repaired.size()]);
-  std::ranges::copy(repaired, exact.get());
-  judge_checked(read(Bytes(exact.get(), repaired.size())));
+void read_binary(Bytes input, std::string_view magic) {
+  const auto use = [](Bytes bytes) { judge_checked(read(bytes)); };
+  if (text_of(input).starts_with("KROK")) {
+    use(input);
+    std::vector<std::byte> repaired(input.begin(), input.end());
+    samples::repair_header(repaired);
+    with_exact(repaired, use);
+  } else {
+    with_exact(assembled(input, magic), use);
+  }
+}
+
+void read_anim(Bytes input) {
+  read_binary<read_motion>(input, "KROKANIM");
+}
+void read_cam(Bytes input) {
+  read_binary<cam::read>(input, "KROKCAMR");
+}
+void read_model(Bytes input) {
+  read_binary<model::read>(input, "KROKMODL");
+}
+void read_steps(Bytes input) {
+  read_binary<steps::read>(input, "KROKSTEP");
 }
 
 void read_csv(Bytes input) {
@@ -162,6 +191,17 @@ void read_gltf(Bytes input) {
   judge(gltf::read(input, options));
 }
 
+// What comes back from the process that Assimp runs in, which a file may have taken over.
+void read_assimp_result(Bytes input) {
+  const auto scene = assimp::unpack(input);
+  if (!scene) return judge_error(scene.error());
+  const auto evaluator = nodes::Evaluator::create(*scene);
+  if (!evaluator) return judge_error(evaluator.error());
+  nodes::Evaluation state;
+  const int animations = std::min(static_cast<int>(scene->animations.size()), 4);
+  for (int a = -1; a < animations; ++a) evaluator->evaluate(a, 0.2, state);
+}
+
 void read_pc2(Bytes input) {
   const auto cache = pc2::PointCache::read(input);
   if (!cache) return judge_error(cache.error());
@@ -178,12 +218,15 @@ void read_exr(Bytes input) {
   judge(morph_exr::image_size(input));
   auto heights = height_field::read(input);
   if (!heights) return judge_error(heights.error());
-  judge(height_field::placed(std::move(*heights), {.size = {{10, 10}}, .range = {{0, 1}}}));
+  judge(height_field::placed(std::move(*heights),
+                             {.size = {{10, 10}}, .range = {{0, 1}}, .centre = {}}));
 }
 
 void read_image(Bytes input) {
-  judge(image::decode(input, std::size_t{1} << 22));
-  judge(image::decode_grey(input, std::size_t{1} << 22));
+  with_exact(with_png_checksums(input), [](Bytes mended) {
+    judge(image::decode(mended, std::size_t{1} << 22));
+    judge(image::decode_grey(mended, std::size_t{1} << 22));
+  });
 }
 
 void read_obj(Bytes input) {
@@ -250,9 +293,10 @@ constexpr Target kTargets[] = {
     {"acclaim_motion", read_amc},
     {"acclaim_skeleton", read_asf},
     {"alignment", read_alignment},
-    {"anim", read_binary<read_motion>},
+    {"anim", read_anim},
+    {"assimp_result", read_assimp_result},
     {"bvh", read_bvh},
-    {"cam", read_binary<cam::read>},
+    {"cam", read_cam},
     {"camera_keys", read_page<camera_keys::read>},
     {"character", read_page<character_file::read>},
     {"csv", read_csv},
@@ -261,21 +305,22 @@ constexpr Target kTargets[] = {
     {"goals", read_goals},
     {"ground", read_page<height_field::read_sidecar>},
     {"image", read_image},
+    {"import_scene", import_scene, true},
     {"key_shapes", read_page<key_shapes::read>},
     {"keys", read_keys},
     {"library", read_named_page<library::read>},
     {"limits", read_limits},
     {"material", read_page<material::read>},
-    {"model", read_binary<model::read>},
+    {"model", read_model},
     {"obj", read_obj},
-    {"operations", run_operations},
+    {"operations", run_operations, true},
     {"path", read_path},
     {"pc2", read_pc2},
     {"prints", read_named_page<prints::read>},
     {"ragdoll", read_ragdoll},
     {"role_map", read_roles},
     {"sequences", read_page<sequences::read>},
-    {"steps", read_binary<steps::read>},
+    {"steps", read_steps},
     {"timeline", read_named_page<timeline_file::read>},
     {"weights", read_weights},
     {"zip", read_zip},
