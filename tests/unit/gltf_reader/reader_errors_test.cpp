@@ -170,7 +170,7 @@ const std::vector<Fault>& faults() {
          j["animations"][0]["channels"][0]["target"] = {{"node", 0}, {"path", "weights"}};
        }},
       {"extension_required", "gltf-extension",
-       [](Json& j) { j["extensionsRequired"] = {"EXT_mesh_gpu_instancing"}; }},
+       [](Json& j) { j["extensionsRequired"] = {"VENDOR_other_geometry"}; }},
       {"version_1", "gltf-version", [](Json& j) { j["asset"]["version"] = "1.0"; }},
       {"asset_missing", "gltf-version", [](Json& j) { j.erase("asset"); }},
       {"buffers_number", "gltf-structure", [](Json& j) { j["buffers"] = 3; }},
