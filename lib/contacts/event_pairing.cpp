@@ -16,7 +16,8 @@ constexpr double kScattered = 0.05;  // seconds
 constexpr double kPairWithin = 0.3;  // cycles
 // How long contacts may end before the toes' turning point behind the pelvis: the published
 // agreement of the two is a frame at 60 Hz.
-constexpr double kEarly = 0.025;  // seconds
+constexpr double kEarly = 0.025;     // seconds
+constexpr double kVeryEarly = 0.06;  // seconds; of a single contact
 
 // Index of the value nearest to `time`, at most `reach` away.
 std::optional<std::size_t> nearest(const std::vector<double>& values, double time, double reach) {
@@ -94,7 +95,8 @@ Events Pairing::events_with(const Offset& offset) const {
   std::vector<std::uint8_t> used(events.size(), 0);
   for (std::size_t i = 0; i < event.size(); ++i) {
     const auto off = rolls_off ? rolls_off((*seeds)[i]) : std::nullopt;
-    const bool unseen = off && toes_unseen;
+    const bool very_early = off && event[i] && *off - events[*event[i]] > kVeryEarly;
+    const bool unseen = off && (toes_unseen || very_early);
     const double expected = unseen ? *off : (*seeds)[i] + offset.usual;
     if (!event[i]) {
       if (offset.scattered || stands_at(expected) || !is_low((*seeds)[i])) continue;

@@ -168,9 +168,13 @@ class KeytimeFinder {
   void take_events(bool strikes, Gait& gait) const {
     std::array<contacts::Pairing, 2> pairs = {pairing(0, strikes), pairing(1, strikes)};
     std::vector<double> offsets, early;
-    for (const contacts::Pairing& pair : pairs) {
+    for (contacts::Pairing& pair : pairs) {
       pair.add_offsets(offsets);
-      pair.add_early(early);
+      // Also where the toes of one foot alone bend too little.
+      std::vector<double> early_here;
+      pair.add_early(early_here);
+      if (contacts::leave_early(early_here)) pair.toes_unseen = true;
+      early.insert(early.end(), early_here.begin(), early_here.end());
     }
     if (contacts::leave_early(early)) pairs[0].toes_unseen = pairs[1].toes_unseen = true;
     const contacts::Offset offset = contacts::offset_of(

@@ -64,7 +64,8 @@ struct Gait {
 //
 // In forward walking on level ground the heel leaves first, and toe-off is when the toes are
 // furthest behind the pelvis. This defines toe-off if the foot has no point for the toes, or one
-// that leaves over 25 ms earlier in most steps: the toes of many captures do not bend. In runs (the
+// that leaves over 25 ms earlier in most steps of that foot or of both, and where it leaves over 60
+// ms earlier: the toes of many captures do not bend. In runs (the
 // pelvis is lowest over the standing foot, or the Froude number exceeds 0.5), on stairs and in
 // backward steps feet leave otherwise, and only contacts define toe-off.
 //
