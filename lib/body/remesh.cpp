@@ -37,8 +37,14 @@ std::vector<Edge> edges_of(const Mesh& mesh) {
   }
   std::sort(halves.begin(), halves.end());
   std::vector<Edge> edges;
-  for (std::size_t i = 0; i + 1 < halves.size(); i += 2) {
-    edges.push_back({halves[i].low, halves[i].high, halves[i].triangle, halves[i + 1].triangle});
+  const auto same = [&](std::size_t i, std::size_t j) {
+    return halves[i].low == halves[j].low && halves[i].high == halves[j].high;
+  };
+  for (std::size_t first = 0, end = 0; first < halves.size(); first = end) {
+    while (end < halves.size() && same(first, end)) ++end;
+    if (end != first + 2) continue;
+    edges.push_back({halves[first].low, halves[first].high, halves[first].triangle,
+                     halves[first + 1].triangle});
   }
   return edges;
 }
