@@ -70,6 +70,7 @@ class Part(NamedTuple):
     material: str
     first_triangle: int
     triangle_count: int
+    mesh: str = ""  # that it came from
 
 
 @dataclass
@@ -339,11 +340,12 @@ _OPTIONAL = ("NORMAL", "TEXCOORD", "TANGENT")
 def _read_model(file: _Container) -> Model:
     joints, vertices, triangles, parts, influences, _ = file.info("<6I")
     names, runs = file.texts("PARTNAME", 2 * parts), file.array("PARTS", "<u4", parts, 2).tolist()
+    meshes = file.texts("MESHNAME", parts) if "MESHNAME" in file.sections else [""] * parts
     arrays = {attribute: None if section in _OPTIONAL and section not in file.sections else
               file.array(section, kind, triangles if section == "TRIANGLE" else vertices, columns or influences)
               for section, attribute, kind, columns in _MESH}
     model = Model(file.skeleton(joints), **arrays, provenance=file.page("META"),
-                  parts=[Part(*names[2 * i:2 * i + 2], *runs[i]) for i in range(parts)])
+                  parts=[Part(*names[2 * i:2 * i + 2], *runs[i], meshes[i]) for i in range(parts)])
     file.require(not model.joints.size or int(model.joints.max()) < joints, "a joint out of range")
     file.require(not model.triangles.size or int(model.triangles.max()) < vertices, "a vertex out of range")
     return model
@@ -412,8 +414,10 @@ def write(data: Motion | Model | Camera, path: Path) -> None:
             mesh = [(section, _finite(getattr(data, attribute), kind).tobytes()) for section, attribute, kind, _ in _MESH
                     if getattr(data, attribute) is not None]
             magic, sections = b"KROKMODL", [("INFO", info), *bones, *mesh,
-                                            ("PARTS", np.array([part[2:] for part in data.parts], "<u4").tobytes()),
+                                            ("PARTS", np.array([part[2:4] for part in data.parts], "<u4").tobytes()),
                                             ("PARTNAME", _texts(text for part in data.parts for text in part[:2]))]
+            if any(part.mesh for part in data.parts):
+                sections.append(("MESHNAME", _texts(part.mesh for part in data.parts)))
     if data.provenance:
         sections.append(("META", json.dumps(data.provenance, ensure_ascii=False).encode()))
     table, body, end = b"", [], 64 + 32 * len(sections)

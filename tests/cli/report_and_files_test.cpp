@@ -97,7 +97,7 @@ TEST_F(ReportAndFiles, AWordThatIsNoneIsAnsweredWithTheWords) {
   expect_usage_error(progress, "--progress: 'loud' is not auto, bar, plain, json or none");
   // The numbers behind the words are no words.
   const ToolRun number = run_tool("krok-skin", {"a.model", "a.anim", "-o", "a.glb", "--as", "1"});
-  expect_usage_error(number, "--as: '1' is not clip, pose, rig or frames");
+  expect_usage_error(number, "--as: '1' is not rig, motion, baked, pose or frames");
 }
 
 TEST_F(ReportAndFiles, OptionsThatWouldHaveNoEffectAreErrors) {

@@ -97,7 +97,7 @@ void declare(CommandOptions& command, Options& options) {
              "is measured on the mesh. More than 4 need a second set of joints and weights in "
              "glTF, which some viewers do not read",
              "N", "all");
-  command.add_option("--reduce", options.reduce,
+  command.add_option("--reduce TOLERANCE", options.reduce,
                      "For --as rig: remove keys while no vertex moves by more than a tolerance, "
                      "such as 0.1mm, at any frame or half-way between two");
   command.add_flag(

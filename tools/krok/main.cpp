@@ -133,7 +133,7 @@ int main(int argc, char** argv) {
   }
   if (verb == "completion") return complete(argc > 2 ? argv[2] : "");
   if (!is_verb(verb)) {
-    const std::string near = krok::nearest_name(verb, verb_names());
+    const std::string near = verb.empty() ? "" : krok::nearest_name(verb, verb_names());
     return fail(verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb),
                 near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near));
   }

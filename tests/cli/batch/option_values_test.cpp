@@ -68,6 +68,7 @@ const std::vector<Value>& values() {
       {"krok-edit", {"--turn", "5m"}, "quantity-unit"},
       {"krok-edit", {"--move", "1,2"}, "usage"},
       {"krok-edit", {"--loop", "--rounds", "0"}, "usage"},
+      {"krok-render", {"--fps", "0"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--depth", "-1"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--fade", "-1s"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--plot", "x.png"}, "usage"},

@@ -102,8 +102,8 @@ TEST_F(KrokBody, AnOutputThatCannotBeWritten) {
 TEST_F(KrokBody, UsageErrors) {
   const std::string out = path("x.model");
   const std::pair<std::vector<std::string>, const char*> cases[] = {
-      {{kMotion, "--detail", "huge", "-o", out},
-       "krok-body: error: --detail: 'huge' is not low, medium or high [usage]"},
+      {{kMotion, "--detail", "enormous", "-o", out},
+       "krok-body: error: --detail: 'enormous' is not low, medium or high [usage]"},
       {{kMotion, "--pose", "soon", "-o", out},
        "--pose soon is not auto, reference or a frame number [usage]"},
       {{kMotion, "--pose", "-1", "-o", out}, "[usage]"},

@@ -55,7 +55,7 @@ TEST_F(GltfJudges, RigShowsWhatTheBakeShows) {
 TEST_F(GltfJudges, SmallRigsShowTheBakeWithinTheirTolerance) {
   write_clip(test::swinging_clip(human(), 61, 30));
   write_model(test::tube_model(human()));
-  tool("krok-skin in.model in.anim -o clip.glb");
+  tool("krok-skin in.model in.anim --as baked -o clip.glb");
   tool("krok-skin in.model in.anim --as rig -o rig.glb");
   tool("krok-skin in.model in.anim --as rig --reduce 0.5mm -o reduced.glb");
   tool("krok-skin in.model in.anim --as rig --reduce 0.5mm --quantize -o quantized.glb");
@@ -73,7 +73,7 @@ TEST_F(GltfJudges, SmallRigsShowTheBakeWithinTheirTolerance) {
   EXPECT_LT(content("quantized.glb").size(), 0.7 * content("reduced.glb").size());
   EXPECT_LT(content("small.glb").size(), 0.7 * content("quantized.glb").size());
   tool("krok-skin in.model in.anim --as rig --compress -o small.gltf", 2);
-  tool("krok-skin in.model in.anim --reduce 1mm -o small.glb", 2);
+  tool("krok-skin in.model in.anim --as baked --reduce 1mm -o small.glb", 2);
   tool("krok-skin in.model in.anim --as rig --reduce 0mm -o small.glb", 2);
 }
 
@@ -96,8 +96,8 @@ TEST_F(GltfJudges, FourInfluencesAreTheLargest) {
   EXPECT_THAT(content("six.json"), testing::HasSubstr("skin-influences"));
   tool("krok-skin in.model in.anim --as rig --influences 4 -o four.glb --json=four.json");
   EXPECT_THAT(content("four.json"), testing::Not(testing::HasSubstr("skin-influences")));
-  tool("krok-skin in.model in.anim --influences 4 -o four_clip.glb");
-  tool("krok-skin in.model in.anim -o six_clip.glb");
+  tool("krok-skin in.model in.anim --as baked --influences 4 -o four_clip.glb");
+  tool("krok-skin in.model in.anim --as baked -o six_clip.glb");
   valid("six.glb four.glb");
   judge("three_bounds.mjs", "four.glb --against four_clip.glb --tolerance 1e-5");
   // The error in the report is what the bakes are apart by.

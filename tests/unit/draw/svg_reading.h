@@ -55,7 +55,7 @@ inline int count_of(const std::string& text, const std::string& part) {
 inline std::string line_text(const std::string& svg, int place = 0) {
   auto at = svg.find("class=\"line\"");
   for (int i = 0; i < place; ++i) at = svg.find("class=\"line\"", at + 1);
-  return at == std::string::npos ? std::string() : svg.substr(at, svg.find("/>", at) - at);
+  return at == std::string::npos ? std::string() : svg.substr(at, svg.find('>', at) - at);
 }
 
 // Its corners.

@@ -107,7 +107,7 @@ TEST_F(OpenFiles, AFormatThatIsAddedIsReadLikeAnyOther) {
       });
   ASSERT_TRUE(imported) << imported.error().message;
   EXPECT_EQ(frames, 3);
-  EXPECT_THAT(motion_endings(), testing::ElementsAre(".anim", ".bvh", ".amc", ".dots"));
+  EXPECT_THAT(motion_endings(), testing::ElementsAre(".anim", ".kanim", ".bvh", ".amc", ".dots"));
   // What is known goes before what a program added.
   EXPECT_GT(open_motion(capture(), inputs)->frame_count(), 3);
 }
