@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base64.h"
+#include "draw/drawn_bones_internal.h"
 #include "draw/pack_motion_internal.h"
 #include "math/quaternion.h"
 
@@ -18,6 +19,8 @@ constexpr double kStillAngle = 2e-5;   // radians, half of what packing rounds t
 
 constexpr double kComponentLimit = 0.70710678118654752;
 constexpr double kPackedSteps = 32767.0;
+
+constexpr std::size_t kNarrowCorners = 65536;  // vertices; the page has the same limit
 
 // joint_to_parent of all frames, and which joints move.
 struct Locals {
@@ -128,11 +131,17 @@ void pack_motion(const Clip& clip, Json& item, Blob& blob) {
   item["joints"] = skeleton.names;
   item["parents"] = skeleton.parents;
   item["endSites"] = places_of(skeleton.end_sites);
+  pack_drawn_bones(find_drawn_bones(clip, changes.moves), item);
   std::vector<float> offsets, orientations;
   for (const Transform& local : changes.first) {
     push(offsets, local.position);
     push(orientations, local.orientation);
   }
+  std::vector<float> rest;
+  for (int joint = 0; joint < clip.joint_count(); ++joint) {
+    push(rest, skeleton.reference_local(joint).orientation);
+  }
+  item["rest"] = blob.add<float>(rest);
   item["offsets"] = blob.add<float>(offsets);
   item["referenceRotations"] = blob.add<float>(orientations);
 
@@ -195,12 +204,17 @@ Json pack_body(const Model& body, Blob& blob) {
   }
   const std::span<const std::uint32_t> corners(
       body.triangles.empty() ? nullptr : body.triangles.front().data(), body.triangles.size() * 3);
+  const bool narrow = vertices <= kNarrowCorners;
+  const std::vector<std::uint16_t> narrow_corners =
+      narrow ? std::vector<std::uint16_t>(corners.begin(), corners.end())
+             : std::vector<std::uint16_t>();
   Json result;
   result["positions"] = blob.add<float>(positions);
   result["normals"] = blob.add<std::int8_t>(normals);
   result["joints"] = blob.add<std::uint16_t>(joints);
   result["weights"] = blob.add<std::uint8_t>(weights);
-  result["triangles"] = blob.add<std::uint32_t>(corners);
+  result["triangles"] =
+      narrow ? blob.add<std::uint16_t>(narrow_corners) : blob.add<std::uint32_t>(corners);
   result["reference"] = blob.add<float>(reference);
   return result;
 }

@@ -48,6 +48,7 @@ Quat unpack_rotation(const std::array<std::uint16_t, 3>& words);
 
 // Adds the clip's properties to `item` and its arrays to `blob`.
 void pack_motion(const Clip& clip, Json& item, Blob& blob);
+// Corners of triangles take 16 bits each where that is enough for all vertices, otherwise 32.
 Json pack_body(const Model& body, Blob& blob);
 // The material of each part of a body, the materials and their images. Parts whose material is not
 // in `materials` get the default material. Codes: those of picture_facts().

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/base64.h"
 #include "draw/pack_motion_internal.h"
@@ -26,6 +28,9 @@ struct Parts {
     if (!facts.empty()) item["facts"] = facts;
     return item;
   }
+
+  // Bodies and their materials that several motions share are on the page once.
+  std::map<std::pair<const Model*, const Material*>, Json> bodies;
 
   void finish(Json item, const std::string& base64) {
     const std::string id = fmt::format("krok-blob-{}", items.size());
@@ -133,6 +138,25 @@ void add_prints(const std::vector<ViewedPrint>& prints, Json& data) {
   data["prints"] = {{"outline", std::move(outline)}, {"list", std::move(list)}};
 }
 
+Result<Json> add_body(const Model& model, std::span<const Material> materials, Parts& parts) {
+  const std::pair key(&model, materials.data());
+  if (const auto found = parts.bodies.find(key); found != parts.bodies.end()) return found->second;
+  if (Status status = check(model); !status) return status.error();
+  Blob blob;
+  Json body = pack_body(model, blob);
+  if (!materials.empty()) {
+    if (Status status = check(materials); !status) return status.error();
+    auto look = pack_look(model, materials, blob);
+    if (!look) return look.error();
+    body["look"] = std::move(*look);
+  }
+  const std::string id = fmt::format("krok-body-{}", parts.bodies.size());
+  body["blob"] = id;
+  parts.add_blob(id, blob.base64());
+  parts.bodies.emplace(key, body);
+  return body;
+}
+
 Status add_motion(const ViewedMotion& viewed, std::size_t prints, Parts& parts) {
   const Clip& clip = *viewed.clip;
   if (Status status = check(clip); !status) return status;
@@ -141,21 +165,15 @@ Status add_motion(const ViewedMotion& viewed, std::size_t prints, Parts& parts) 
   Blob blob;
   pack_motion(clip, item, blob);
   if (viewed.body != nullptr) {
-    if (Status status = check(*viewed.body); !status) return status;
     const std::string difference = difference_in_structure(clip.skeleton, viewed.body->skeleton);
     if (!difference.empty()) {
       return Error(
           "viewer-body",
           fmt::format("the body does not have the skeleton of the motion: {}", difference));
     }
-    Json body = pack_body(*viewed.body, blob);
-    if (!viewed.materials.empty()) {
-      if (Status status = check(viewed.materials); !status) return status;
-      auto look = pack_look(*viewed.body, viewed.materials, blob);
-      if (!look) return look.error();
-      body["look"] = std::move(*look);
-    }
-    item["body"] = std::move(body);
+    auto body = add_body(*viewed.body, viewed.materials, parts);
+    if (!body) return body.error();
+    item["body"] = *std::move(body);
   }
   if (Status status = check(viewed.keys, clip.skeleton, clip.duration()); !status) return status;
   Json contacts = Json::array();
@@ -201,7 +219,7 @@ Result<std::string> write_viewer_page(const ViewerPage& page) {
     Json item = parts.start("gltf", file.name, file.facts);
     item["visible"] = file.visible;
     item["animation"] = file.animation;
-    item["rate"] = file.rate;
+    item["rates"] = file.rates;
     parts.finish(std::move(item), to_base64(file.bytes));
   }
   for (const ViewedCamera& viewed : page.cameras) {

@@ -64,7 +64,8 @@ struct ViewedMotion {
   std::string facts;  // a line below the name; may be empty
   bool visible = true;
   const Clip* clip = nullptr;
-  const Model* body = nullptr;  // has the same joints as the clip; null for none
+  // Has the same joints as the clip; null for none. On the page once, however many share it.
+  const Model* body = nullptr;
   // Materials of the body's parts, by name, with image data. Parts of other materials are light
   // grey; without any material the body has a default colour. Images need texture coordinates.
   std::span<const Material> materials;
@@ -85,14 +86,14 @@ struct ViewedGlb {
   std::string facts;
   bool visible = true;
   std::span<const std::byte> bytes;
-  int animation = 0;   // index of the animation to play
-  double rate = 60.0;  // frames per second, for stepping
+  int animation = 0;          // index of the animation that plays first
+  std::vector<double> rates;  // frames per second of each animation, for stepping; else 60
 };
 
 struct ViewerPage {
   std::string title;
   bool apart = false;       // characters side by side instead of at their own positions
-  bool difference = false;  // colour the joints of the first two characters by their distance
+  bool difference = false;  // colour the first character by its distance from the second
   std::vector<ViewedMotion> motions;
   std::vector<ViewedGlb> files;
   std::vector<ViewedCamera> cameras;

@@ -1,11 +1,15 @@
 #include "tools/krok-view/files.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <string_view>
 
 #include "body/body.h"
+#include "character/sampling.h"
 #include "core/glob.h"
 #include "core/text.h"
 #include "formats/cam/cam.h"
@@ -61,6 +65,25 @@ Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice
   return find_keys(clip, find_roles(clip.skeleton), context);
 }
 
+// The page contains the file itself; it is parsed for its errors and for what its keys tell of its
+// animations.
+Status add_glb(const std::string& path, std::vector<std::byte> bytes, Files& files) {
+  gltf::ReadOptions as_is;
+  as_is.unpack = false;
+  const auto scene = gltf::read(bytes, as_is);
+  if (!scene) return Error(scene.error()).in_file(path);
+  Files::Glb glb{path, name_of_input(path), std::move(bytes), {}, {}, 0};
+  for (const nodes::Animation& animation : scene->animations) {
+    Diagnostics notes;
+    const auto chosen = character::choose_sampling(animation, {}, notes);
+    if (!chosen) return Error(chosen.error()).in_file(path);
+    glb.animations.push_back(animation.name);
+    glb.rates.push_back(chosen->sampling.rate);
+  }
+  files.glbs.push_back(std::move(glb));
+  return {};
+}
+
 Status add_file(const std::string& path, KeysChoice choice, ToolContext& context, Files& files) {
   auto input = context.open_input(path);
   if (!input) return input.error();
@@ -79,15 +102,8 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       return {};
     }
     case Kind::glb: {
-      // Parsed only for its errors; the page contains the file itself.
-      gltf::ReadOptions as_is;
-      as_is.unpack = false;
-      if (auto scene = gltf::read(input->bytes(), as_is); !scene) {
-        return std::move(scene).error().in_file(path);
-      }
       const auto bytes = input->bytes();
-      files.glbs.push_back({name_of_input(path), {bytes.begin(), bytes.end()}});
-      return {};
+      return add_glb(path, {bytes.begin(), bytes.end()}, files);
     }
     case Kind::gltf: {
       // A page cannot open external files, so buffers and images are packed.
@@ -100,8 +116,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       for (const std::string& beside : packed->files) {
         if (auto opened = context.open_input(beside); !opened) return opened.error();
       }
-      files.glbs.push_back({name_of_input(path), std::move(packed->bytes)});
-      return {};
+      return add_glb(path, std::move(packed->bytes), files);
     }
     default: {
       auto clip = io::open_motion(*input, context);
@@ -138,23 +153,61 @@ void share_models(Files& files) {
   }
 }
 
+bool same_reference(const Skeleton& a, const Skeleton& b) {
+  static constexpr double kSame = 1e-6;  // metres, and of quaternions
+  if (a.end_sites != b.end_sites || !difference_in_structure(a, b).empty()) return false;
+  return std::ranges::equal(
+      a.reference, b.reference, [](const Transform& one, const Transform& other) {
+        return (one.position - other.position).norm() < kSame &&
+               (one.orientation.coeffs() - other.orientation.coeffs()).norm() < kSame;
+      });
+}
+
+// Motions of one skeleton, such as takes of one actor, share a body.
 Status build_bodies(const Options& options, ToolContext& context, Files& files) {
-  const auto bare = std::count_if(files.motions.begin(), files.motions.end(),
-                                  [](const Files::Motion& motion) { return !motion.body; });
-  BodyChoice choice = options.body;
-  if (choice == BodyChoice::automatic) {
-    choice = bare <= 2 ? BodyChoice::medium : bare <= 4 ? BodyChoice::low : BodyChoice::none;
-  }
-  if (choice == BodyChoice::none) return {};
-  const BodyOptions how = body_options(choice, context);
+  if (options.body == BodyChoice::none) return {};
+  std::vector<std::vector<Files::Motion*>> actors;
   for (Files::Motion& motion : files.motions) {
     if (motion.body != nullptr) continue;
-    auto body = make_body(motion.clip, how);
-    if (!body) return std::move(body).error().in_file(motion.path);
+    const auto known = std::ranges::find_if(actors, [&](const auto& actor) {
+      return same_reference(actor.front()->clip.skeleton, motion.clip.skeleton);
+    });
+    if (known != actors.end()) {
+      known->push_back(&motion);
+    } else {
+      actors.push_back({&motion});
+    }
+  }
+  BodyChoice choice = options.body;
+  if (choice == BodyChoice::automatic) {
+    choice = actors.size() <= 2 ? BodyChoice::medium : BodyChoice::low;
+  }
+  const BodyOptions how = body_options(choice, context);
+  for (const auto& actor : actors) {
+    auto body = make_body(actor.front()->clip, how);
+    if (!body) return std::move(body).error().in_file(actor.front()->path);
     files.bodies.push_back(std::move(body->model));
-    motion.body = &files.bodies.back();
+    for (Files::Motion* motion : actor) motion->body = &files.bodies.back();
   }
   return {};
+}
+
+// --clip, in all glTF files that have it.
+Status choose_animation(const Options& options, Files& files) {
+  if (options.clip.empty()) return {};
+  bool found = false;
+  std::vector<std::string> names;
+  for (Files::Glb& glb : files.glbs) {
+    const auto place = std::ranges::find(glb.animations, options.clip);
+    names.insert(names.end(), glb.animations.begin(), glb.animations.end());
+    if (place == glb.animations.end()) continue;
+    glb.animation = static_cast<int>(place - glb.animations.begin());
+    found = true;
+  }
+  if (found) return {};
+  return Error("view-clip", fmt::format("no glTF file has an animation '{}'", options.clip),
+               names.empty() ? "the files have no animation"
+                             : fmt::format("animations: {}", fmt::join(names, ", ")));
 }
 
 Status add_goals(const Options& options, ToolContext& context, Files& files) {
@@ -193,6 +246,7 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
   }
   if (Status status = build_bodies(options, context, files); !status) return status.error();
   if (Status status = add_goals(options, context, files); !status) return status.error();
+  if (Status status = choose_animation(options, files); !status) return status.error();
   return files;
 }
 

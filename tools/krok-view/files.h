@@ -28,8 +28,11 @@ struct Files {
     std::vector<draw::ViewedGoal> goals;
   };
   struct Glb {
-    std::string name;
+    std::string path, name;
     std::vector<std::byte> bytes;
+    std::vector<std::string> animations;  // their names, which may be empty
+    std::vector<double> rates;            // frames per second of each, by its keys
+    int animation = 0;                    // that plays first
   };
   struct Camera {
     std::string name;

@@ -28,11 +28,12 @@ void declare(CommandOptions& command, Options& options) {
                                  {"list", Layout::list}}))
       .default_str("auto");
   command.add_flag("--difference", options.difference,
-                   "Show the first two characters together and colour joints of the same name by "
-                   "their distance");
+                   "Show the first two characters together: the first coloured by its distance from "
+                   "the second, with a legend, the second as a ghost");
   add_body_option(command, options.body,
                   "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
-                  "high (40,000), or auto: lower detail for more files, none for more than four");
+                  "high (40,000), or auto: medium, low for more than two actors. Motions of one skeleton "
+                  "share a body");
   command
       .add_option("--keys WHICH", options.keys,
                   "Contacts and keytimes to mark on the timeline: auto (from the sidecar "
@@ -48,6 +49,9 @@ void declare(CommandOptions& command, Options& options) {
                      "Show this ground, as for krok-walk: a height field (.exr, 16-bit .png), a "
                      "mesh (.gltf, .glb, .obj), or " +
                          std::string(terrain::kSpecForms));
+  command.add_option("--clip NAME", options.clip,
+                     "Animation of glTF files that plays first; default: the first. All others can "
+                     "be chosen on the page");
   add_prints_option(command, options.prints,
                     "Show footprints (formats/prints/SPEC.md) on the ground, as krok-walk "
                     "--save-prints writes them; those that a foot stands on are marked");
@@ -68,8 +72,8 @@ ToolSpec make_spec() {
   spec.inputs = "IN...";
   spec.examples = {{"krok-view walk.bvh -o walk.html", "a capture, with a generated body"},
                    {"krok-view before.anim after.anim --difference -o change.html",
-                    "two motions at the same position, joints coloured by their "
-                    "distance"},
+                    "two motions at the same position, the first coloured by its "
+                    "distance from the second"},
                    {"krok-view hero.model walk.anim shot.cam -o shot.html",
                     "an animated model, viewed through a recorded camera"},
                    {"krok-view walk.anim reach.anim --goals goals.json -o goals.html",

@@ -39,7 +39,14 @@ draw::ViewerPage page_of(const Files& files, const Options& options, Layout layo
     draw::ViewedGlb viewed;
     viewed.name = glb.name;
     viewed.visible = visible(page.motions.size() + page.files.size());
+    if (!glb.rates.empty()) {
+      viewed.facts = fmt::format(
+          "{}{} fps", glb.rates.size() > 1 ? fmt::format("{} clips, ", glb.rates.size()) : "",
+          readable(glb.rates[static_cast<std::size_t>(glb.animation)]));
+    }
     viewed.bytes = glb.bytes;
+    viewed.animation = glb.animation;
+    viewed.rates = glb.rates;
     page.files.push_back(std::move(viewed));
   }
   for (const Files::Camera& camera : files.cameras) {
@@ -128,6 +135,14 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   context.report.result["motions"] = std::move(shown);
   context.report.result["files"] = files->glbs.size();
+  Json clips = Json::array();
+  for (const Files::Glb& glb : files->glbs) {
+    for (std::size_t i = 0; i < glb.rates.size(); ++i) {
+      clips.push_back(
+          {{"file", glb.name}, {"name", glb.animations[i]}, {"rate", glb.rates[i]}});
+    }
+  }
+  context.report.result["clips"] = std::move(clips);
   context.report.result["cameras"] = files->cameras.size();
   context.report.result["ground_triangles"] = page.ground.triangles.size();
   context.report.result["prints"] = page.prints.size();

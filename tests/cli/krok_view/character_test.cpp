@@ -19,9 +19,9 @@ class ViewCharacter : public HeroCharacter {
     return data_of(get(path("page.html")))["items"];
   }
 
-  // The bytes of an array that the page just made has for its first item.
+  // The bytes of an array that the page just made has for its first body.
   std::string array(const json& place, std::size_t value_size) {
-    return bytes_of_base64(element_of(get(path("page.html")), "krok-blob-0"))
+    return bytes_of_base64(element_of(get(path("page.html")), "krok-body-0"))
         .substr(place["offset"], place["count"].get<std::size_t>() * value_size);
   }
 

@@ -162,6 +162,46 @@ TEST_F(KrokView, PacksAGltfWithItsFiles) {
   EXPECT_EQ(view({path("rig.gltf")}).exit_code, 2);
 }
 
+// If this fails, a page of many takes of one actor is as many times as large as it has to be.
+TEST_F(KrokView, TakesOfOneSkeletonShareABody) {
+  for (const char* name : {"a.bvh", "b.bvh", "c.bvh", "d.bvh", "e.bvh", "f.bvh"}) {
+    put(name, capture(4));
+  }
+  ASSERT_EQ(view({path("a.bvh"), path("b.bvh"), path("c.bvh"), path("d.bvh"), path("e.bvh"),
+                  path("f.bvh")})
+                .exit_code,
+            0);
+  const json items = data()["items"];
+  ASSERT_EQ(items.size(), 6U);
+  for (const json& item : items) EXPECT_EQ(item["body"]["blob"], "krok-body-0") << item["name"];
+  EXPECT_EQ(element_of(get(path("page.html")), "krok-body-1"), "");
+}
+
+// If this fails, a clip of a glTF cannot be chosen, or is counted in frames that it has not.
+TEST_F(KrokView, KnowsClipsOfGltfAndTheirRates) {
+  const json two =
+      json::parse(R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+      "nodes": [{"name": "Thing"}], "bufferViews": [{"buffer": 0, "byteLength": 12},
+      {"buffer": 0, "byteOffset": 12, "byteLength": 36}],
+      "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "SCALAR",
+      "min": [0], "max": [0.0666667]}, {"bufferView": 1, "componentType": 5126, "count": 3,
+      "type": "VEC3"}], "buffers": [{"byteLength": 48, "uri": "data:application/octet-stream;base64,)"
+                  R"(AAAAAImICD2JiIg9AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAQAAAAAAAAAAA"}],
+      "animations": [{"name": "walk", "channels": [{"sampler": 0, "target": {"node": 0,
+      "path": "translation"}}], "samplers": [{"input": 0, "output": 1}]}, {"name": "run",
+      "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+      "samplers": [{"input": 0, "output": 1}]}]})");
+  put("two.gltf", two.dump());
+  ASSERT_EQ(view({path("two.gltf"), "--clip", "run"}).exit_code, 0);
+  const json item = data()["items"][0];
+  EXPECT_EQ(item["animation"], 1);
+  EXPECT_EQ(item["rates"], json({30.0, 30.0}));
+  const ToolRun none = view({path("two.gltf"), "--clip", "jump"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_TRUE(has_code(none.err, "view-clip")) << none.err;
+  EXPECT_THAT(none.err, HasSubstr("walk, run"));
+}
+
 TEST_F(KrokView, AFolderIsAListOfWhatMovesInIt) {
   std::filesystem::create_directories(path("takes/more"));
   std::filesystem::create_directories(path("empty"));

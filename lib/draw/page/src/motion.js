@@ -5,13 +5,17 @@ import { Matrix4, Quaternion, Vector3 } from 'three';
 const ROTATION_WORDS = 3; // 16-bit words per joint and frame
 const COMPONENT_LIMIT = Math.SQRT1_2; // bound of the three smaller quaternion components
 
-// Decodes a base64 script element.
+const decoded = new Map();
+
+// Decodes a base64 script element, once.
 export function blobBytes(id) {
+  if (decoded.has(id)) return decoded.get(id);
   const element = document.getElementById(id);
   const text = atob(element.textContent.trim());
   element.textContent = ''; // frees the text, so that the data is not held twice
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  decoded.set(id, bytes);
   return bytes;
 }
 
@@ -47,11 +51,15 @@ export class Motion {
     this.frames = item.frames;
     this.offsets = view(bytes, Float32Array, item.offsets);
     this.referenceRotations = view(bytes, Float32Array, item.referenceRotations);
+    // Relative to the parent in the reference pose.
+    this.rest = view(bytes, Float32Array, item.rest);
     // Joints with a changing rotation, in the order of the packed rotations.
     this.turning = item.turning;
+    this.turningAt = new Map(item.turning.map((joint, i) => [joint, i]));
     this.rotations = view(bytes, Uint16Array, item.rotations);
     // Joints with a changing local translation, the root first.
     this.moving = item.moving;
+    this.movingAt = new Map(item.moving.map((joint, i) => [joint, i]));
     this.translations = view(bytes, Float32Array, item.translations);
 
     const count = this.names.length;
@@ -114,21 +122,45 @@ export class Motion {
     });
   }
 
+  // A joint relative to its parent in one frame.
+  localAt(frame, joint, position, rotation) {
+    const moving = this.movingAt.get(joint);
+    if (moving !== undefined && this.frames > 0) {
+      position.fromArray(this.translations, (frame * this.moving.length + moving) * 3);
+    } else {
+      position.fromArray(this.offsets, joint * 3);
+    }
+    const turning = this.turningAt.get(joint);
+    if (turning !== undefined && this.frames > 0) {
+      unpackRotation(this.rotations, (frame * this.turning.length + turning) * ROTATION_WORDS, rotation);
+    } else {
+      rotation.fromArray(this.referenceRotations, joint * 4);
+    }
+  }
+
   // World positions of one joint, three numbers per frame.
   path(joint) {
     const chain = [];
     for (let at = joint; at >= 0; at = this.parents[at]) chain.push(at);
-    const path = new Float32Array(Math.max(this.frames, 1) * 3);
+    const count = Math.max(this.frames, 1);
+    const path = new Float32Array(count * 3);
+    const place = new Vector3();
     const position = new Vector3();
-    for (let frame = 0; frame < Math.max(this.frames, 1); ++frame) {
-      if (this.frames > 0) this.readFrames(frame / this.rate);
-      position.set(0, 0, 0);
+    const rotation = new Quaternion();
+    for (let frame = 0; frame < count; ++frame) {
+      place.set(0, 0, 0);
       for (const at of chain) {
-        position.applyQuaternion(this.local[at].rotation).add(this.local[at].position);
+        this.localAt(frame, at, position, rotation);
+        place.applyQuaternion(rotation).add(position);
       }
-      position.toArray(path, frame * 3);
+      place.toArray(path, frame * 3);
     }
     return path;
+  }
+
+  // A joint's rotation from the reference pose, relative to its parent.
+  turn(joint, local = this.local[joint].rotation, into = new Quaternion()) {
+    return into.fromArray(this.rest, joint * 4).invert().multiply(local);
   }
 
   // joint_to_world of a joint after pose().

@@ -8,6 +8,7 @@ import {
   HemisphereLight,
   PCFShadowMap,
   PerspectiveCamera,
+  Raycaster,
   Scene,
   Vector3,
   WebGLRenderer,
@@ -36,8 +37,12 @@ export class Stage {
     this.camera = new PerspectiveCamera(40, 1, 0.01, 1000);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
-    this.controls.addEventListener('change', () => this.redraw());
+    this.controls.addEventListener('change', () => {
+      this.stayAbove();
+      this.redraw();
+    });
     this.flown = null; // the recorded camera in use, or null
+    this.floor = 0; // metres; lower where a character is
 
     this.ground = new Ground();
     this.scene.add(this.ground);
@@ -55,6 +60,7 @@ export class Stage {
     this.scene.fog = new Fog(air, 20, 90);
     this.ground.ink.setRGB(...(dark ? [190, 205, 220] : [60, 72, 86]).map((part) => part / 255));
     this.terrain?.material.color.set(dark ? '#4a5158' : '#cfd2c8');
+    this.themed?.();
     this.redraw();
   }
 
@@ -75,6 +81,8 @@ export class Stage {
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
     this.redraw();
+    // Its new size has emptied the canvas, which would be seen until the next frame.
+    if (this.drawn) this.draw();
   }
 
   redraw() {
@@ -86,19 +94,52 @@ export class Stage {
   frame(box, from = new Vector3(0.55, 0.28, 1)) {
     const centre = box.getCenter(new Vector3());
     const size = box.getSize(new Vector3());
-    const high = Math.max(size.y, 0.05);
-    const wide = Math.max(Math.hypot(size.x, size.z), 0.05);
-    const half = Math.tan((this.camera.fov * Math.PI) / 360);
-    const distance = 1.25 * Math.max(high / (2 * half), wide / (2 * half * this.camera.aspect));
+    const direction = from.clone().normalize();
+    const distance = Math.max(fitDistance(box, centre, direction, this.camera), 0.05);
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(from.clone().normalize(), distance + wide / 4);
+    this.camera.position.copy(centre).addScaledVector(direction, distance);
+    this.reachTo(distance);
+    this.controls.update();
+    this.aimSun(centre, Math.max(size.x, size.y, size.z));
+    this.redraw();
+  }
+
+  // Looks at the same point from another side.
+  lookFrom(direction) {
+    const { distance, controls: { target } } = this;
+    this.camera.position.copy(target).addScaledVector(direction, distance);
+    this.controls.update();
+    this.redraw();
+  }
+
+  get distance() {
+    return this.camera.position.distanceTo(this.controls.target);
+  }
+
+  // Sets what depths are drawn, for a camera at a distance from its target.
+  reachTo(distance) {
     this.camera.near = distance / 200;
     this.camera.far = Math.max(distance * 60, 200);
     this.scene.fog.near = Math.max(20, distance * 3);
     this.scene.fog.far = Math.max(90, distance * 14);
     this.camera.updateProjectionMatrix();
-    this.controls.update();
-    this.aimSun(centre, Math.max(high, wide));
+  }
+
+  floorAt(x, z) {
+    if (!this.terrain) return Math.min(this.floor, 0);
+    const from = new Vector3(x, 1e4, z);
+    const [hit] = new Raycaster(from, new Vector3(0, -1, 0)).intersectObject(this.terrain);
+    return hit ? hit.point.y : -Infinity;
+  }
+
+  // The camera is never under the floor.
+  stayAbove() {
+    if (this.flown) return;
+    const { position } = this.camera;
+    const lowest = this.floorAt(position.x, position.z) + Math.min(0.05, this.distance * 0.05);
+    if (position.y >= lowest) return;
+    position.y = lowest;
+    this.camera.lookAt(this.controls.target);
   }
 
   aimSun(centre, extent) {
@@ -111,10 +152,22 @@ export class Stage {
     this.sun.shadow.camera.updateProjectionMatrix();
   }
 
-  // Moves camera and light by the same step as the character.
-  follow(step) {
-    this.controls.target.add(step);
+  // Moves camera and light with characters that took the room `before` and take `now`, and the camera
+  // as much farther as that needs.
+  follow(before, now) {
+    const { target } = this.controls;
+    const [from, to] = [before, now].map((box) => box.getCenter(new Vector3()));
+    const direction = this.camera.position.clone().sub(target).normalize();
+    const growth = fitDistance(now, to, direction, this.camera) / fitDistance(before, from, direction, this.camera);
+    const step = to.sub(from);
+    target.add(step);
     this.camera.position.add(step);
+    if (Math.abs(growth - 1) > 1e-9) {
+      this.camera.position.sub(target).multiplyScalar(growth).add(target);
+      this.reachTo(this.distance);
+      for (const side of ['left', 'right', 'top', 'bottom', 'far']) this.sun.shadow.camera[side] *= growth;
+      this.sun.shadow.camera.updateProjectionMatrix();
+    }
     this.sun.position.add(step);
     this.sun.target.position.add(step);
     this.controls.update();
@@ -146,6 +199,7 @@ export class Stage {
     }
     if (!this.stale) return false;
     this.stale = false;
+    this.drawn = true;
     this.renderer.render(this.scene, this.camera);
     return true;
   }
@@ -159,4 +213,28 @@ export class Stage {
       y: ((1 - seen.y) / 2) * this.canvas.clientHeight,
     };
   }
+}
+
+const MARGIN = 1.06; // of the picture around what is framed
+
+// How far from `centre` a camera in `direction` has all corners of `box` in its picture.
+export function fitDistance(box, centre, direction, camera) {
+  const right = new Vector3().crossVectors(camera.up, direction);
+  if (right.lengthSq() < 1e-9) right.set(1, 0, 0);
+  right.normalize();
+  const up = new Vector3().crossVectors(direction, right);
+  const high = Math.tan((camera.fov * Math.PI) / 360) / MARGIN;
+  const wide = high * camera.aspect;
+  let distance = 0;
+  const corner = new Vector3();
+  for (let i = 0; i < 8; ++i) {
+    corner.set(
+      i & 1 ? box.max.x : box.min.x,
+      i & 2 ? box.max.y : box.min.y,
+      i & 4 ? box.max.z : box.min.z,
+    ).sub(centre);
+    const apart = Math.max(Math.abs(corner.dot(right)) / wide, Math.abs(corner.dot(up)) / high);
+    distance = Math.max(distance, corner.dot(direction) + apart);
+  }
+  return distance;
 }
