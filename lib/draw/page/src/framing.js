@@ -4,6 +4,7 @@ import { Box3, Vector3 } from 'three';
 
 // A whole motion that is framed from farther than this is followed instead, or it would be a speck.
 const FAR = 1.25;
+const FAR_ON_GROUND = 1.8; // where the way itself is looked at
 const JOINT_REACH = 0.08; // around a selected joint, of the character's size
 
 export const VIEWS = {
@@ -54,7 +55,7 @@ export class Framing {
     const far = stage.distance;
     stage.frame(now, from);
     const near = stage.distance;
-    if (far > FAR * near) {
+    if (far > (stage.terrain ? FAR_ON_GROUND : FAR) * near) {
       this.follow(true);
     } else {
       stage.frame(whole, from);
