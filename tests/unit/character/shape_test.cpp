@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "character/mesh.h"
 #include "character/motion.h"
 #include "character/space.h"
@@ -202,6 +204,20 @@ TEST(ImportedShape, MeshesHungOnJointsFollowThem) {
   ASSERT_EQ(imported.actor.model.parts.size(), 2u);
   // Neither the holder nor the mesh is a joint.
   EXPECT_EQ(imported.clip.joint_count(), 4);
+}
+
+// A model has no place for them: who imports has to know.
+TEST(ImportedShape, VertexColoursThatAModelDoesNotHoldAreReported) {
+  nodes::Scene scene = armature_scene();
+  nodes::Primitive& shape = scene.meshes.front().primitives.front();
+  shape.colours = std::make_shared<const std::vector<Vec4f>>(shape.vertex_count(), Vec4f::Ones());
+  const auto evaluator = *nodes::Evaluator::create(scene);
+  const Imported imported = import(scene, evaluator);
+  const auto reported =
+      std::ranges::find(imported.diagnostics, "scene-mesh-attributes", &Diagnostic::code);
+  ASSERT_NE(reported, imported.diagnostics.end());
+  EXPECT_NE(reported->message.find("vertex colours: those of 1 mesh part"), std::string::npos)
+      << reported->message;
 }
 
 TEST(ImportedShape, AMirroredMeshKeepsItsOutside) {
