@@ -27,13 +27,15 @@ void declare(CommandOptions& command, Options& options) {
                                  {"together", Layout::together},
                                  {"list", Layout::list}}))
       .default_str("auto");
-  command.add_flag("--difference", options.difference,
-                   "Show the first two characters together: the first coloured by its distance from "
-                   "the second, with a legend, the second as a ghost");
-  add_body_option(command, options.body,
-                  "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
-                  "high (40,000), or auto: medium, low for more than two actors. Motions of one skeleton "
-                  "share a body");
+  command.add_flag(
+      "--difference", options.difference,
+      "Show the first two characters together: the first coloured by its distance from "
+      "the second, with a legend, the second as a ghost");
+  add_body_option(
+      command, options.body,
+      "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
+      "high (40,000), or auto: medium, low for more than two actors. Motions of one skeleton "
+      "share a body");
   command
       .add_option("--keys WHICH", options.keys,
                   "Contacts and keytimes to mark on the timeline: auto (from the sidecar "

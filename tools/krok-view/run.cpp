@@ -138,8 +138,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   Json clips = Json::array();
   for (const Files::Glb& glb : files->glbs) {
     for (std::size_t i = 0; i < glb.rates.size(); ++i) {
-      clips.push_back(
-          {{"file", glb.name}, {"name", glb.animations[i]}, {"rate", glb.rates[i]}});
+      clips.push_back({{"file", glb.name}, {"name", glb.animations[i]}, {"rate", glb.rates[i]}});
     }
   }
   context.report.result["clips"] = std::move(clips);
