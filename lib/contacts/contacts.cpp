@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "contacts/series_internal.h"
+#include "math/median.h"
 
 namespace krok {
 
@@ -75,14 +76,14 @@ std::vector<Run> low_runs(const std::vector<double>& values, double on, double o
 }
 
 Vec3 middle_place(const std::vector<Vec3>& track, double first, double last) {
-  std::array<std::vector<double>, 3> values;
+  std::vector<Vec3> places;
   const int from = static_cast<int>(std::ceil(first)), to = static_cast<int>(std::floor(last));
   for (int f = std::min(from, to); f <= std::max(from, to); ++f) {
     const auto place =
         static_cast<std::size_t>(std::clamp(f, 0, static_cast<int>(track.size()) - 1));
-    for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(track[place][i]);
+    places.push_back(track[place]);
   }
-  return {contacts::middle(values[0]), contacts::middle(values[1]), contacts::middle(values[2])};
+  return median_place(places);
 }
 
 // Cuts a run to its longest part within the thresholds of the run's own level.

@@ -89,7 +89,7 @@ void WalkingFeet::to_landings(Foot& foot) const {
     const double speed = speeds_[frame_at(middle)];
     const bool backward = forward_[frame_at(middle)] < 0;
     const bool run = runs(middle) && speed * speed >= kJog * kGravity * leg_;
-    if (stance.slides || (!run && !backward)) continue;
+    if (!run && (!backward || stance.slides)) continue;
     double fastest = 0;
     const int cycle = static_cast<int>(foot.cycle * clip_.rate);
     const int around = static_cast<int>(frame_at(middle));
@@ -98,13 +98,15 @@ void WalkingFeet::to_landings(Foot& foot) const {
     }
     const double slow = (run ? kLanding : kDragged) * fastest;
     if (!stance.open_start && run) {
-      const int last = static_cast<int>(stance.start * clip_.rate) - reach;
-      int f = static_cast<int>(std::ceil(stance.start * clip_.rate));
-      while (f > std::max(0, last) && slowest(f - 1) <= slow) --f;
+      const int first = static_cast<int>(std::ceil(stance.start * clip_.rate));
+      int f = first;
+      // A sprinter's foot still travels where its contact begins: it lands as it slows down.
+      while (f < std::min(frames - 1, first + reach) && slowest(f) > slow) ++f;
+      while (f > std::max(0, first - reach - 1) && slowest(f - 1) <= slow) --f;
       const double before = i == 0 ? 0 : foot.stances[i - 1].end;
-      if (f > std::max(0, last)) {
+      if (f > std::max(0, first - reach - 1) && slowest(f) <= slow) {
         const double landed = crossed_at(slowest, f, f - 1, slow) / clip_.rate;
-        if (landed > before) stance.start = std::min(stance.start, landed);
+        if (landed > before && landed < stance.end) stance.start = landed;
       }
     }
     if (!stance.open_end) {

@@ -167,22 +167,21 @@ double break_near(const std::vector<Vec3>& track, double guess, double window, b
 
 double jitter_of(const std::vector<Vec3>& track) {
   // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance, that of movement
-  // is small; the lower quartile of |x| of a Gaussian is 0.3186 of its deviation; feet rest for
-  // more than a quarter of the time.
-  double worst = 0;
-  std::vector<double> differences;
-  for (int axis = 0; axis < 3; ++axis) {
-    differences.clear();
-    for (std::size_t f = 3; f < track.size(); ++f) {
-      differences.push_back(std::abs(track[f][axis] - 3 * track[f - 1][axis] +
-                                     3 * track[f - 2][axis] - track[f - 3][axis]));
-    }
-    if (differences.empty()) return 0;
-    const auto half = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 4);
-    std::nth_element(differences.begin(), half, differences.end());
-    worst = std::max(worst, *half / 0.3186 / std::sqrt(20.0));
+  // is small. The lower quartile of |x| of a Gaussian is 0.3186 of its deviation, that of the
+  // length of two is sqrt(2 ln(4/3)); feet rest for more than a quarter of the time.
+  if (track.size() < 4) return 0;
+  std::vector<double> level, upright;
+  for (std::size_t f = 3; f < track.size(); ++f) {
+    const Vec3 third = track[f] - 3 * track[f - 1] + 3 * track[f - 2] - track[f - 3];
+    level.push_back(std::sqrt(third.x() * third.x() + third.z() * third.z()));
+    upright.push_back(std::abs(third.y()));
   }
-  return worst;
+  const auto quartile = [](std::vector<double>& sizes) {
+    const auto part = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 4);
+    std::nth_element(sizes.begin(), part, sizes.end());
+    return *part / std::sqrt(20.0);
+  };
+  return std::max(quartile(level) / std::sqrt(2 * std::log(4.0 / 3)), quartile(upright) / 0.3186);
 }
 
 double cutoff_for(double jitter, double speed, double rate) {

@@ -28,8 +28,9 @@ double middle(std::vector<double> values);
 double break_near(const std::vector<Vec3>& track, double guess, double window, bool arrives,
                   double stiffness = 0.3);
 
-// Standard deviation of a track's frame-to-frame jitter (metres, the worst axis), assumed to be
-// white noise, from the lower quartile of its third differences.
+// Standard deviation of a track's frame-to-frame jitter (metres, the worse of height and
+// the ground's directions), assumed to be white noise, from the lower quartile of its third
+// differences.
 double jitter_of(const std::vector<Vec3>& track);
 
 // The cutoff (Hz) at which jitter of that deviation adds no more speed than `speed` (metres per

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contacts/series_internal.h"
+#include "math/median.h"
 
 namespace krok {
 
@@ -139,14 +140,12 @@ Vec3 up_in(const Clip& clip, int joint, const std::vector<int>& flat, const UpOf
   const Quat& reference = clip.skeleton.reference[static_cast<std::size_t>(joint)].orientation;
   const Vec3 at_reference = reference.conjugate() * Vec3::UnitY();
   if (flat.empty()) return at_reference;
-  std::array<std::vector<double>, 3> values;
+  std::vector<Vec3> ups;
   for (const int frame : flat) {
     const Vec3 there = ground ? ground(position(clip, frame, joint)) : Vec3(Vec3::UnitY());
-    const Vec3 up = orientation(clip, frame, joint).conjugate() * there;
-    for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(up[i]);
+    ups.emplace_back(orientation(clip, frame, joint).conjugate() * there);
   }
-  const Vec3 up(contacts::middle(values[0]), contacts::middle(values[1]),
-                contacts::middle(values[2]));
+  const Vec3 up = median_point(ups);
   return up.norm() > 0.1 ? Vec3(up.normalized()) : at_reference;
 }
 
@@ -160,13 +159,12 @@ Vec3 place_in(const Clip& clip, int joint, int frame_joint, const std::vector<in
     return relative(clip.skeleton.reference[static_cast<std::size_t>(joint)].position,
                     from.position, from.orientation);
   }
-  std::array<std::vector<double>, 3> values;
+  std::vector<Vec3> places;
   for (const int frame : flat) {
-    const Vec3 at = relative(position(clip, frame, joint), position(clip, frame, frame_joint),
-                             orientation(clip, frame, frame_joint));
-    for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(at[i]);
+    places.push_back(relative(position(clip, frame, joint), position(clip, frame, frame_joint),
+                              orientation(clip, frame, frame_joint)));
   }
-  return {contacts::middle(values[0]), contacts::middle(values[1]), contacts::middle(values[2])};
+  return median_point(places);
 }
 
 // The forward direction in the foot joint's frame, perpendicular to `up`.

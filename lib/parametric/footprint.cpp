@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/euler.h"
+#include "math/median.h"
 
 namespace krok::parametric {
 
@@ -14,28 +15,6 @@ namespace {
 constexpr double kUpright = 1e-3;  // of the horizontal part of a unit vector
 constexpr double kClimb = 0.15;    // of the leg length, between the heights of contacts
 
-// Collects vectors for a component-wise median.
-class Medians {
- public:
-  void add(const Vec3& v) {
-    for (int i = 0; i < 3; ++i) values_[static_cast<std::size_t>(i)].push_back(v[i]);
-  }
-  bool empty() const { return values_[0].empty(); }
-  Vec3 median() {
-    Vec3 result;
-    for (int i = 0; i < 3; ++i) {
-      auto& values = values_[static_cast<std::size_t>(i)];
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      result[i] = *middle;
-    }
-    return result;
-  }
-
- private:
-  std::array<std::vector<double>, 3> values_;
-};
-
 Quat orientation(const Clip& clip, int frame, int joint) {
   return clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
       .cast<double>()
@@ -43,7 +22,7 @@ Quat orientation(const Clip& clip, int frame, int joint) {
 }
 
 // The up direction in the foot's frame, for frames with both heel and ball in contact.
-void add_flat_frames(const ClipContacts& given, FootSide side, int joint, Medians& up) {
+void add_flat_frames(const ClipContacts& given, FootSide side, int joint, std::vector<Vec3>& ups) {
   if (given.contacts == nullptr) return;
   const Clip& clip = *given.clip;
   std::vector<std::uint8_t> heel(static_cast<std::size_t>(clip.frame_count()), 0), front = heel;
@@ -58,7 +37,7 @@ void add_flat_frames(const ClipContacts& given, FootSide side, int joint, Median
   }
   for (int f = 0; f < clip.frame_count(); ++f) {
     if (heel[static_cast<std::size_t>(f)] && front[static_cast<std::size_t>(f)]) {
-      up.add(orientation(clip, f, joint).conjugate() * Vec3::UnitY());
+      ups.emplace_back(orientation(clip, f, joint).conjugate() * Vec3::UnitY());
     }
   }
 }
@@ -111,18 +90,18 @@ Result<std::array<FootShape, 2>> find_foot_shapes(std::span<const ClipContacts> 
   const bool has_level = !std::ranges::all_of(clips, climbs);
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     FootShape& shape = shapes[static_cast<std::size_t>(side)];
-    Medians heel, front, up;
+    std::vector<Vec3> heels, fronts, ups;
     for (const ClipContacts& given : clips) {
       if (has_level && climbs(given)) continue;
       const Feet feet = find_feet(*given.clip, roles);
       const auto& points = feet.points[static_cast<std::size_t>(side)];
       if (points.empty()) continue;
       shape.joint = points.front().joint;
-      heel.add(points.front().offset);
+      heels.push_back(points.front().offset);
       if (points.size() > 1) {
-        front.add(front_of(given.clip->skeleton, points[1], shape.joint));
+        fronts.push_back(front_of(given.clip->skeleton, points[1], shape.joint));
       }
-      add_flat_frames(given, side, shape.joint, up);
+      add_flat_frames(given, side, shape.joint, ups);
     }
     if (shape.joint < 0) {
       return Error("parametric-feet", "the skeleton has no known feet",
@@ -132,10 +111,10 @@ Result<std::array<FootShape, 2>> find_foot_shapes(std::span<const ClipContacts> 
     const Quat world_to_foot =
         skeleton.reference[static_cast<std::size_t>(shape.joint)].orientation.conjugate();
     const Vec3 at_reference = world_to_foot * Vec3::UnitY();
-    const Vec3 above = up.empty() ? at_reference : up.median();
+    const Vec3 above = ups.empty() ? at_reference : median_point(ups);
     const Vec3 upward = above.norm() > 0.1 ? Vec3(above.normalized()) : at_reference;
-    shape.heel = heel.median();
-    Vec3 forward = front.empty() ? Vec3::Zero() : level(front.median() - shape.heel, upward);
+    shape.heel = median_point(heels);
+    Vec3 forward = fronts.empty() ? Vec3::Zero() : level(median_point(fronts) - shape.heel, upward);
     if (forward.norm() > 1e-3) {
       shape.length = forward.norm();
     } else {

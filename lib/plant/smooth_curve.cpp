@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numbers>
 
 #include "plant/smooth_curve_internal.h"
 
@@ -97,26 +98,40 @@ std::vector<double> running_mean(std::span<const double> values, int reach) {
 
 }  // namespace
 
-double jitter_of(const KnownCurve& curve, int axis) {
-  // The third difference of white noise has 1 + 9 + 9 + 1 = 20 times its variance, that of movement
-  // is small for most frames; the median of |x| of a Gaussian is 0.6745 of its deviation.
+namespace {
+
+// The median size of the third differences of values known from frame to frame, by `size`. That of
+// white noise has 1 + 9 + 9 + 1 = 20 times its variance, that of movement is small for most frames.
+template <typename Size>
+double median_third_difference(const KnownCurve& curve, const Size& size) {
   std::vector<double> differences;
   differences.reserve(curve.values.size());
   int known = 0;  // in a row
   for (std::size_t f = 0; f < curve.values.size(); ++f) {
     known = curve.is_exact(f) ? known + 1 : 0;
     if (known < 4) continue;
-    const auto at = [&](std::size_t frame) { return curve.values[frame][axis]; };
-    differences.push_back(std::abs(at(f) - 3 * at(f - 1) + 3 * at(f - 2) - at(f - 3)));
+    const auto at = [&](std::size_t frame) -> const Vec3& { return curve.values[frame]; };
+    differences.push_back(size(at(f) - 3 * at(f - 1) + 3 * at(f - 2) - at(f - 3)));
   }
   if (differences.empty()) return 0;
   const auto half = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
   std::nth_element(differences.begin(), half, differences.end());
-  return *half / (0.6745 * std::sqrt(20.0));
+  return *half / std::sqrt(20.0);
+}
+
+}  // namespace
+
+double height_jitter_of(const KnownCurve& curve) {
+  // The median of |x| of a Gaussian is 0.6745 of its deviation.
+  return median_third_difference(curve, [](const Vec3& v) { return std::abs(v.y()); }) / 0.6745;
 }
 
 double jitter_of(const KnownCurve& curve) {
-  return std::hypot(jitter_of(curve, 0), jitter_of(curve, 1), jitter_of(curve, 2)) / std::sqrt(3.0);
+  // The median length of two such, as on the ground whatever its axes, is sqrt(2 ln 2).
+  const double level =
+      median_third_difference(curve, [](const Vec3& v) { return std::hypot(v.x(), v.z()); }) /
+      std::sqrt(2 * std::numbers::ln2);
+  return std::hypot(level, level, height_jitter_of(curve)) / std::sqrt(3.0);
 }
 
 double cutoff_against(double deviation, double speed, double rate) {

@@ -33,7 +33,7 @@ struct KnownCurve {
 // The deviation of the jitter of values known exactly from frame to frame, taken for white noise,
 // over all axes: the root mean square of one axis.
 double jitter_of(const KnownCurve& curve);
-double jitter_of(const KnownCurve& curve, int axis);
+double height_jitter_of(const KnownCurve& curve);  // of y alone
 
 // Hertz: the cutoff at which jitter of `deviation` is left with a speed of `speed` at most, within
 // 4 and 20 Hz.

@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "math/median.h"
 #include "plant/smooth_curve_internal.h"
 #include "plant/stays_internal.h"
 
@@ -25,13 +26,8 @@ double median(std::vector<double> values) {
 }
 
 Vec3 median_place(const std::vector<Vec3>& track, int first, int last) {
-  Vec3 place;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<double> values;
-    for (int f = first; f <= last; ++f) values.push_back(track[static_cast<std::size_t>(f)][axis]);
-    place[axis] = median(std::move(values));
-  }
-  return place;
+  return krok::median_place(std::span(track).subspan(static_cast<std::size_t>(first),
+                                                     static_cast<std::size_t>(last - first + 1)));
 }
 
 // The mean height of a stay without a tenth of its frames at either end of the order: more exact
@@ -211,7 +207,7 @@ class StayFixer {
       for (std::size_t f = 0; f < footing.tracks[p].size(); ++f) {
         if (footing.stay_at[p][f] >= 0) heights.set(f, Vec3(0, footing.tracks[p][f].y(), 0));
       }
-      footing.jitter.push_back(jitter_of(heights, 1));
+      footing.jitter.push_back(height_jitter_of(heights));
     }
   }
 
@@ -223,7 +219,7 @@ class StayFixer {
     for (std::size_t i = 0; i < heights.values.size(); ++i) {
       heights.set(i, track[static_cast<std::size_t>(stay.first) + i]);
     }
-    return jitter_of(heights, 1);
+    return height_jitter_of(heights);
   }
 
   const Clip& clip_;

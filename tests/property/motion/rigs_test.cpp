@@ -16,8 +16,10 @@
 #include "motion/mirror.h"
 #include "motion/retime.h"
 #include "motion/sample.h"
+#include "motion/travel.h"
 #include "parametric/cut_steps.h"
 #include "parametric/synthesise.h"
+#include "plant/plant_feet.h"
 #include "rbf/weight_solver.h"
 #include "timeline/mix.h"
 #include "unit/blend/rigged_walks.h"
@@ -113,6 +115,13 @@ Clip mirrored(const Walks& walks) {
   return mirror(walks[0].clip, find_mirror_pairs(walks[0].clip.skeleton, roles));
 }
 
+Clip planted(const Walks& walks) {
+  auto result = plant_feet(walks[1].clip, roles_of(walks));
+  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
+  EXPECT_GT(result->stays.size(), 4U);
+  return std::move(result->clip);
+}
+
 // The steps of both walks, those of the other foot mirrored.
 parametric::Library library_of(const Walks& walks, const std::vector<std::string>& parameters) {
   std::vector<FoundContacts> found;
@@ -166,7 +175,12 @@ std::vector<Operation> operations() {
   add("repeat", [](const Walks& w) { return looped(w, 3); });
   add("join", joined);
   add("retime", [](const Walks& w) { return *resample(w[0].clip, 44); });
-  add("synthesise", synthesised, Moves::not_at_all, 2e-3);
+  for (const Travel travel : {Travel::all, Travel::trend}) {
+    add("in place",
+        [=](const Walks& w) { return in_place(w[0].clip, carrying_joint(roles_of(w)), travel); });
+  }
+  add("plant", planted);
+  add("synthesise", synthesised, Moves::not_at_all);
   add(
       "mirror", [](const Walks& w) { return mirrored(w); }, Moves::mirrored);
   return list;
@@ -221,6 +235,8 @@ TEST(Rigs, ARootKeepsDoingWhatItDoes) {
     for (int f = 0; f < still.frame_count() && !loops; ++f) {
       ASSERT_LT(still.frame_positions(f)[0].norm(), 1e-6f) << operation.name << ", frame " << f;
     }
+    // Planting takes the hips' jitter out and leaves what is above them alone.
+    if (operation.name == "plant") continue;
     const Clip sliding = of(blend::Rig::ground_root);
     const int hips = sliding.skeleton.find("Hips");
     for (int f = 0; f < sliding.frame_count(); ++f) {

@@ -197,6 +197,42 @@ TEST(Jump, BothFeetLeaveAndLand) {
   for (std::size_t i = 1; i < keys.size(); ++i) EXPECT_GE(keys[i].time, keys[i - 1].time + 9e-6);
 }
 
+// A sprint of 8 m/s, 0.5 s a cycle: a foot that never stops but slides at 0.6 m/s for 0.1 s, speeds
+// up evenly for 0.2 s and slows down again. Its landing is where it has 0.12 of its greatest speed.
+struct Sprint {
+  static constexpr double cycle = 0.5, slide = 0.6, stance = 0.1, rise = 0.2;
+  static constexpr double most = (8 * cycle - slide * stance) / rise - slide;  // m/s
+  static constexpr double gain = (most - slide) / rise;                        // m/s per second
+  static constexpr double landing = cycle - (0.12 * most - slide) / gain;      // s, in a cycle
+
+  static Vec3 foot(double t, double phase) {
+    const double whole = std::floor((t + phase) / cycle), u = t + phase - cycle * whole;
+    const double up = std::clamp(u - stance, 0.0, rise), down = std::max(0.0, u - stance - rise);
+    const double way =
+        slide * u + 0.5 * gain * up * up + (most - slide) * down - 0.5 * gain * down * down;
+    const double swing = std::clamp((u - stance) / (2 * rise), 0.0, 1.0);
+    return {0, 0.15 * (1 - std::cos(2 * kPi * swing)), 8 * (cycle * whole - phase) + way};
+  }
+};
+TEST(Sprint, LandsWhereTheSlidingFootHasSlowedDown) {
+  for (const double rate : {60.0, 120.0}) {
+    const Clip clip = Legs(rate).move(
+        4, [](double t) { return Vec3(0, 0, 8 * (t - 0.05)); },
+        [](double t) { return Sprint::foot(t, 0); },
+        [](double t) { return Sprint::foot(t, Sprint::cycle / 2); });
+    const std::vector<Keytime> keys = test::keytimes_of(clip);
+    std::vector<double> left, right;
+    for (int step = 0; step < 8; ++step) {
+      if (step < 7) left.push_back(Sprint::landing + Sprint::cycle * step);
+      right.push_back(Sprint::landing + Sprint::cycle * (step - 0.5));
+    }
+    test::Hits strikes;
+    match(left, test::times_of(keys, "left_strike"), strikes);
+    match(right, test::times_of(keys, "right_strike"), strikes);
+    EXPECT_EQ(strikes.share(), 1) << rate;
+  }
+}
+
 // Feet on pedals go to and fro and never stand.
 TEST(Pedalling, HasNoSteps) {
   const auto pedal = [](double t, double phase) -> Vec3 {
