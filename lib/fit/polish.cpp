@@ -31,6 +31,8 @@ constexpr std::uint32_t kMaxTries = 1000;  // per accepted point
 constexpr detail::JointTerms kTerms = {.stay = 0.003, .positive = 0.1, .low = 0, .iterations = 100};
 constexpr double kParts[] = {1, 0.5, 0.25};  // of the full change
 constexpr double kMaxRoughness = 1.1;        // relative to the unrefined function
+// A weight that was too low before may be lower by this: far less than what refusing would cost.
+constexpr double kSameWeight = 5e-4;
 constexpr std::size_t kPolishGrain = 8;
 
 // Weight functions with their metrics.
@@ -154,7 +156,7 @@ bool Polisher::is_better(const Candidate& polished, const Candidate& found) cons
     if (now.within[a].largest > most) return false;
   }
   return std::min(polished.lowest, now.least_weight) >=
-             std::min({options_.lowest, found.lowest, was.least_weight}) &&
+             std::min({options_.lowest, found.lowest - kSameWeight, was.least_weight}) &&
          now.roughness <= std::max(kMaxRoughness * start_.before.roughness, was.roughness);
 }
 
