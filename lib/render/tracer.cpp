@@ -191,6 +191,7 @@ Result<TracedActor> Tracer::add(const Actor& actor) const {
   for (const Surface& surface : actor.surfaces) {
     const RTCGeometry geometry = mesh(device, surface, traced);
     if (surface.paint != nullptr && surface.paint->cutoff > 0) {
+      traced.has_holes_ = true;
       rtcSetGeometryUserData(geometry, const_cast<Surface*>(&surface));
       rtcSetGeometryIntersectFilterFunction(geometry, &cut_out);
       rtcSetGeometryOccludedFilterFunction(geometry, &cut_out);

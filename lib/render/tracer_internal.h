@@ -41,7 +41,8 @@ class TracedActor {
 
   const Bounds& box() const { return box_; }
   const Vec3& middle() const { return middle_; }
-  double unit() const { return unit_; }  // metres
+  double unit() const { return unit_; }          // metres
+  bool has_holes() const { return has_holes_; }  // parts that an alpha test cuts out
 
   // The nearest visible hit.
   std::optional<Hit> look(const Sight& sight) const;
@@ -71,6 +72,7 @@ class TracedActor {
   Bounds box_;
   Vec3 middle_ = Vec3::Zero();
   double unit_ = 1;
+  bool has_holes_ = false;
   std::unique_ptr<Scene> scene_;
 };
 

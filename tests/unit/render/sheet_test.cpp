@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "unit/render/actors.h"
 
@@ -202,6 +203,57 @@ TEST(Sheet, RaisedItShowsAShadowUnderTheActor) {
     return static_cast<int>(pixel_at(*image, projected(cell, {0.05, 0, 0.34})).red);
   };
   EXPECT_LT(darkest(0.7), 225) << "the panel has 244";
+}
+
+// Shadows are computed at few points and interpolated; a step between two blocks would show.
+TEST(Sheet, AShadowFadesEvenly) {
+  Actor actor;
+  actor.bones = {ball({0, 0.3, 0}, 0.3, kRed)};
+  Actor far;  // makes the picture wide
+  far.bones = {ball({1.2, 0.01, 0}, 0.01, kGreen)};
+  Sheet sheet = sheet_of(actor, 0, 0.5 * kPi);
+  sheet.rows[0].cells[0].layers.push_back({&far});
+  const auto image = make_sheet(sheet, {.row_height = 400, .cell_width = 800});
+  ASSERT_TRUE(image.ok());
+  const CellLayout& cell = image->cells[0];
+  const double step = image->height_step;  // of the grid
+  int before = -1, steps = 0;
+  for (int x = cell.right - 20; x > cell.left; --x) {
+    const double metres = (x + 0.5 - cell.camera.place_of_target.x()) / image->pixels_per_metre;
+    if (std::abs(metres - step * std::round(metres / step)) * image->pixels_per_metre < 3) continue;
+    const Colour colour = pixel_at(*image, projected(cell, {metres, 0, 0.3 * step}));
+    if (colourfulness(colour) > 20) break;  // the ball
+    if (before >= 0) {
+      EXPECT_LE(colour.red, before + 3) << "darker towards the ball, at " << x;
+      EXPECT_GE(colour.red, before - 12) << "in small steps, at " << x;
+      steps += colour.red < before ? 1 : 0;
+    }
+    before = colour.red;
+  }
+  EXPECT_GT(steps, 10);
+  EXPECT_LT(before, 235) << "the panel has 244";
+}
+
+// Smooth pixels have one line of sight; outlines keep all samples.
+TEST(Sheet, AnOutlineIsBlendedAndASmoothSurfaceIsEven) {
+  Actor actor;
+  actor.surfaces = {box({-0.5, 0, -0.5}, {0.5, 1, 0.5}, kRed)};
+  actor.bones = {{Vec3f(-0.9F, 1.2F, 0), Vec3f(0.9F, 1.9F, 0), 0.02F, 0.02F, kGreen, kGreen}};
+  const auto image = make_sheet(sheet_of(actor), {.row_height = 400});
+  ASSERT_TRUE(image.ok());
+  const CellLayout& cell = image->cells[0];
+  std::set<int> shades;
+  for (double height = 1.0; height < 2; height += 0.001) {
+    shades.insert(pixel_at(*image, projected(cell, {0.6, height, 0})).red);
+  }
+  EXPECT_GE(shades.size(), 5u) << "of the bar's slanted edge";
+  int least = 255, most = 0;
+  for (double x = -0.4; x < 0.4; x += 0.01) {
+    const int red = pixel_at(*image, projected(cell, {x, 0.5, 0.5})).red;
+    least = std::min(least, red);
+    most = std::max(most, red);
+  }
+  EXPECT_LE(most - least, 2) << "nothing is near this face";
 }
 
 TEST(Sheet, WhatHasNoSizeIsShownToo) {
