@@ -3,11 +3,13 @@
 // there.
 
 import { execFileSync } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 
+const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const bin = process.argv[2];
 const folder = mkdtempSync(join(tmpdir(), 'krok-page-'));
 const faults = [];
@@ -39,7 +41,8 @@ export async function until(page, condition) {
   throw new Error(`waited in vain for ${condition}`);
 }
 
-export async function open(name, options = {}) {
+// `ready` is asked of the page, before it is handed out.
+export async function open(name, options = {}, ready = () => globalThis.krokView?.ready) {
   // A page moves at once, which most checks have no use for.
   const context = await browser.newContext({ viewport: { width: 900, height: 600 }, reducedMotion: 'reduce', ...options });
   const page = await context.newPage();
@@ -59,7 +62,7 @@ export async function open(name, options = {}) {
     }
   });
   await page.goto(`file://${made(name)}`);
-  await until(page, () => globalThis.krokView?.ready);
+  await until(page, ready);
   return page;
 }
 
@@ -73,6 +76,16 @@ export async function drawn(page, act) {
     await new Promise((wake) => { setTimeout(wake, 20); });
   }
   expect(false, `nothing is drawn after ${act}`);
+}
+
+// Without findings of axe-core: names, roles, contrast.
+export async function axeFinds(page, where) {
+  await page.evaluate(AXE);
+  const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ['violations'] }));
+  for (const { id, nodes } of violations) {
+    expect(false, `axe-core, ${where}: ${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
+  }
+  expect(violations.length === 0, `axe-core, ${where}: ${violations.length} findings`);
 }
 
 // Does the checks of a test; exit code 1 if one fails, or fewer than `least` were done.

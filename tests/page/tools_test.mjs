@@ -3,12 +3,10 @@
 // Usage: node tools_test.mjs BIN_FOLDER SOURCE_FOLDER.
 
 import { copyFileSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join } from 'node:path';
-import { check, drawn, expect, made, open, run, until } from './checks.mjs';
+import { axeFinds, check, drawn, expect, made, open, run, until } from './checks.mjs';
 
 const source = process.argv[3];
-const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const WALK = join(source, 'samples/captures/walk.bvh');
 const RATE = 60;
 
@@ -432,16 +430,6 @@ async function savesAndLinks(page) {
   const wires = await pixels(page, 'wireframe');
   expect(wires.filter((pixel, i) => pixel.join() !== before[i].join()).length > 2000, 'w shows no wireframe');
   await drawn(page, () => page.keyboard.press('w'));
-}
-
-// Without findings of axe-core: names, roles, contrast.
-async function axeFinds(page, where) {
-  await page.evaluate(AXE);
-  const { violations } = await page.evaluate(() => axe.run(document, { resultTypes: ['violations'] }));
-  for (const { id, nodes } of violations) {
-    expect(false, `axe-core, ${where}: ${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
-  }
-  expect(violations.length === 0, `axe-core, ${where}: ${violations.length} findings`);
 }
 
 // Tab reaches every control that is shown.

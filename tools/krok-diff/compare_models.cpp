@@ -19,15 +19,16 @@ Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
   const auto found =
       compare::difference(models->first, models->second, options.tolerance, options.matching);
   if (!found) return found.error();
-  const Status status = draw_sheet(
-      options, context, [&] { return sheet_of(models->first, models->second, found->positions); });
+  Outcome outcome;
+  const Status status = draw(
+      options, context, found->same(),
+      [&] { return sheet_of(models->first, models->second, found->positions); }, outcome.pictures);
   if (!status) return status.error();
   if (!options.heatmap.empty()) {
     const compare::SceneOptions how{options.tolerance, options.matching};
     const Status step = write_heatmap(models->first, models->second, how, options.heatmap, context);
     if (!step) return step.error();
   }
-  Outcome outcome;
   outcome.kind = word_of(InputKind::model);
   outcome.summary = {
       fmt::format("models: {}, {}, {}", counted(models->first.vertex_count(), "vertex", "vertices"),

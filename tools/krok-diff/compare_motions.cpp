@@ -19,18 +19,17 @@ Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
   const auto found =
       compare::difference(clips->first, clips->second, options.tolerance, options.matching);
   if (!found) return found.error();
-  const Status status = draw_sheet(
-      options, context, [&] { return sheet_of(clips->first, clips->second, found->positions); });
-  if (!status) return status.error();
-  if (!options.plot.empty()) {
-    const auto [first_name, second_name] = image_names(options);
-    const PlottedClip a{first_name, &clips->first};
-    const PlottedClip b{second_name, &clips->second};
-    if (Status step = write_plot(a, b, *found, options.plot, context); !step) {
-      return step.error();
-    }
-  }
   Outcome outcome;
+  const Status status = draw(
+      options, context, found->same(),
+      [&] { return sheet_of(clips->first, clips->second, found->positions); }, outcome.pictures);
+  if (!status) return status.error();
+  const auto [first_name, second_name] = image_names(options);
+  const PlottedClip a{first_name, &clips->first};
+  const PlottedClip b{second_name, &clips->second};
+  const Status step = plot(
+      options, context, found->same(), [&] { return plot_of(a, b, *found); }, outcome.chart);
+  if (!step) return step.error();
   outcome.kind = word_of(InputKind::motion);
   outcome.summary = {fmt::format("motions: {}, {} compared",
                                  counted(clips->first.joint_count(), "joint"),

@@ -165,23 +165,26 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
   const auto found = compare::difference(a.scene, b.scene, how, context.jobs, *context.progress);
   if (!found) return found.error();
   const bool bare = a.scene.meshes.empty() || b.scene.meshes.empty();
-  const Status status = draw_sheet(options, context, [&] {
-    return sheet_of(a.scene, b.scene, bare ? found->joint_positions : found->positions,
-                    options.matching);
-  });
+  Outcome outcome = outcome_of(a, b, *found);
+  const bool flat = first_kind == InputKind::points || second_kind == InputKind::points;
+  const Status status = draw(
+      options, context, found->same() || flat,
+      [&] {
+        return sheet_of(a.scene, b.scene, bare ? found->joint_positions : found->positions,
+                        options.matching);
+      },
+      outcome.pictures);
   if (!status) return status.error();
-  if (!options.plot.empty()) {
-    const auto [first_name, second_name] = image_names(options);
-    const PlottedScenes scenes{first_name, second_name, &a.scene, &*found};
-    if (Status step = write_plot(scenes, options.plot, context); !step) {
-      return step.error();
-    }
-  }
+  const auto [first_name, second_name] = image_names(options);
+  const PlottedScenes scenes{first_name, second_name, &a.scene, &*found};
+  const Status drawn = plot(
+      options, context, found->same(), [&] { return plot_of(scenes); }, outcome.chart);
+  if (!drawn) return drawn.error();
   if (!options.heatmap.empty()) {
     const Status step = write_heatmap(a.scene, *found, options.heatmap, context);
     if (!step) return step.error();
   }
-  return outcome_of(a, b, *found);
+  return outcome;
 }
 
 }  // namespace krok::cli::diff

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "tools/krok-diff/compare_files.h"
+#include "tools/krok-diff/difference_plot.h"
 
 // Shared by the comparisons of all file types.
 
@@ -35,13 +37,31 @@ inline std::pair<std::string, std::string> image_names(const Options& options) {
   return names;
 }
 
-// Draws the sheet, if requested.
-inline Status draw_sheet(const Options& options, ToolContext& context,
-                         const std::function<DifferenceSheet()>& make) {
-  if (options.sheet.path.empty()) return {};
+// Draws the sheet, if requested, and the pictures for the page of a summary. Files whose pictures
+// cannot be drawn have none.
+inline Status draw(const Options& options, ToolContext& context, bool same,
+                   const std::function<DifferenceSheet()>& make,
+                   std::optional<Pictures>& pictures) {
+  const bool on_page = options.has_page() && !same;
+  if (options.sheet.path.empty() && !on_page) return {};
   DifferenceSheet sheet = make();
+  if (on_page) {
+    if (auto made = make_pictures(sheet, context.jobs)) pictures = *std::move(made);
+  }
+  if (options.sheet.path.empty()) return {};
   std::tie(sheet.first_name, sheet.second_name) = image_names(options);
   return write_sheet(sheet, options.sheet, context);
+}
+
+// Writes the plot, if requested, and makes the chart for the page of a summary.
+inline Status plot(const Options& options, ToolContext& context, bool same,
+                   const std::function<Result<Plot>()>& make, std::string& chart) {
+  const bool on_page = options.has_page() && !same;
+  if (options.plot.empty() && !on_page) return {};
+  const auto made = make();
+  if (made && on_page) chart = made->svg;
+  if (options.plot.empty()) return {};
+  return write_plot(made, options.plot, context);
 }
 
 }  // namespace krok::cli::diff

@@ -20,15 +20,10 @@ using draw::Scale;
 
 constexpr std::size_t kMaxAnimations = 8;
 
-Status not_drawn(const std::string& path, const std::string& why, ToolContext& context) {
-  context.warn("diff-plot", fmt::format("{} is not drawn: {}", path, why));
-  return {};
-}
-
-Status write_chart(const draw::Chart& chart, const std::string& path, ToolContext& context) {
-  const auto svg = draw::to_svg(chart);
+Result<Plot> finished(const draw::Chart& chart, std::size_t left_out) {
+  auto svg = draw::to_svg(chart);
   if (!svg) return svg.error();
-  return write_output(context, path, [&](OutputFile& file) { return file.write(*svg); });
+  return Plot{*std::move(svg), left_out};
 }
 
 // Adds the tolerance and the time of the max.
@@ -99,9 +94,8 @@ Status check_plot_name(const std::string& path) {
                "use the extension .svg");
 }
 
-Status write_plot(const PlottedClip& first, const PlottedClip& second,
-                  const compare::ClipDifference& found, const std::string& path,
-                  ToolContext& context) {
+Result<Plot> plot_of(const PlottedClip& first, const PlottedClip& second,
+                     const compare::ClipDifference& found) {
   const RoleMap first_roles = find_roles(first.clip->skeleton);
   const RoleMap second_roles = find_roles(second.clip->skeleton);
   draw::ChartedMotion a{first.name, first.clip, &first_roles, {}, {}};
@@ -109,7 +103,7 @@ Status write_plot(const PlottedClip& first, const PlottedClip& second,
   a.frames = {0, first.clip->frame_count() - 1};
   b.frames = {0, second.clip->frame_count() - 1};
   const auto difference = draw::difference_over_time(a, b, {});
-  if (!difference) return not_drawn(path, difference.error().message, context);
+  if (!difference) return Error("diff-plot", difference.error().message);
   draw::Chart chart;
   chart.title = fmt::format("{} and {}", first.name, second.name);
   auto [distances, angles] = draw::difference_charts(*difference);
@@ -118,16 +112,16 @@ Status write_plot(const PlottedClip& first, const PlottedClip& second,
   for (const ChartedDifference* charted : {&distances, &angles}) {
     chart.panels.push_back(draw::difference_panel(*charted, Scale::linear));
   }
-  return write_chart(chart, path, context);
+  return finished(chart, 0);
 }
 
-Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolContext& context) {
+Result<Plot> plot_of(const PlottedScenes& scenes) {
   const compare::SceneDifference& found = *scenes.found;
   std::map<int, Moments> animations;
   for (const compare::MomentDifference& moment : found.moments) {
     if (moment.frame >= 0) animations[moment.animation].push_back(&moment);
   }
-  if (animations.empty()) return not_drawn(path, "the two have no animation in common", context);
+  if (animations.empty()) return Error("diff-plot", "the two have no animation in common");
   const bool any = std::any_of(animations.begin(), animations.end(),
                                [&](const auto& one) { return differs(one.second, found); });
   const bool several = animations.size() > 1;
@@ -152,13 +146,23 @@ Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolCont
       chart.panels.push_back(draw::difference_panel(charted, Scale::linear));
     }
   }
-  if (left > 0) {
-    context.warn("diff-plot", fmt::format("{} more animations that differ are not drawn", left));
-  }
   if (chart.panels.empty()) {
-    return not_drawn(path, "the two have neither meshes nor joints in common", context);
+    return Error("diff-plot", "the two have neither meshes nor joints in common");
   }
-  return write_chart(chart, path, context);
+  return finished(chart, left);
+}
+
+Status write_plot(const Result<Plot>& plot, const std::string& path, ToolContext& context) {
+  if (!plot && plot.error().code != "diff-plot") return plot.error();
+  if (!plot) {
+    context.warn("diff-plot", fmt::format("{} is not drawn: {}", path, plot.error().message));
+    return {};
+  }
+  if (plot->left_out > 0) {
+    context.warn("diff-plot",
+                 fmt::format("{} more animations that differ are not drawn", plot->left_out));
+  }
+  return write_output(context, path, [&](OutputFile& file) { return file.write(plot->svg); });
 }
 
 }  // namespace krok::cli::diff

@@ -21,20 +21,27 @@ struct PlottedClip {
 // Error usage if the extension of `path` is not .svg.
 Status check_plot_name(const std::string& path);
 
-// Writes an SVG of the differences of joint positions and orientations. If the clips have no joint
-// or time in common: a warning, and no file.
-Status write_plot(const PlottedClip& first, const PlottedClip& second,
-                  const compare::ClipDifference& found, const std::string& path,
-                  ToolContext& context);
+struct Plot {
+  std::string svg;
+  std::size_t left_out = 0;  // animations that differ but are not drawn
+};
 
-// Writes an SVG of the differences of vertex positions, normals and tangents and of joint positions
-// and orientations, at the times compared; for several animations, of those that differ, at most
-// eight. If the scenes are static: a warning, and no file.
+// The differences of joint positions and orientations. Code diff-plot if the clips have no joint or
+// time in common.
+Result<Plot> plot_of(const PlottedClip& first, const PlottedClip& second,
+                     const compare::ClipDifference& found);
+
 struct PlottedScenes {
   std::string first_name, second_name;
   const compare::Scene* first = nullptr;
   const compare::SceneDifference* found = nullptr;
 };
-Status write_plot(const PlottedScenes& scenes, const std::string& path, ToolContext& context);
+// The differences of vertex positions, normals and tangents and of joint positions and
+// orientations, at the times compared; for several animations, of those that differ, at most eight.
+// Code diff-plot if the scenes are static.
+Result<Plot> plot_of(const PlottedScenes& scenes);
+
+// Writes the SVG. If there is nothing to draw (diff-plot): a warning, and no file.
+Status write_plot(const Result<Plot>& plot, const std::string& path, ToolContext& context);
 
 }  // namespace krok::cli::diff

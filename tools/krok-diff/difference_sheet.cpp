@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base64.h"
 #include "core/numbers.h"
+#include "render/png.h"
 
 namespace krok::cli::diff {
 
@@ -88,6 +90,17 @@ void add_rows(const DifferenceSheet& sheet, const ImageSide& side,
   for (render::SheetRow* row : {&first, &second, &both}) result.rows.push_back(std::move(*row));
 }
 
+// The pixels of a cell, as PNG in base64.
+Result<std::string> encoded_cell(const render::Image& sheet, const render::CellLayout& cell) {
+  render::Image part(cell.right - cell.left, cell.bottom - cell.top, {});
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x) part.set(x, y, sheet.at(cell.left + x, cell.top + y));
+  }
+  const auto png = render::write_png(part);
+  if (!png) return png.error();
+  return to_base64(*png);
+}
+
 }  // namespace
 
 DistanceColours distance_colours(double tolerance, double largest) {
@@ -102,6 +115,45 @@ DistanceColours distance_colours(double tolerance, double largest) {
   if (!(key.high > key.low)) key.high = key.low > 0 ? 2 * key.low : 1;
   colours.in_a_metre = unit.in_a_metre;
   return colours;
+}
+
+Result<Pictures> make_pictures(const DifferenceSheet& sheet, int jobs) {
+  constexpr int kHeight = 440, kMaxWidth = 640;  // pixels
+  const bool frames = sheet.span.rate > 0;
+  const ImageMoment moment =
+      sheet.worst.value_or(ImageMoment{sheet.span.start, frames ? sheet.span.first : -1});
+  const render::ColourKey key = distance_colours(sheet.tolerance, sheet.largest).key;
+  const Compared compared = sheet.at(moment, key);
+  const render::Actor pale = in_grey(compared.first);
+  render::SheetRow row;
+  row.yaw = sheet.heading + 0.25 * kPi;
+  row.elevation = 10 * kRadiansPerDegree;
+  render::SheetCell cell;
+  cell.centre = compared.first.centre;
+  for (const render::Actor* actor : {&compared.first, &compared.second}) {
+    cell.layers = {{actor}};
+    row.cells.push_back(cell);
+  }
+  cell.layers = {{&pale, kPale, true}, {&compared.coloured}};
+  row.cells.push_back(std::move(cell));
+  render::Sheet page;
+  page.rows.push_back(std::move(row));
+  const auto made = render::make_sheet(page, {kHeight, kMaxWidth, jobs});
+  if (!made) return made.error();
+  Pictures pictures;
+  std::string* const texts[] = {&pictures.before, &pictures.after, &pictures.difference};
+  for (std::size_t i = 0; i < std::size(texts); ++i) {
+    auto text = encoded_cell(made->image, made->cells[i]);
+    if (!text) return text.error();
+    *texts[i] = *std::move(text);
+  }
+  pictures.width = made->cells[0].right - made->cells[0].left;
+  pictures.height = made->cells[0].bottom - made->cells[0].top;
+  if (sheet.span.end > sheet.span.start) {
+    pictures.moment = moment.label() + (moment.note().empty() ? "" : ", " + moment.note());
+  }
+  if (sheet.measured) pictures.key = key;
+  return pictures;
 }
 
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,

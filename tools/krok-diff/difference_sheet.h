@@ -59,6 +59,18 @@ struct DistanceColours {
 };
 DistanceColours distance_colours(double tolerance, double largest);
 
+// Both characters and their difference at the time of the max difference, for a page. All three at
+// one scale, seen from the front left.
+struct Pictures {
+  std::string before, after, difference;  // PNG as base64
+  int width = 0, height = 0;              // pixels of each
+  std::string moment;                     // "frame 24, 0.40 s"; empty without motion
+  std::optional<render::ColourKey> key;   // of the difference; empty if nothing was measured
+};
+
+// Codes: those of render::make_sheet.
+Result<Pictures> make_pictures(const DifferenceSheet& sheet, int jobs);
+
 // Draws the sheet, writes the image and adds it to the report.
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options, ToolContext& context);
 

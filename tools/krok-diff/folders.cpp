@@ -15,6 +15,7 @@
 #include "formats/registry/registry.h"
 #include "tools/cli/paths.h"
 #include "tools/krok-diff/compare_files.h"
+#include "tools/krok-diff/summary_page.h"
 
 namespace krok::cli::diff {
 
@@ -24,6 +25,7 @@ namespace fs = std::filesystem;
 
 // How many files may be compared ahead of the first one not yet reported.
 constexpr std::size_t kWindow = 64;
+constexpr std::size_t kMaxPictures = 200;
 
 // One pair, and its messages.
 struct Compared {
@@ -160,8 +162,21 @@ class Comparison {
       context_.report.inputs.push_back(std::move(input));
     }
     file = std::move(compared.result);
+    keep_worst_pictures(file);
     if (file.status == FileStatus::unreadable && !options_.folders.keep_going) stopped_ = true;
     return !stopped_;
+  }
+
+  // Keeps the pictures of the worst kMaxPictures files, so that a page can be opened whatever the
+  // number of files.
+  void keep_worst_pictures(FileResult& file) {
+    if (!file.detail.pictures) return;
+    shown_.emplace(file.detail.excess, &file);
+    if (shown_.size() <= kMaxPictures) return;
+    FileDetail& least = shown_.begin()->second->detail;
+    least.pictures.reset();
+    least.chart.clear();
+    shown_.erase(shown_.begin());
   }
 
   // Called from several threads.
@@ -193,6 +208,9 @@ class Comparison {
     } else {
       compared.result.status = FileStatus::differs;
       compared.result.what = worst_of(*outcome);
+      if (!options_.summary.empty()) {
+        compared.result.detail = detail_of(*outcome, options_.tolerance);
+      }
       if (!context_.report_path.empty()) {
         // Omit the per-joint and per-mesh tables, which would make reports of thousands of files
         // too large.
@@ -248,6 +266,7 @@ class Comparison {
   ToolContext& context_;
   FolderOutcome outcome_;
   std::set<std::string> parts_;
+  std::set<std::pair<double, FileResult*>> shown_;  // files with pictures
   int jobs_of_a_file_ = 1;
   bool stopped_ = false;
 };
@@ -294,6 +313,11 @@ Result<FolderUpdate> run_update(const Options& options, const FolderOutcome& out
 
 }  // namespace
 
+FileDetail detail_of(Outcome outcome, const compare::Tolerance& tolerance) {
+  return {excess_of(outcome), to_text(outcome, tolerance), std::move(outcome.pictures),
+          std::move(outcome.chart)};
+}
+
 std::size_t FolderOutcome::count(FileStatus status) const {
   return static_cast<std::size_t>(
       std::count_if(files.begin(), files.end(),
@@ -311,9 +335,6 @@ void declare_folder_options(CommandOptions& command, FolderOptions& options) {
   command.add_flag("--keep-going", options.keep_going,
                    "Continue after a file that cannot be read, and exit with code 3; by default, "
                    "the first one ends the run");
-  command.add_option("--summary OUT.html", options.summary,
-                     "A page with a row for each file that is not the same, as HTML, or as "
-                     "Markdown if called .md");
   command.add_flag("--update", options.update,
                    "Copy changed and new files from B to A; no file is copied if any cannot be "
                    "read. A need not exist");
@@ -332,8 +353,7 @@ Result<bool> are_folders(const Options& options) {
     if (first_to_come ||
         (fs::exists(options.first, unknown) && fs::exists(options.second, unknown))) {
       return Error("usage",
-                   "--include, --exclude, --keep-going, --summary, --update and --prune "
-                   "are for folders",
+                   "--include, --exclude, --keep-going, --update and --prune are for folders",
                    "give two folders");
     }
     return false;  // a missing file is reported when it is opened

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-diff/folder_files.h"
+#include "tools/krok-diff/outcome.h"
 
 // Compares two folders: files are paired by their relative paths.
 
@@ -20,11 +23,9 @@ struct FolderOptions {
   bool keep_going = false;  // after a file that cannot be read
   bool update = false;      // make the first folder equal to the second
   bool prune = false;       // also remove files that only the first has
-  std::string summary;      // path of a report page, .html or .md; empty for none
 
   bool any() const {
-    return !filter.include.empty() || !filter.exclude.empty() || keep_going || update || prune ||
-           !summary.empty();
+    return !filter.include.empty() || !filter.exclude.empty() || keep_going || update || prune;
   }
 };
 
@@ -37,12 +38,22 @@ enum class FileStatus : unsigned char {
   not_compared,  // because an earlier file could not be read
 };
 
+// What the page of a summary shows of a pair of files that differ.
+struct FileDetail {
+  double excess = 0;  // largest ratio of a difference to its tolerance; see excess_of()
+  std::string text;   // all measures
+  std::optional<Pictures> pictures;
+  std::string chart;  // SVG; empty for none
+};
+FileDetail detail_of(Outcome outcome, const compare::Tolerance& tolerance);
+
 // The result for the files of one path.
 struct FileResult {
-  std::string path;  // relative to both folders
+  std::string path;  // relative to both folders; for two files, the second's name
   FileStatus status = FileStatus::not_compared;
-  std::string what;  // the largest difference, or why the file cannot be read; a message
-  Json outcome;      // metrics of files that differ, if a report is requested
+  std::string what;   // the largest difference, or why the file cannot be read; a message
+  Json outcome;       // metrics of files that differ, if a report is requested
+  FileDetail detail;  // of files that differ, if a summary is requested
 };
 
 struct FolderOutcome {
@@ -81,11 +92,11 @@ Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& o
 std::string to_text(const FolderOutcome& outcome, const Options& options, bool all);
 Json to_json(const FolderOutcome& outcome, const Options& options);
 
-// Error usage if the extension of --summary is not supported.
-Status check_summary_name(const std::string& path);
-// Writes a page with a row for each file that is not the same, as HTML or, by extension, Markdown.
-Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
-                     const Options& options, ToolContext& context);
+// "golden against out", printable.
+std::string title_of(const Options& options);
+// Labels of statuses and counts; counts of 0 are omitted except for `same`.
+std::vector<std::pair<std::string, std::size_t>> counts_of(const FolderOutcome& outcome,
+                                                           const Options& options);
 
 // "the same", "differs", "only in golden".
 std::string status_words(FileStatus status, const Options& options);

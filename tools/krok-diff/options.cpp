@@ -2,9 +2,11 @@
 
 #include <memory>
 
+#include "core/file.h"
 #include "tools/krok-diff/difference_plot.h"
 #include "tools/krok-diff/heatmap.h"
 #include "tools/krok-diff/run.h"
+#include "tools/krok-diff/summary_page.h"
 #include "tools/krok-diff/tolerance_options.h"
 
 namespace krok::cli::diff {
@@ -18,6 +20,7 @@ struct Arguments {
   SheetOptions sheet;
   std::string plot;
   std::string heatmap;
+  std::string summary;
   FolderOptions folders;
 };
 
@@ -33,12 +36,13 @@ Result<Options> parse(const Arguments& arguments) {
   options.sheet = arguments.sheet;
   options.plot = arguments.plot;
   options.heatmap = arguments.heatmap;
+  options.summary = arguments.summary;
   options.folders = arguments.folders;
   if (Status status = check_image_name(options.sheet.path, "--sheet"); !status)
     return status.error();
   if (Status status = check_plot_name(options.plot); !status) return status.error();
   if (Status status = check_heatmap_name(options.heatmap); !status) return status.error();
-  if (Status status = check_summary_name(options.folders.summary); !status) return status.error();
+  if (Status status = check_summary_name(options.summary); !status) return status.error();
   return options;
 }
 
@@ -68,10 +72,17 @@ void declare(CommandOptions& command, Arguments& arguments) {
   command.add_option("--heatmap OUT.glb", arguments.heatmap,
                      "A's mesh in the pose of the max difference, with each vertex coloured by its "
                      "max distance over all times; for glTF and models");
+  command.add_option("--summary OUT.html", arguments.summary,
+                     "A page of the files that are not the same, the worst first, with pictures "
+                     "of both and of their difference; Markdown without pictures if called .md");
   declare_folder_options(command, arguments.folders);
 }
 
 }  // namespace
+
+bool Options::has_page() const {
+  return !summary.empty() && extension(summary) != ".md";
+}
 
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
@@ -82,20 +93,21 @@ ToolSpec make_spec() {
       "times of both (and between them where there are steps or splines), whether "
       "skinned, morphed or moved by nodes";
   spec.inputs = "A B";
-  spec.examples = {{"krok-diff walk.anim walk_again.anim --tolerance 0.1mm --angle 0.1deg",
-                    "Max and RMS difference of joints, with joint and frame; exit code 1 if beyond "
-                    "tolerance."},
-                   {"krok-diff walk_rig.glb walk_clip.glb --json=diff.json",
-                    "A skinned rig against the same motion baked into morph targets; all metrics "
-                    "as JSON."},
-                   {"krok-diff golden.glb new.glb --match nearest --tolerance 0.1mm --normals 1deg",
-                    "Meshes with a different vertex order, or with different seams."},
-                   {"krok-diff raw.anim clean.anim --sheet change.png --plot change.svg",
-                    "Both characters side by side with their difference, and the distance over "
-                    "time."},
-                   {"krok-diff golden out --tolerance 0.1mm --keep-going --summary diff.html",
-                    "Compare each file in out with its namesake in golden; --update replaces the "
-                    "golden files."}};
+  spec.examples = {
+      {"krok-diff walk.anim walk_again.anim --tolerance 0.1mm --angle 0.1deg",
+       "Max and RMS difference of joints, with joint and frame; exit code 1 if beyond "
+       "tolerance."},
+      {"krok-diff walk_rig.glb walk_clip.glb --json=diff.json",
+       "A skinned rig against the same motion baked into morph targets; all metrics "
+       "as JSON."},
+      {"krok-diff golden.glb new.glb --match nearest --tolerance 0.1mm --normals 1deg",
+       "Meshes with a different vertex order, or with different seams."},
+      {"krok-diff raw.anim clean.anim --sheet change.png --plot change.svg",
+       "Both characters side by side with their difference, and the distance over "
+       "time."},
+      {"krok-diff golden out --tolerance 0.1mm --keep-going --summary diff.html",
+       "Compare each file in out with its namesake in golden, with a page of pictures; "
+       "--update replaces the golden files."}};
   spec.exit_done = "the same within the tolerance";
   spec.exit_no =
       "the files differ: beyond tolerance, or in skeleton, topology, frames or rate; "

@@ -18,7 +18,11 @@ struct Options {
   SheetOptions sheet;
   std::string plot;     // path; empty for none
   std::string heatmap;  // path; empty for none
+  std::string summary;  // path of a page, .html or .md; empty for none
   FolderOptions folders;
+
+  // Whether the summary shows pictures and charts.
+  bool has_page() const;
 };
 
 // The tool. Each call has options of its own.

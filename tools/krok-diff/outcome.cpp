@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/numbers.h"
 
@@ -165,13 +166,15 @@ Json to_json(const std::vector<Item>& items, const PlaceNames& names) {
   return list;
 }
 
-// The largest ratio of difference to tolerance of an item; 0 if all are within tolerance.
+// The ratio of a difference to its tolerance; 0 if it is within.
+double excess_of(const compare::Measure& measure) {
+  return measure.within() ? 0.0 : measure.largest / std::max(measure.tolerance, 1e-12);
+}
+
+// The largest of an item.
 double excess_of(const Item& item) {
   double most = 0;
-  for (const Row& row : item.rows) {
-    if (row.measure.within()) continue;
-    most = std::max(most, row.measure.largest / std::max(row.measure.tolerance, 1e-12));
-  }
+  for (const Row& row : item.rows) most = std::max(most, excess_of(row.measure));
   return most;
 }
 
@@ -288,15 +291,18 @@ std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance)
   return text;
 }
 
+double excess_of(const Outcome& outcome) {
+  if (!outcome.structure.empty()) return std::numeric_limits<double>::infinity();
+  double most = 0;
+  for (const Row& row : outcome.rows) most = std::max(most, excess_of(row.measure));
+  return most;
+}
+
 std::string worst_of(const Outcome& outcome) {
   if (!outcome.structure.empty()) return outcome.structure.front();
-  const auto excess = [](const Row& row) {
-    return row.measure.within() ? 0.0
-                                : row.measure.largest / std::max(row.measure.tolerance, 1e-12);
-  };
-  const auto worst =
-      std::max_element(outcome.rows.begin(), outcome.rows.end(),
-                       [&](const Row& a, const Row& b) { return excess(a) < excess(b); });
+  const auto worst = std::max_element(
+      outcome.rows.begin(), outcome.rows.end(),
+      [](const Row& a, const Row& b) { return excess_of(a.measure) < excess_of(b.measure); });
   if (worst == outcome.rows.end()) return {};
   return fmt::format("{} {} at {}", worst->what, in_unit(worst->measure.largest, worst->unit),
                      to_text(worst->measure.where, outcome.names));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "compare/measure.h"
 #include "compare/scene_difference.h"
 #include "tools/cli/report.h"
+#include "tools/krok-diff/difference_sheet.h"
 
 // The result of a comparison of any file type, ready to be printed.
 
@@ -51,6 +53,9 @@ struct Outcome {
   std::vector<Item> meshes, joints;  // all that were compared, in the order of the first
   PlaceNames names;
   bool same = false;
+  // For the page of a summary.
+  std::optional<Pictures> pictures;
+  std::string chart;  // SVG; empty for none
 
   void add_row(std::string what, Unit unit, const compare::Measure& measure);
   // Adds directions and, if it differs, the handedness.
@@ -64,6 +69,10 @@ std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance)
 
 // The largest difference in one line: "positions 0.32 mm at joint LeftHand, frame 37 (0.6167 s)".
 std::string worst_of(const Outcome& outcome);
+
+// How bad a difference is: the largest ratio of a difference to its tolerance, infinite for
+// differences that no tolerance can cover, 0 for none.
+double excess_of(const Outcome& outcome);
 
 // All metrics, in metres and radians.
 Json to_json(const Outcome& outcome, const compare::Tolerance& tolerance);

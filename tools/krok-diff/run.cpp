@@ -1,6 +1,8 @@
 #include "tools/krok-diff/run.h"
 
+#include "core/file.h"
 #include "tools/krok-diff/compare_files.h"
+#include "tools/krok-diff/summary_page.h"
 
 namespace krok::cli::diff {
 
@@ -12,6 +14,16 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!outcome) return outcome.error();
   context.report.result = to_json(*outcome, options.tolerance);
   if (!context.quiet) context.print(to_text(*outcome, options.tolerance));
+  if (!options.summary.empty()) {
+    FileResult file;
+    file.path = base_name(options.second);
+    file.status = outcome->same ? FileStatus::same : FileStatus::differs;
+    file.what = worst_of(*outcome);
+    file.detail = detail_of(*outcome, options.tolerance);
+    FolderOutcome pair;
+    pair.files.push_back(std::move(file));
+    if (Status status = write_summary(pair, {}, options, context); !status) return status.error();
+  }
   return outcome->same ? kExitDone : kExitNo;
 }
 

@@ -313,12 +313,35 @@ TEST_F(KrokDiffFolders, ThePageHasARowForEachFileThatIsNotTheSame) {
   ASSERT_EQ(diff({"a", "b", "--summary", "page.html"}).exit_code, 1);
   const std::string html = get(path("page.html"));
   EXPECT_THAT(html, HasSubstr("<title>a against b</title>"));
-  EXPECT_THAT(html, HasSubstr("<tr><td><code>walk.anim</code></td><td>differs</td><td>positions 10 "
-                              "mm at joint LeftHand, frame 3 (0.3 s)</td></tr>"));
+  EXPECT_THAT(html, HasSubstr("<tr><td><a href=\"#file-1\"><code>walk.anim</code></a></td>"
+                              "<td>differs</td><td>positions 10 mm at joint LeftHand, frame 3 "
+                              "(0.3 s)</td><td class=\"n\">1000</td></tr>"));
+  EXPECT_THAT(html, HasSubstr("<a href=\"a/walk.anim\">")) << "relative to the page";
   EXPECT_THAT(html, HasSubstr("<code>&lt;b&gt;&amp;&#124;.txt</code>"));
   EXPECT_THAT(html, Not(HasSubstr("same.anim")));
   ASSERT_EQ(diff({"a", "b", "--summary", "page.md"}).exit_code, 1);
   EXPECT_THAT(get(path("page.md")), HasSubstr("| <code>walk.anim</code> | differs | positions"));
+}
+
+TEST_F(KrokDiffFolders, ThePageBeginsWithTheWorst) {
+  const std::vector<std::pair<const char*, float>> files = {
+      {"a_little.anim", 1e-3F}, {"b_most.anim", 1e-1F}, {"c_some.anim", 1e-2F}};
+  for (const auto& [name, offset] : files) {
+    put_motion("a/" + std::string(name));
+    put_motion("b/" + std::string(name), offset);
+  }
+  put_below("a/z.txt", "x");
+  put_below("b/z.anim", "no motion");
+  put_below("a/z.anim", "no motion either");
+  EXPECT_EQ(diff({"a", "b", "--keep-going", "--summary", "page.html"}).exit_code, 3);
+  const std::string html = get(path("page.html"));
+  std::size_t before = 0;
+  for (const char* name : {"z.anim", "b_most.anim", "c_some.anim", "a_little.anim", "z.txt"}) {
+    const std::size_t at = html.find("<code>" + std::string(name) + "</code>");
+    ASSERT_NE(at, std::string::npos) << name;
+    EXPECT_GT(at, before) << name;
+    before = at;
+  }
 }
 
 TEST_F(KrokDiffFolders, ReportsInTheFoldersAreNotCompared) {
@@ -337,6 +360,7 @@ TEST_F(KrokDiffFolders, WrongUseIsTrouble) {
       {"a", "nowhere"},
       {"a/walk.anim", "b/walk.anim", "--update"},
       {"a/walk.anim", "b/walk.anim", "--include", "*"},
+      {"a/walk.anim", "b/walk.anim", "--summary", "page.png"},
       {"a", "b", "--prune"},
       {"a", "b", "--summary", "page.png"},
       {"a", "b", "--sheet", "sheet.png"},
