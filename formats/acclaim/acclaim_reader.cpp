@@ -16,6 +16,7 @@
 #include "formats/acclaim/motion_file_internal.h"
 #include "formats/acclaim/skeleton_file_internal.h"
 #include "formats/acclaim/source_text_internal.h"
+#include "scene/farthest.h"
 
 namespace krok::acclaim {
 
@@ -226,7 +227,7 @@ class Reader {
   }
 
   Error overflow(const SourceText& source) const {
-    return Error("acclaim-number", "the numbers are so large that positions overflow")
+    return Error("acclaim-number", "the numbers are so large that a joint is over 1e9 m away")
         .in_file(source.file_name());
   }
 
@@ -235,7 +236,7 @@ class Reader {
     clip.skeleton = kinematics.skeleton();
     for (Transform& joint : clip.skeleton.reference) {
       joint = conversion_.reference(joint);
-      if (!joint.position.cast<float>().allFinite()) return overflow(asf_);
+      if (!is_near(joint.position)) return overflow(asf_);
     }
     if (places_.empty()) return {};
     clip.resize(static_cast<int>(places_.back() + 1));
@@ -253,7 +254,7 @@ class Reader {
         bool is_far = false;
         for (Transform& joint : pose) {
           joint = conversion_.pose(joint);
-          if (!joint.position.cast<float>().allFinite()) finite = false;
+          if (!is_near(joint.position)) finite = false;
           is_far = is_far || joint.position.norm() > farthest;
         }
         if (is_far) far_here.add_position(i);

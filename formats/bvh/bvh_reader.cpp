@@ -20,6 +20,7 @@
 #include "formats/bvh/kinematics.h"
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/row_frames.h"
+#include "scene/farthest.h"
 
 namespace krok::bvh {
 
@@ -181,6 +182,16 @@ class Reader {
     if (Status status = check_size(); !status) return status;
     make_frames();
     Clip& clip = capture_.clip;
+    for (std::size_t j = 0; j < clip.skeleton.reference.size(); ++j) {
+      if (is_near(clip.skeleton.reference[j].position)) continue;
+      Error far("bvh-number",
+                fmt::format("the OFFSETs are so large that {} is over 1e9 m away in the reference "
+                            "pose",
+                            shown(clip.skeleton.names[j])),
+                "check the OFFSETs, and the unit if --unit was given");
+      far.joint = clip.skeleton.names[j];
+      return std::move(far).in_file(file_name_);
+    }
     const std::size_t count = frames_->rows().size();
     const auto joints = static_cast<std::size_t>(clip.joint_count());
     clip.resize(static_cast<int>(count));
@@ -212,7 +223,7 @@ class Reader {
     if (options_.progress != nullptr) options_.progress->end();
     if (row_is_faulty_) return {};
     if (first_overflow < count) {
-      Error overflow("bvh-number", "the numbers are so large that positions overflow",
+      Error overflow("bvh-number", "the numbers are so large that a joint is over 1e9 m away",
                      "check the frame's position channels, and the unit if --unit was given");
       overflow.where = locate(text_, frames_->rows()[first_overflow], file_name_);
       overflow.frame = static_cast<std::int64_t>(first_overflow);

@@ -4,6 +4,7 @@
 
 #include "core/text.h"
 #include "formats/bvh/number_kernel.h"
+#include "scene/farthest.h"
 
 namespace krok::bvh {
 
@@ -24,12 +25,12 @@ class AlignedDoubles {
   std::vector<Line> lines_;
 };
 
-// The first frame with a non-finite float.
+// The first frame with a float that is not finite or farther away than positions may be.
 std::optional<std::size_t> first_overflow(std::size_t frames, std::size_t joints,
                                           std::span<const Vec3f> positions,
                                           std::span<const Quatf> orientations) {
   for (std::size_t i = 0; i < frames * joints; ++i) {
-    if (!positions[i].allFinite() || !orientations[i].coeffs().allFinite()) return i / joints;
+    if (!is_near(positions[i]) || !orientations[i].coeffs().allFinite()) return i / joints;
   }
   return std::nullopt;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
+#include "scene/farthest.h"
 
 namespace krok {
 
@@ -20,7 +21,7 @@ std::string frames_of(std::size_t frames) {
 
 double farthest_position(std::span<const Transform> reference) {
   constexpr double kTimesTheSize = 1e4;
-  constexpr auto kMax = static_cast<double>(std::numeric_limits<float>::max());
+  constexpr auto kMax = static_cast<double>(kFarthest);
   Eigen::AlignedBox3d box;
   for (const Transform& joint : reference) box.extend(joint.position);
   const double size = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();

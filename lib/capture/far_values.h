@@ -22,7 +22,7 @@ inline constexpr double kFarthestRotation = 1e6;
 // Max plausible distance of a joint from the origin in metres: 10,000 times the largest extent
 // along an axis of the skeleton's reference pose, or 1 m if that is smaller. At that distance the
 // spacing of floats is about a thousandth of the skeleton's size, 1 to 2 mm for a person, and
-// motion stored as floats starts to jitter. At most the largest float.
+// motion stored as floats starts to jitter. At most kFarthest.
 double farthest_position(std::span<const Transform> reference);
 
 // Frames with such values.

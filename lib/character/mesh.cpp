@@ -11,10 +11,12 @@
 #include "character/mesh_placement_internal.h"
 #include "character/mesh_vertices_internal.h"
 #include "character/morph_targets_internal.h"
+#include "character/motion.h"
 #include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "scene/farthest.h"
 #include "scene/influences.h"
 
 namespace krok::character {
@@ -281,10 +283,10 @@ void MeshBuilder::add_vertices(const nodes::Instance& instance) {
 
 Status MeshBuilder::finish() {
   Model& model = actor_.model;
-  const auto finite = [](const auto& value) { return value.allFinite(); };
-  if (!std::all_of(model.positions.begin(), model.positions.end(), finite) ||
-      !std::all_of(model.texture_coordinates.begin(), model.texture_coordinates.end(), finite)) {
-    return Error("scene-value", "the mesh's vertices are not finite or too large for floats",
+  const auto near = [](const auto& value) { return is_near(value); };
+  if (!std::all_of(model.positions.begin(), model.positions.end(), near) ||
+      !std::all_of(model.texture_coordinates.begin(), model.texture_coordinates.end(), near)) {
+    return Error("scene-value", "the mesh's vertices are not finite or over 1e9 m away",
                  "the unit may be wrong; set it with --unit");
   }
   // If a tangent is zero in the file or made zero by a flat transform, all are dropped.
@@ -353,8 +355,9 @@ Result<Actor> make_actor(const Scene& scene, const nodes::Evaluator& evaluator, 
                          Diagnostics& diagnostics) {
   auto actor = MeshBuilder(scene, evaluator, rig, conversion, options, diagnostics).build();
   if (!actor) return actor;
-  actor->model.skeleton = rig.skeleton;
-  for (Transform& joint : actor->model.skeleton.reference) joint = conversion.reference(joint);
+  auto skeleton = skeleton_in_krok(rig, conversion);
+  if (!skeleton) return std::move(skeleton).error();
+  actor->model.skeleton = *std::move(skeleton);
   if (Status status = check(actor->model); !status) return status.error();
   return actor;
 }

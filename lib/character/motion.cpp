@@ -10,6 +10,7 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "scene/farthest.h"
 
 namespace krok::character {
 
@@ -25,7 +26,7 @@ constexpr double kStretchNoise = 1e-6;     // less is stored as none
 constexpr double kUsualFieldOfView = kPi / 4;
 
 Error overflow() {
-  return Error("scene-value", "joint or camera positions are too large for floats",
+  return Error("scene-value", "a joint or camera is over 1e9 m away",
                "the unit may be wrong; set it with --unit");
 }
 
@@ -82,7 +83,7 @@ Result<Skeleton> skeleton_in_krok(const Rig& rig, const Conversion& conversion) 
   Skeleton skeleton = rig.skeleton;
   for (Transform& joint : skeleton.reference) {
     joint = conversion.reference(joint);
-    if (!joint.position.cast<float>().allFinite()) return overflow();
+    if (!is_near(joint.position)) return overflow();
   }
   return skeleton;
 }
@@ -122,7 +123,7 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
         const double deviation = deviation_of(stretch);
         if (deviation > worst.size * (1 + 1e-6)) worst = {deviation, j};
         pose[at(j)] = conversion.pose(rigid);
-        if (!pose[at(j)].position.cast<float>().allFinite()) finite = false;
+        if (!is_near(pose[at(j)].position)) finite = false;
         if (stretches == nullptr || deviation < kStretchNoise) continue;
         const Mat3& axes = conversion.reference_axes();
         Stretch& kept = (*stretches)[frame * pose.size() + at(j)];
@@ -204,7 +205,7 @@ Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& eval
     evaluator.place_nodes(animation, sampling.time(frame), state);
     const Transform placed = nodes::rigid_part(to_axes * state.node_to_world[at(node)]);
     const Transform position = conversion.pose({placed.position, Quat::Identity()});
-    if (!position.position.cast<float>().allFinite()) return overflow();
+    if (!is_near(position.position)) return overflow();
     track.positions.push_back(position.position.cast<float>());
     track.orientations.push_back((turn * placed.orientation).cast<float>().normalized());
     const bool changes = lens.perspective && animation >= 0;

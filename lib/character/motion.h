@@ -15,7 +15,7 @@
 
 namespace krok::character {
 
-// A rig's skeleton in Krok's frame. An Error (code scene-value) if positions overflow floats.
+// A rig's skeleton in Krok's frame. An Error (code scene-value) if a joint is over 1e9 m away.
 Result<Skeleton> skeleton_in_krok(const Rig& rig, const Conversion& conversion);
 
 // The motion of a rig in one of the scene's animations.

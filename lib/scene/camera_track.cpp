@@ -1,4 +1,5 @@
 #include "scene/camera_track.h"
+#include "scene/farthest.h"
 #include "scene/frame_moment.h"
 
 #include <fmt/format.h>
@@ -15,9 +16,10 @@ Status check(const CameraTrack& camera) {
   if (Status status = check_frame_rate(camera.rate, "camera-rate"); !status) return status;
   for (std::size_t i = 0; i < count; ++i) {
     const float view = camera.fields_of_view[i];
-    if (!camera.positions[i].allFinite() || !camera.orientations[i].coeffs().allFinite() ||
+    if (!is_near(camera.positions[i]) || !camera.orientations[i].coeffs().allFinite() ||
         std::abs(camera.orientations[i].norm() - 1.0f) > 1e-3f) {
-      return Error("camera-value", fmt::format("frame {} is not finite or not a rotation", i));
+      return Error("camera-value",
+                   fmt::format("frame {} is not finite, over 1e9 m away or not a rotation", i));
     }
     if (!(view > 0) || !(view < static_cast<float>(kPi))) {
       return Error(

@@ -6,6 +6,7 @@
 
 #include "core/rows.h"
 #include "math/quaternion.h"
+#include "scene/farthest.h"
 #include "scene/frame_moment.h"
 
 namespace krok {
@@ -56,13 +57,14 @@ Status check(const Clip& clip) {
   }
   if (Status status = check_frame_rate(clip.rate, "clip-rate"); !status) return status;
   for (std::size_t i = 0; i < clip.positions.size(); ++i) {
-    if (clip.positions[i].allFinite() && clip.orientations[i].coeffs().allFinite() &&
+    if (is_near(clip.positions[i]) && clip.orientations[i].coeffs().allFinite() &&
         std::abs(clip.orientations[i].norm() - 1.0f) <= 1e-3f) {
       continue;
     }
     const std::size_t joints = clip.skeleton.names.size();
-    Error error("clip-value", fmt::format("joint {} in frame {} is not finite or not a rotation",
-                                          clip.skeleton.names[i % joints], i / joints));
+    Error error("clip-value",
+                fmt::format("joint {} in frame {} is not finite, over 1e9 m away or not a rotation",
+                            clip.skeleton.names[i % joints], i / joints));
     error.joint = clip.skeleton.names[i % joints];
     error.frame = static_cast<std::int64_t>(i / joints);
     return error;

@@ -1,9 +1,12 @@
 #include "scene/model.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 #include <limits>
+
+#include "scene/farthest.h"
 
 namespace krok {
 
@@ -67,11 +70,8 @@ Status check_triangles(const Model& model) {
 }
 
 template <typename Vector>
-bool all_finite(const std::vector<Vector>& values) {
-  for (const Vector& value : values) {
-    if (!value.allFinite()) return false;
-  }
-  return true;
+bool all_near(const std::vector<Vector>& values) {
+  return std::ranges::all_of(values, [](const Vector& value) { return is_near(value); });
 }
 
 bool is_unit(const Vec3f& direction) {
@@ -112,9 +112,9 @@ Status check(const Model& model) {
   if (model.influence_joints.size() != influences || model.influence_weights.size() != influences) {
     return Error("model-shape", "joint indices or weights do not match the vertices");
   }
-  if (!all_finite(model.positions) || !all_finite(model.normals) ||
-      !all_finite(model.texture_coordinates) || !all_finite(model.tangents)) {
-    return Error("model-value", "a vertex is not finite");
+  if (!all_near(model.positions) || !all_near(model.normals) ||
+      !all_near(model.texture_coordinates) || !all_near(model.tangents)) {
+    return Error("model-value", "a vertex is not finite or over 1e9 m away");
   }
   if (Status status = check_directions(model); !status) return status;
   if (Status status = check_influences(model); !status) return status;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scene/farthest.h"
+
 namespace krok {
 namespace {
 
@@ -46,8 +48,9 @@ Status check(const MotionKeys& keys, const Skeleton& skeleton, double duration) 
       return Error("keys-time", fmt::format("contact {}: {} s to {} s in a motion of {} s", i,
                                             contact.start, contact.end, duration));
     }
-    if (!contact.place.allFinite()) {
-      return Error("keys-place", fmt::format("the position of contact {} is not finite", i));
+    if (!is_near(contact.place)) {
+      return Error("keys-place",
+                   fmt::format("the position of contact {} is not finite or over 1e9 m away", i));
     }
   }
   for (std::size_t i = 0; i < keys.keytimes.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <unordered_set>
 
 #include "core/text.h"
+#include "scene/farthest.h"
 
 namespace krok {
 
@@ -70,11 +71,13 @@ Status check(const Skeleton& skeleton) {
                       name, skeleton.names[static_cast<std::size_t>(parent)]));
     }
     const Transform& transform = skeleton.reference[i];
-    if (!transform.position.allFinite() || !transform.orientation.coeffs().allFinite() ||
+    if (!is_near(transform.position) || !transform.orientation.coeffs().allFinite() ||
         std::abs(transform.orientation.norm() - 1.0) > 1e-4) {
       return Error(
           "skeleton-value",
-          fmt::format("the reference pose of joint {} is not finite or not a rotation", name));
+          fmt::format(
+              "the reference pose of joint {} is not finite, over 1e9 m away or not a rotation",
+              name));
     }
   }
   return {};

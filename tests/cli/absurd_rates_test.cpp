@@ -67,6 +67,23 @@ TEST_F(AbsurdRates, OfCapturesAreRefused) {
   }
 }
 
+// Positions whose squares are infinite: what is made of them could not be read again.
+TEST_F(AbsurdRates, AndPositionsBeyondAllPlacesAreRefused) {
+  for (const char* place : {"1e30", "-3.3e38", "1e12"}) {
+    put("far.bvh", std::string("HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition "
+                               "Zposition\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 2\n"
+                               "Frame Time: 0.01\n0 0 0\n0 0 ") +
+                       place + "\n");
+    for (const std::string tool : {"krok-import", "krok-export"}) {
+      const ToolRun run =
+          run_here(tool, {"far.bvh", "-o", tool == "krok-import" ? "out.anim" : "out.glb"});
+      EXPECT_EQ(run.exit_code, 2) << tool << place << run.err;
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("out.anim")));
+  EXPECT_FALSE(std::filesystem::exists(path("out.glb")));
+}
+
 // Nor are they taken from a JSON file beside the motion.
 TEST_F(AbsurdRates, OfJsonFilesAreRefused) {
   write_walk(2);

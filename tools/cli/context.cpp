@@ -13,6 +13,14 @@
 
 namespace krok::cli {
 
+namespace {
+
+// Warnings with one code that are shown and kept in a result: a file with tens of thousands of
+// joints can have one for each.
+constexpr int kMostAlike = 20;
+
+}  // namespace
+
 // Everything a tool says goes through here or print(), and may quote what is in a file.
 void ToolContext::put_message(const std::string& text) {
   if (one_of_many != nullptr) {
@@ -26,7 +34,13 @@ void ToolContext::diagnose(Diagnostic diagnostic) {
   if (diagnostic.where.file.empty() && !subject.file.empty()) diagnostic.where = subject;
   const bool shown = diagnostic.severity == Severity::error ||
                      (!quiet && (verbose || diagnostic.severity != Severity::note));
-  if (shown) put_message(message_of(report.tool, diagnostic));
+  const bool counts = !verbose && diagnostic.severity != Severity::error;
+  const int alike = shown && counts ? ++alike_[diagnostic.code] : 1;
+  if (shown && alike <= kMostAlike) put_message(message_of(report.tool, diagnostic));
+  if (shown && alike == kMostAlike + 1) {
+    put_message(fmt::format("  more of these warnings are not shown; -v and --json have all [{}]\n",
+                            diagnostic.code));
+  }
   report.issues.push_back(std::move(diagnostic));
 }
 
@@ -127,8 +141,9 @@ Provenance ToolContext::provenance() const {
     const Json values = value.is_array() ? value : Json::array({value});
     for (const Json& one : values) provenance.options.emplace_back(name, text_of(one));
   }
+  std::map<std::string, int> alike;
   for (const Diagnostic& issue : report.issues) {
-    if (issue.severity == Severity::warning) {
+    if (issue.severity == Severity::warning && ++alike[issue.code] <= kMostAlike) {
       provenance.warnings.push_back(to_utf8(fmt::format("{} [{}]", issue.message, issue.code)));
     }
   }

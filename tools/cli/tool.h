@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -61,8 +62,9 @@ class ToolContext : public io::Inputs {
   // result.
   Json result_options = Json::object();
 
-  // Prints a diagnostic on standard error (notes only with -v, only errors with -q), prefixed with
-  // the tool's name if it has no file, and adds it to the report.
+  // Prints a diagnostic on standard error (notes only with -v, only errors with -q, without -v at
+  // most 20 warnings with one code), prefixed with the tool's name if it has no file, and adds it
+  // to the report.
   void diagnose(Diagnostic diagnostic) override;
   using io::Inputs::diagnose;
   void warn(std::string code, std::string message, std::string hint = {});
@@ -119,7 +121,8 @@ class ToolContext : public io::Inputs {
  private:
   void put_message(const std::string& text);
 
-  std::set<std::string> written_;  // canonical paths that passed check_output
+  std::map<std::string, int> alike_;  // warnings so far, by code
+  std::set<std::string> written_;     // canonical paths that passed check_output
 };
 
 struct ToolSpec {

@@ -218,6 +218,12 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
     if (other == j) middle.push_back(joint_name(edit, j));
     if (other > j) pair_list.push_back({joint_name(edit, j), joint_name(edit, other)});
   }
+  if (pair_list.empty()) {
+    context.warn(
+        "edit-unpaired",
+        "no joints were recognised as left and right; only the path and heading are mirrored",
+        "list joint roles with krok-info");
+  }
   for (const int j : pairs.unpaired()) {
     unpaired.push_back(joint_name(edit, j));
     if (edit.clip.skeleton.end_sites[static_cast<std::size_t>(j)] != 0) continue;
@@ -229,12 +235,6 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
     warning.message = fmt::format("{} has no counterpart on the other side; it follows its parent",
                                   warning.joint);
     context.diagnose(std::move(warning));
-  }
-  if (pair_list.empty()) {
-    context.warn(
-        "edit-unpaired",
-        "no joints were recognised as left and right; only the path and heading are mirrored",
-        "list joint roles with krok-info");
   }
   edit.clip = mirror(edit.clip, pairs);
   std::string line = fmt::format("mirrored: {}, {} in the middle",

@@ -123,6 +123,7 @@ csv::SeriesTable joint_series(const Clip& clip, What what) {
 }
 
 Result<csv::SeriesTable> angle_series(const Clip& clip, const RoleMap& roles, bool coordinates) {
+  if (clip.frame_count() == 0) return Error("export-angles", "the motion has no frames");
   std::vector<std::string> names;
   std::vector<std::vector<double>> series;
   const draw::FrameRange frames{0, clip.frame_count() - 1};

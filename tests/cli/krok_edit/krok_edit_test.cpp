@@ -216,6 +216,29 @@ TEST_F(KrokEdit, MirrorsAndNamesWhatHasNoPartner) {
   EXPECT_THAT(done.err, HasSubstr("warning: LeftArm has no counterpart on the other side"));
 }
 
+// A file with tens of thousands of such joints must neither flood a terminal nor swell its result;
+// the report has all.
+TEST_F(KrokEdit, ShowsTwentyOfManyWarningsAlike) {
+  Clip star;
+  star.skeleton.add("Hips", -1, {Vec3(0, 1, 0), Quat::Identity()});
+  for (int i = 0; i < 60; ++i) {
+    star.skeleton.add(fmt::format("ray{}_left", i), 0, {Vec3(0.6, 1, 0.1 * i), Quat::Identity()});
+  }
+  star.resize(2);
+  write("star.anim", star);
+  const auto lines = [](const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const auto run = edit({"star.anim", "-o", "out.anim", "--mirror", "--json=report.json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_LT(lines(run.err), 30) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("no joints were recognised as left and right"));
+  EXPECT_THAT(run.err, HasSubstr("more of these warnings are not shown; -v and --json have all"));
+  EXPECT_LT(read("out.anim").provenance.warnings.size(), 30u);
+  EXPECT_GE(nlohmann::json::parse(get(path("report.json")))["issues"].size(), 60u);
+  EXPECT_GT(lines(edit({"star.anim", "-o", "out.anim", "--mirror", "-v"}).err), 60);
+}
+
 TEST_F(KrokEdit, AppendsOnlyTheSameSkeleton) {
   write("walk.anim", walk());
   EXPECT_EQ(

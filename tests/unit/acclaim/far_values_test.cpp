@@ -52,8 +52,8 @@ TEST(AcclaimFarValues, RadiansAreMeasuredInDegrees) {
 }
 
 TEST(AcclaimFarValues, APositionIsToldOnceHoweverManyFrames) {
-  std::string amc = with(kAmc, "root 1 9 0 0 90 0", "root 1 9e9 0 0 90 0");
-  amc = with(amc, "root 1 9 0 0 0 0", "root 1 9e9 0 0 0 0");
+  std::string amc = with(kAmc, "root 1 9 0 0 90 0", "root 1 9e8 0 0 90 0");
+  amc = with(amc, "root 1 9 0 0 0 0", "root 1 9e8 0 0 0 0");
   const auto capture = read(kAsf, amc);
   ASSERT_TRUE(capture.ok());
   const Diagnostic* told = find(*capture, "acclaim-far-position");

@@ -165,7 +165,7 @@ TEST(GeneralBody, NumbersOutOfBoundsAreRefused) {
   add(skeleton, "far", root, {1e15, 0, 0}, true);
   const auto body = make_body(skeleton, {});
   ASSERT_FALSE(body.ok());
-  EXPECT_EQ(body.error().code, "body-size");
+  EXPECT_EQ(body.error().code, "skeleton-value");
   EXPECT_FALSE(make_body(Skeleton(), {}).ok());
 
   Skeleton crowd;

@@ -38,7 +38,7 @@ Clip two_joints() {
   clip.rate = 30;
   clip.resize(2);
   for (Quatf& orientation : clip.orientations) orientation = Quatf::Identity();
-  clip.positions = {{0, 1, -2.5f}, {0.1f, -0.0f, 1e-7f}, {1e20f, 16777216, 3}, {1, 2, 3}};
+  clip.positions = {{0, 1, -2.5f}, {0.1f, -0.0f, 1e-7f}, {5e8f, 16777216, 3}, {1, 2, 3}};
   return clip;
 }
 
@@ -47,7 +47,7 @@ TEST(CsvWriter, WritesARowForEachFrameAndJoint) {
             "frame,time,joint,x,y,z\n"
             "0,0,hips,0,1,-2.5\n"
             "0,0,\"arm, \"\"left\"\"\",0.1,0,1e-07\n"
-            "1,0.03333333333333333,hips,1e+20,16777216,3\n"
+            "1,0.03333333333333333,hips,500000000,16777216,3\n"
             "1,0.03333333333333333,\"arm, \"\"left\"\"\",1,2,3\n");
 }
 
