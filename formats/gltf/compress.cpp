@@ -6,6 +6,8 @@
 #include <map>
 #include <tuple>
 
+#include "core/numbers.h"
+#include "core/text.h"
 #include "formats/gltf/assemble_glb_internal.h"
 #include "formats/gltf/baked_writer.h"
 #include "formats/gltf/document_internal.h"
@@ -27,6 +29,7 @@ struct ViewKind {
   int target = 0;  // of the view
   std::size_t stride = 0;
   int component = 0, type = 0;  // of the accessor; 0: not of an accessor (an image)
+  Filter filter = Filter::none;
 
   auto operator<=>(const ViewKind&) const = default;
 };
@@ -40,6 +43,11 @@ std::size_t element_size(const tinygltf::Accessor& accessor) {
   return static_cast<std::size_t>(
       tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor.componentType)) *
       tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type)));
+}
+
+const char* name_of(Filter filter) {
+  if (filter == Filter::octahedral) return "OCTAHEDRAL";
+  return filter == Filter::quaternion ? "QUATERNION" : "EXPONENTIAL";
 }
 
 bool is_index(const ViewKind& kind) {
@@ -81,8 +89,9 @@ std::vector<unsigned char> encode_attributes(const ViewGroup& group) {
 
 class Compressor {
  public:
-  Compressor(const tinygltf::Model& model, std::span<const std::byte> data, OrderedJson& json)
-      : model_(model), data_(data), json_(json) {}
+  Compressor(const tinygltf::Model& model, std::span<const std::byte> data,
+             const std::map<int, Filter>& filters, OrderedJson& json)
+      : model_(model), data_(data), filters_(filters), json_(json) {}
 
   // Rewrites the JSON; returns the bytes of the only buffer that has some.
   std::vector<std::byte> compress() {
@@ -96,6 +105,7 @@ class Compressor {
         }
       }
     }
+    shorten_json();
     write_views();
     return std::move(buffer_);
   }
@@ -114,7 +124,10 @@ class Compressor {
       const tinygltf::BufferView& source = model_.bufferViews[view];
       kinds_[view] = {source.target,
                       source.byteStride > 0 ? source.byteStride : element_size(accessor),
-                      accessor.componentType, accessor.type};
+                      accessor.componentType, accessor.type, Filter::none};
+      if (const auto found = filters_.find(accessor.bufferView); found != filters_.end()) {
+        kinds_[view].filter = found->second;
+      }
     }
   }
 
@@ -139,6 +152,26 @@ class Compressor {
     if (offset > 0) accessor["byteOffset"] = offset;
   }
 
+  // Leaves out what is the default, and digits that no float has.
+  void shorten_json() {
+    if (json_.contains("animations")) {
+      for (OrderedJson& animation : json_["animations"]) {
+        for (OrderedJson& sampler : animation["samplers"]) {
+          if (sampler.value("interpolation", "") == "LINEAR") sampler.erase("interpolation");
+        }
+      }
+    }
+    for (OrderedJson& node : json_["nodes"]) {
+      for (const char* const place : {"translation", "rotation", "scale"}) {
+        if (!node.contains(place)) continue;
+        for (OrderedJson& number : node[place]) {
+          const auto value = static_cast<float>(number.get<double>());
+          number = parse_finite(shortest(value)).value_or(number.get<double>());
+        }
+      }
+    }
+  }
+
   void write_views() {
     OrderedJson views = OrderedJson::array();
     for (const ViewGroup& group : groups_) {
@@ -151,13 +184,14 @@ class Compressor {
       }
       const auto encoded = is_index(group.kind) ? encode_indices(group) : encode_attributes(group);
       assert(!encoded.empty());
-      const OrderedJson extension = {
+      OrderedJson extension = {
           {"buffer", 0},
           {"byteLength", encoded.size()},
           {"byteOffset", append_aligned(std::as_bytes(std::span(encoded)), buffer_)},
           {"byteStride", group.kind.stride},
           {"count", group.bytes.size() / group.kind.stride},
           {"mode", is_index(group.kind) ? "TRIANGLES" : "ATTRIBUTES"}};
+      if (group.kind.filter != Filter::none) extension["filter"] = name_of(group.kind.filter);
       unpacked_ = (unpacked_ + kAlignment - 1) / kAlignment * kAlignment;
       view["buffer"] = 1;
       view["byteOffset"] = unpacked_;
@@ -172,6 +206,7 @@ class Compressor {
 
   const tinygltf::Model& model_;
   const std::span<const std::byte> data_;
+  const std::map<int, Filter>& filters_;
   OrderedJson& json_;
   std::vector<ViewKind> kinds_;  // [views]
   std::vector<Place> places_;    // [views]
@@ -180,18 +215,6 @@ class Compressor {
   std::vector<std::byte> buffer_;
   std::size_t unpacked_ = 0;
 };
-
-template <typename Value>
-void reorder_rows(std::vector<Value>& values, std::size_t each, std::size_t first,
-                  const std::vector<unsigned>& remap) {
-  if (values.empty()) return;
-  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
-  std::vector<Value> before(begin, begin + static_cast<std::ptrdiff_t>(remap.size() * each));
-  for (std::size_t v = 0; v < remap.size(); ++v) {
-    for (std::size_t k = 0; k < each; ++k)
-      values[first + remap[v] * each + k] = before[v * each + k];
-  }
-}
 
 }  // namespace
 
@@ -212,7 +235,7 @@ Status Document::write_compressed(OutputFile& file) {
     return Error("gltf-name", "a name is not valid UTF-8, which glTF requires",
                  "rename the joint or material");
   }
-  Compressor compressor(gltf, data, json);
+  Compressor compressor(gltf, data, filters_, json);
   const std::vector<std::byte> packed = compressor.compress();
   // The buffer that the views would have, which viewers make up themselves.
   const OrderedJson unpacked = {{"byteLength", compressor.unpacked_size()},
@@ -220,38 +243,6 @@ Status Document::write_compressed(OutputFile& file) {
   auto glb = assemble_glb(json, packed, std::span(&unpacked, 1));
   if (!glb) return glb.error();
   return file.write(*glb);
-}
-
-void order_for_compression(Model& model, MorphSet& morphs) {
-  const std::size_t vertices = model.positions.size();
-  std::vector<unsigned> indices;
-  for (const auto& triangle : model.triangles) {
-    indices.insert(indices.end(), triangle.begin(), triangle.end());
-  }
-  for (const Model::Part& part : model.parts) {
-    unsigned* const first = indices.data() + std::size_t{3} * part.first_triangle;
-    meshopt_optimizeVertexCache(first, first, std::size_t{3} * part.triangle_count, vertices);
-  }
-  std::vector<unsigned> remap(vertices);
-  std::size_t used =
-      meshopt_optimizeVertexFetchRemap(remap.data(), indices.data(), indices.size(), vertices);
-  for (unsigned& place : remap) {  // vertices without a triangle are last
-    if (place == ~0u) place = static_cast<unsigned>(used++);
-  }
-  reorder_rows(model.positions, 1, 0, remap);
-  reorder_rows(model.normals, 1, 0, remap);
-  reorder_rows(model.texture_coordinates, 1, 0, remap);
-  reorder_rows(model.tangents, 1, 0, remap);
-  const auto places = static_cast<std::size_t>(model.influences_per_vertex);
-  reorder_rows(model.influence_joints, places, 0, remap);
-  reorder_rows(model.influence_weights, places, 0, remap);
-  for (std::size_t t = 0; t < morphs.names.size(); ++t) {
-    reorder_rows(morphs.positions, 1, t * vertices, remap);
-    reorder_rows(morphs.normals, 1, t * vertices, remap);
-  }
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    model.triangles[i / 3][i % 3] = remap[indices[i]];
-  }
 }
 
 }  // namespace krok::gltf

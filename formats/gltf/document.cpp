@@ -140,24 +140,61 @@ int Document::add_strided(std::span<const std::byte> bytes, std::size_t stride, 
   return index;
 }
 
-int Document::add_short_rotations(std::span<const Quatf> rotations) {
-  std::vector<std::int16_t> shorts;
-  for (const Quatf& rotation : rotations) {
-    const Quatf unit = rotation.normalized();
-    for (const float component : unit.coeffs()) {
-      shorts.push_back(static_cast<std::int16_t>(std::lround(component * 32767.0f)));
-    }
+int Document::add_filtered(std::span<const std::byte> bytes, int type, Filter filter, Use use) {
+  int index = 0;
+  if (filter == Filter::octahedral) {
+    index = add_strided(bytes, 4, TINYGLTF_COMPONENT_TYPE_BYTE, type, true);
+  } else if (filter == Filter::quaternion) {
+    index = add_accessor(bytes, TINYGLTF_COMPONENT_TYPE_SHORT, sizeof(std::int16_t), type, use);
+    gltf.accessors[static_cast<std::size_t>(index)].normalized = true;
+  } else {
+    index = add_accessor(bytes, TINYGLTF_COMPONENT_TYPE_FLOAT, sizeof(float), type, use);
   }
-  const int index = add_accessor(std::as_bytes(std::span(shorts)), TINYGLTF_COMPONENT_TYPE_SHORT,
-                                 sizeof(std::int16_t), TINYGLTF_TYPE_VEC4, Use::data);
-  gltf.accessors[static_cast<std::size_t>(index)].normalized = true;
+  filters_[gltf.accessors[static_cast<std::size_t>(index)].bufferView] = filter;
   return index;
 }
 
-int Document::add_rotations(std::span<const Quatf> rotations) {
-  if (options_.short_rotations) return add_short_rotations(rotations);
-  return add_floats({rotations.data()->coeffs().data(), rotations.size() * 4}, TINYGLTF_TYPE_VEC4,
-                    Use::data, false, Keep::view);
+int Document::add_rotations(std::span<const Quatf> rotations, int bits) {
+  const bool filtered = options_.compressed && options_.binary;
+  if (bits <= JointTrack::kShortBits && filtered) {
+    const std::vector<std::int16_t> shorts = quaternion(rotations, bits);
+    return add_filtered(std::as_bytes(std::span(shorts)), TINYGLTF_TYPE_VEC4, Filter::quaternion,
+                        Use::data);
+  }
+  const std::span<const float> components{rotations.data()->coeffs().data(), rotations.size() * 4};
+  if (bits <= JointTrack::kShortBits) {
+    std::vector<std::int16_t> shorts;
+    for (const float component : components) {
+      shorts.push_back(static_cast<std::int16_t>(std::lround(component * 32767.0f)));
+    }
+    const int index = add_accessor(std::as_bytes(std::span(shorts)), TINYGLTF_COMPONENT_TYPE_SHORT,
+                                   sizeof(std::int16_t), TINYGLTF_TYPE_VEC4, Use::data);
+    gltf.accessors[static_cast<std::size_t>(index)].normalized = true;
+    return index;
+  }
+  if (bits < JointTrack::kExact && filtered) {
+    if (const auto steps = exponential(components, 1 - bits)) {
+      return add_filtered(std::as_bytes(std::span(*steps)), TINYGLTF_TYPE_VEC4, Filter::exponential,
+                          Use::data);
+    }
+  }
+  return add_floats(components, TINYGLTF_TYPE_VEC4, Use::data, false, Keep::view);
+}
+
+int Document::add_translations(std::span<const Vec3f> translations, int exponent) {
+  if (exponent != JointTrack::kExact && options_.compressed && options_.binary) {
+    if (const auto steps =
+            exponential({translations.data()->data(), translations.size() * 3}, exponent)) {
+      return add_filtered(std::as_bytes(std::span(*steps)), TINYGLTF_TYPE_VEC3, Filter::exponential,
+                          Use::data);
+    }
+  }
+  return add_vector_keys(translations);
+}
+
+int Document::add_vector_keys(std::span<const Vec3f> values) {
+  return add_floats({values.data()->data(), values.size() * 3}, TINYGLTF_TYPE_VEC3, Use::data,
+                    false, Keep::view);
 }
 
 int Document::add_positions(std::span<const Vec3f> values, Use use) {
@@ -270,29 +307,26 @@ void Document::add_animation(const JointTracks& tracks, const std::string& name)
     }
     return place->second;
   };
-  const auto add_vector_keys = [&](int node, const char* path, int input,
-                                   const std::vector<Vec3f>& values) {
-    add_channel(animation, node, path, input,
-                add_floats({values.data()->data(), values.size() * 3}, TINYGLTF_TYPE_VEC3,
-                           Use::data, false, Keep::view));
-  };
   for (std::size_t j = 0; j < inner.size(); ++j) {
     const JointTrack& track = tracks.joints[j];
     if (!track.translations.empty()) {
       const int input = times(track.translation_frames);
-      add_vector_keys(outer_[j], "translation", input, track.translations);
+      add_channel(animation, outer_[j], "translation", input,
+                  add_translations(track.translations, track.translation_exponent));
     }
     if (!track.rotations.empty()) {
       const int input = times(track.rotation_frames);
-      add_channel(animation, outer_[j], "rotation", input, add_rotations(track.rotations));
+      add_channel(animation, outer_[j], "rotation", input,
+                  add_rotations(track.rotations, track.rotation_bits));
     }
     if (!track.scales.empty()) {
       const int input = times({});
-      add_vector_keys(outer_[j], "scale", input, track.scales);
+      add_channel(animation, outer_[j], "scale", input, add_vector_keys(track.scales));
     }
     if (!track.inner_rotations.empty()) {
       const int input = times({});
-      add_channel(animation, inner[j], "rotation", input, add_rotations(track.inner_rotations));
+      add_channel(animation, inner[j], "rotation", input,
+                  add_rotations(track.inner_rotations, track.rotation_bits));
     }
   }
   // A character that stays in its reference pose still has an animation of some duration.

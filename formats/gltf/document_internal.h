@@ -12,6 +12,7 @@
 
 #include "core/file.h"
 #include "core/result.h"
+#include "formats/gltf/filters_internal.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/gltf/joint_tracks.h"
 #include "scene/clip.h"
@@ -41,8 +42,8 @@ class Document {
   // Vertex values of a fixed number of bytes each, the last of them padding if they are fewer.
   int add_strided(std::span<const std::byte> bytes, std::size_t stride, int component, int type,
                   bool normalized);
-  // Unit quaternions as normalised numbers of 16 bits.
-  int add_short_rotations(std::span<const Quatf> rotations);
+  // Values behind a filter, four bytes a vector of directions, eight a quaternion, four a float.
+  int add_filtered(std::span<const std::byte> bytes, int type, Filter filter, Use use);
 
   // `wanted`, with a number appended if another node has that name.
   std::string unique_node_name(const std::string& wanted);
@@ -150,7 +151,10 @@ class Document {
   std::vector<std::byte>& own_part();
   // The whole file with its buffer views encoded (compress.cpp).
   Status write_compressed(OutputFile& file);
-  int add_rotations(std::span<const Quatf> rotations);
+  // With as many bits as JointTrack has.
+  int add_rotations(std::span<const Quatf> rotations, int bits);
+  int add_translations(std::span<const Vec3f> translations, int exponent);
+  int add_vector_keys(std::span<const Vec3f> values);
   Status begin_binary();
   Status begin_text();
   Status append_encoded(std::span<const std::byte> bytes);
@@ -162,6 +166,7 @@ class Document {
   const WriteOptions& options_;
   std::vector<Part> parts_;
   std::vector<int> outer_;  // [joints] the node that places a joint: its own, or the one above it
+  std::map<int, Filter> filters_;                   // of buffer views
   std::map<int, std::vector<VertexRange>> ranges_;  // of the primitives of a mesh
   std::uint64_t size_ = 0;                          // bytes of the parts and the streamed data
   std::uint64_t promised_ = 0;                      // bytes of the streamed data

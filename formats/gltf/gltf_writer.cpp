@@ -111,7 +111,8 @@ Status write_rig(const Model& model, std::span<const NamedTracks> clips,
   if (Status status = check_mesh(model); !status) return status;
   if (Status status = check_morphs(model, options); !status) return status;
   Document document(options);
-  const PositionGrid grid = options.quantized ? PositionGrid::of(model.positions) : PositionGrid();
+  const PositionGrid grid =
+      options.quantized ? PositionGrid::of(model.positions, *options.quantized) : PositionGrid();
   const int skin = document.add_skeleton(model.skeleton, clips, options.name, grid.to_model());
   if (Status status = document.add_eyes(model.skeleton, skin, options.eyes); !status) return status;
   MeshShape shape{model.positions, model.normals, model.tangents};
@@ -123,7 +124,7 @@ Status write_rig(const Model& model, std::span<const NamedTracks> clips,
     if (!tangents.empty()) stored.tangents = tangents;
     normalize_influences(stored);
     limit_influences(stored, used_influences(stored));
-    attributes = add_quantized_shape(document, stored, grid);
+    attributes = add_quantized_shape(document, stored, grid, *options.quantized);
     document.gltf.extensionsUsed.emplace_back("KHR_mesh_quantization");
     document.gltf.extensionsRequired.emplace_back("KHR_mesh_quantization");
   } else {

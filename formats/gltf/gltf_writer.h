@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 
 #include "core/file.h"
 #include "core/result.h"
 #include "formats/gltf/joint_tracks.h"
+#include "formats/gltf/quantize.h"
 #include "scene/character.h"
 #include "scene/clip.h"
 #include "scene/material.h"
@@ -36,13 +38,10 @@ struct WriteOptions {
   std::span<const Material> materials{};
   // Eye nodes as children of their joints, named like "left_eye"; write_rig only.
   std::span<const Character::Eye> eyes{};
-  // For write_rig: vertices as integers of 16 bits, directions of 8 (KHR_mesh_quantization), see
-  // quantize.h.
-  bool quantized = false;
-  // Rotation keys of 16 bits a component; tracks should have been through round_rotations().
-  bool short_rotations = false;
-  // For a GLB: buffer views encoded by meshoptimizer (EXT_meshopt_compression), without loss. Best
-  // after order_for_compression().
+  // For write_rig: vertices as integers of 16 bits, directions of 8 (KHR_mesh_quantization).
+  std::optional<Quantization> quantized{};
+  // For a GLB: buffer views encoded by meshoptimizer (EXT_meshopt_compression), without loss but
+  // for filters (Quantization, JointTrack). Best after order_for_compression().
   bool compressed = false;
   // For write_rig and write_mesh: morph targets of the model and their weights over time (constant
   // if one frame), in the same animation as the joints. Code: gltf-morphs.
@@ -80,9 +79,10 @@ Status write_skeleton(const Skeleton& skeleton, std::span<const NamedTracks> cli
 Status write_rig(const Model& model, std::span<const NamedTracks> clips,
                  const WriteOptions& options, OutputFile& file);
 
-// Reorders triangles within parts and vertices so that compression finds neighbours near each
-// other; `morphs` may have no targets.
-void order_for_compression(Model& model, MorphSet& morphs);
+// Makes one of the vertices of which the file would hold the same, and reorders them, and triangles
+// within parts, so that compression finds neighbours near each other. `morphs` may have no targets.
+void order_for_compression(Model& model, MorphSet& morphs,
+                           const std::optional<Quantization>& quantization);
 
 // A mesh without a skeleton: triangles, texture coordinates and parts of `model`, vertices of
 // `shape`, which must be the model's own shape if there are morph targets.

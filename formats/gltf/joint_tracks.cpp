@@ -10,6 +10,7 @@
 
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "formats/gltf/filters_internal.h"
 #include "formats/gltf/track_kernel_internal.h"
 #include "math/quaternion.h"
 
@@ -228,6 +229,34 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source
   TrackBuilder builder(rest, source, tolerance, jobs, tracks);
   if (Status status = builder.build(); !status) return status.error();
   return tracks;
+}
+
+JointTracks rounded(const JointTracks& tracks, bool filtered) {
+  JointTracks result = tracks;
+  for (JointTrack& track : result.joints) {
+    for (std::vector<Quatf>* rotations : {&track.rotations, &track.inner_rotations}) {
+      if (rotations->empty() || track.rotation_bits == JointTrack::kExact) continue;
+      if (filtered && track.rotation_bits <= JointTrack::kShortBits) {
+        *rotations = decoded_quaternion(*rotations, track.rotation_bits);
+        continue;
+      }
+      for (Quatf& rotation : *rotations) {
+        for (float& component : rotation.coeffs()) {
+          component = track.rotation_bits > JointTrack::kShortBits
+                          ? in_steps(component, 1 - track.rotation_bits)
+                          : std::round(component * 32767.0f) / 32767.0f;
+        }
+        rotation.normalize();
+      }
+    }
+    if (!filtered || track.translation_exponent == JointTrack::kExact) continue;
+    for (Vec3f& translation : track.translations) {
+      for (float& component : translation) {
+        component = in_steps(component, track.translation_exponent);
+      }
+    }
+  }
+  return result;
 }
 
 }  // namespace krok::gltf

@@ -29,6 +29,11 @@ struct JointTrack {
 
   // After reduce_tracks(), for tracks with fewer keys than frames: the keys' frames, increasing.
   std::vector<int> translation_frames, rotation_frames;
+
+  // What files hold of the keys, see rounded(): bits of the components of rotations; translations
+  // in steps of 2^exponent metres.
+  static constexpr int kExact = 32, kShortBits = 16;
+  int rotation_bits = kExact, translation_exponent = kExact;
 };
 
 struct JointTracks {
@@ -61,6 +66,11 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source
 // otherwise (of its matrix: metres, and metres at a metre from the joint).
 Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip,
                                  std::span<const Stretch> stretches, double& largest_error);
+
+// The keys that a viewer reads. Rotations of up to 16 bits are whole numbers of 16; in `filtered`
+// files, of 4 bits and more, behind the filters of EXT_meshopt_compression, which other bits and
+// exponents need.
+JointTracks rounded(const JointTracks& tracks, bool filtered);
 
 // Only the rest transforms, no times.
 JointTracks rest_tracks(const Skeleton& rest);

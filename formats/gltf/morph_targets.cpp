@@ -53,7 +53,8 @@ Status add_morphs(Document& document, const Model& model,
   for (int t = 0; t < morphs.target_count(); ++t) {
     auto& target = targets[static_cast<std::size_t>(t)];
     if (options.quantized) {
-      target = add_quantized_target(document, model, morphs, t, PositionGrid::of(model.positions));
+      target = add_quantized_target(document, model, morphs, t,
+                                    PositionGrid::of(model.positions, *options.quantized));
       continue;
     }
     target["POSITION"] =

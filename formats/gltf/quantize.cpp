@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "formats/gltf/filters_internal.h"
 #include "formats/gltf/mesh_shape_internal.h"
 #include "formats/gltf/quantize_internal.h"
 #include "scene/influences.h"
@@ -18,16 +19,22 @@ using Use = Document::Use;
 
 constexpr double kShorts = 65535;
 
-// Weights in whole steps that sum to kShorts: rounded down, the rest goes to those that lost most.
-void quantize_weights(std::span<const float> weights, std::span<std::uint16_t> steps) {
+// Steps that the weights of a vertex sum to.
+int weight_steps(const Quantization& quantization) {
+  if (quantization.weight_bits == 8) return 255;
+  return quantization.weight_bits == 16 ? 65535 : 1 << quantization.weight_bits;
+}
+
+// Weights in whole steps that sum to `all`: rounded down, the rest goes to those that lost most.
+void quantize_weights(std::span<const float> weights, int all, std::span<std::uint16_t> steps) {
   std::array<double, Model::kMaxInfluences> lost{};
   std::array<std::size_t, Model::kMaxInfluences> order{};
-  int left = static_cast<int>(kShorts);
+  int left = all;
   double sum = 0;
   for (const float weight : weights) sum += static_cast<double>(weight);
   for (std::size_t k = 0; k < weights.size(); ++k) {
-    const double exact = static_cast<double>(weights[k]) / sum * kShorts;
-    steps[k] = static_cast<std::uint16_t>(std::min(exact, kShorts));
+    const double exact = static_cast<double>(weights[k]) / sum * all;
+    steps[k] = static_cast<std::uint16_t>(std::min(exact, static_cast<double>(all)));
     lost[k] = exact - steps[k];
     order[k] = k;
     left -= steps[k];
@@ -93,39 +100,70 @@ int add_steps(Document& document, std::span<const std::array<Number, 3>> values,
   return accessor;
 }
 
-void add_texture_coordinates(Document& document, const Model& model,
-                             std::map<std::string, int>& attributes) {
-  const auto& coordinates = model.texture_coordinates;
-  if (coordinates.empty()) return;
-  const bool inside = std::ranges::all_of(
-      coordinates, [](const Vec2f& c) { return c.minCoeff() >= 0.0f && c.maxCoeff() <= 1.0f; });
-  if (!inside) {
-    attributes["TEXCOORD_0"] =
-        document.add_floats({coordinates.data()->data(), coordinates.size() * 2},
-                            TINYGLTF_TYPE_VEC2, Use::vertices, false);
+void add_texture_coordinates(Document& document, std::span<const Vec2f> coordinates,
+                             const Quantization& quantization, int& attribute) {
+  const std::span<const float> values(coordinates.data()->data(), coordinates.size() * 2);
+  const auto is_inside = [](float value) { return value >= 0.0f && value <= 1.0f; };
+  if (quantization.filtered) {
+    const auto steps = exponential(values, -quantization.coordinate_bits);
+    if (steps) {
+      attribute = document.add_filtered(std::as_bytes(std::span(*steps)), TINYGLTF_TYPE_VEC2,
+                                        Filter::exponential, Use::vertices);
+      return;
+    }
+  }
+  if (quantization.filtered || !std::ranges::all_of(values, is_inside)) {
+    attribute = document.add_floats(values, TINYGLTF_TYPE_VEC2, Use::vertices, false);
     return;
   }
   std::vector<std::uint16_t> steps;
-  for (const Vec2f& c : coordinates) {
-    for (int k = 0; k < 2; ++k) {
-      steps.push_back(static_cast<std::uint16_t>(std::lround(c[k] * static_cast<float>(kShorts))));
-    }
+  for (const float value : values) {
+    steps.push_back(static_cast<std::uint16_t>(std::lround(value * static_cast<float>(kShorts))));
   }
-  attributes["TEXCOORD_0"] =
+  attribute =
       document.add_strided(std::as_bytes(std::span(steps)), 4,
                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC2, true);
 }
 
+// The steps of all weights, [vertices x influences_per_vertex].
+std::vector<std::uint16_t> all_weight_steps(const Model& model, const Quantization& quantization) {
+  const auto places = static_cast<std::size_t>(model.influences_per_vertex);
+  std::vector<std::uint16_t> steps(model.influence_weights.size());
+  for (std::size_t i = 0; i < steps.size(); i += places) {
+    quantize_weights(std::span(model.influence_weights).subspan(i, places),
+                     weight_steps(quantization), std::span(steps).subspan(i, places));
+  }
+  return steps;
+}
+
+// Four weights a vertex.
+int add_weights(Document& document, std::span<const std::uint16_t> steps,
+                const Quantization& quantization) {
+  if (quantization.weight_bits == 8) {
+    const std::vector<std::uint8_t> bytes(steps.begin(), steps.end());
+    return document.add_strided(std::as_bytes(std::span(bytes)), 4,
+                                TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC4, true);
+  }
+  if (quantization.weight_bits == 16) {
+    return document.add_strided(std::as_bytes(steps), 8, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
+                                TINYGLTF_TYPE_VEC4, true);
+  }
+  std::vector<float> weights;
+  for (const std::uint16_t step : steps) {
+    weights.push_back(std::ldexp(static_cast<float>(step), -quantization.weight_bits));
+  }
+  const auto numbers = exponential(weights, -quantization.weight_bits);
+  return document.add_filtered(std::as_bytes(std::span(*numbers)), TINYGLTF_TYPE_VEC4,
+                               Filter::exponential, Use::vertices);
+}
+
 void add_quantized_influences(Document& document, const Model& model,
+                              const Quantization& quantization,
                               std::map<std::string, int>& attributes) {
   const auto places = static_cast<std::size_t>(model.influences_per_vertex);
   const auto count = static_cast<std::size_t>(model.vertex_count());
   const auto largest = static_cast<std::uint32_t>(model.skeleton.joint_count() - 1);
-  std::vector<std::uint16_t> steps(count * places);
-  for (std::size_t v = 0; v < count; ++v) {
-    quantize_weights(std::span(model.influence_weights).subspan(v * places, places),
-                     std::span(steps).subspan(v * places, places));
-  }
+  const std::vector<std::uint16_t> steps = all_weight_steps(model, quantization);
   for (std::size_t set = 0; set * 4 < places; ++set) {
     std::vector<std::uint32_t> joints(count * 4, 0);
     std::vector<std::uint16_t> weights(count * 4, 0);
@@ -138,19 +176,82 @@ void add_quantized_influences(Document& document, const Model& model,
     }
     attributes[fmt::format("JOINTS_{}", set)] =
         document.add_integers(joints, TINYGLTF_TYPE_VEC4, largest, Use::vertices);
-    attributes[fmt::format("WEIGHTS_{}", set)] =
-        document.add_strided(std::as_bytes(std::span(weights)), 8,
-                             TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, true);
+    attributes[fmt::format("WEIGHTS_{}", set)] = add_weights(document, weights, quantization);
   }
 }
 
+// Normals, or tangents with the sign of the fourth, as they are stored.
+std::vector<std::int8_t> stored_directions(std::span<const Vec4f> directions,
+                                           const Quantization& quantization) {
+  if (quantization.filtered) return octahedral(directions);
+  std::vector<std::int8_t> bytes;
+  for (const Vec4f& direction : directions) {
+    for (int c = 0; c < 3; ++c) bytes.push_back(byte_of(direction[c]));
+    bytes.push_back(byte_of(direction.w()));
+  }
+  return bytes;
+}
+
+std::vector<Vec4f> padded(std::span<const Vec3f> vectors) {
+  std::vector<Vec4f> longer;
+  for (const Vec3f& vector : vectors) longer.emplace_back(vector.x(), vector.y(), vector.z(), 0.0f);
+  return longer;
+}
+
+std::vector<Vec4f> unit_tangents_of(std::span<const Vec4f> tangents) {
+  std::vector<Vec4f> unit;
+  for (const Vec4f& tangent : tangents) {
+    const Vec3f direction = tangent.head<3>().stableNormalized();
+    unit.emplace_back(direction.x(), direction.y(), direction.z(), tangent.w() < 0 ? -1.f : 1.f);
+  }
+  return unit;
+}
+
+int add_directions(Document& document, std::span<const Vec4f> directions, int type,
+                   const Quantization& quantization) {
+  const std::vector<std::int8_t> bytes = stored_directions(directions, quantization);
+  if (!quantization.filtered) return add_bytes(document, bytes, type);
+  return document.add_filtered(std::as_bytes(std::span(bytes)), type, Filter::octahedral,
+                               Use::vertices);
+}
+
+// Appends values of each vertex to its row.
+class Rows {
+ public:
+  explicit Rows(std::size_t count) : rows_(count) {}
+
+  template <typename Value>
+  void add(std::span<const Value> values) {
+    if (values.empty()) return;
+    const std::size_t each = values.size() / rows_.size();
+    for (std::size_t v = 0; v < rows_.size(); ++v) {
+      const auto bytes = std::as_bytes(values.subspan(v * each, each));
+      rows_[v].insert(rows_[v].end(), bytes.begin(), bytes.end());
+    }
+  }
+  template <typename Value>
+  void add(const std::vector<Value>& values) {
+    add(std::span<const Value>(values));
+  }
+
+  VertexRows take() const {
+    VertexRows all{rows_.empty() ? 0 : rows_.front().size(), {}};
+    for (const auto& row : rows_) all.bytes.insert(all.bytes.end(), row.begin(), row.end());
+    return all;
+  }
+
+ private:
+  std::vector<std::vector<std::byte>> rows_;
+};
+
 }  // namespace
 
-PositionGrid PositionGrid::of(std::span<const Vec3f> positions) {
+PositionGrid PositionGrid::of(std::span<const Vec3f> positions, const Quantization& quantization) {
   Eigen::AlignedBox3d box;
   for (const Vec3f& position : positions) box.extend(position.cast<double>());
   const double longest = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
-  return {box.isEmpty() ? Vec3(Vec3::Zero()) : box.min(), longest > 0 ? longest / kShorts : 1.0};
+  return {box.isEmpty() ? Vec3(Vec3::Zero()) : box.min(),
+          longest > 0 ? std::max(longest / kShorts, quantization.position_step) : 1.0};
 }
 
 Mat4 PositionGrid::to_model() const {
@@ -161,27 +262,26 @@ Mat4 PositionGrid::to_model() const {
 }
 
 std::map<std::string, int> add_quantized_shape(Document& document, const Model& model,
-                                               const PositionGrid& grid) {
+                                               const PositionGrid& grid,
+                                               const Quantization& quantization) {
   std::map<std::string, int> attributes;
   std::vector<std::array<std::uint16_t, 3>> steps;
   for (const Vec3f& position : model.positions) steps.push_back(steps_of(position, grid));
   attributes["POSITION"] =
       add_steps<std::uint16_t>(document, steps, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
   if (!model.normals.empty()) {
-    attributes["NORMAL"] =
-        add_bytes(document, bytes_of_vectors(unit_vectors(model.normals)), TINYGLTF_TYPE_VEC3);
+    attributes["NORMAL"] = add_directions(document, padded(unit_vectors(model.normals)),
+                                          TINYGLTF_TYPE_VEC3, quantization);
   }
   if (!model.tangents.empty()) {
-    std::vector<std::int8_t> bytes;
-    for (const Vec4f& tangent : model.tangents) {
-      const Vec3f direction = tangent.head<3>().stableNormalized();
-      for (int c = 0; c < 3; ++c) bytes.push_back(byte_of(direction[c]));
-      bytes.push_back(tangent.w() < 0 ? std::int8_t{-127} : std::int8_t{127});
-    }
-    attributes["TANGENT"] = add_bytes(document, bytes, TINYGLTF_TYPE_VEC4);
+    attributes["TANGENT"] = add_directions(document, unit_tangents_of(model.tangents),
+                                           TINYGLTF_TYPE_VEC4, quantization);
   }
-  add_texture_coordinates(document, model, attributes);
-  add_quantized_influences(document, model, attributes);
+  if (!model.texture_coordinates.empty()) {
+    add_texture_coordinates(document, model.texture_coordinates, quantization,
+                            attributes["TEXCOORD_0"]);
+  }
+  add_quantized_influences(document, model, quantization, attributes);
   return attributes;
 }
 
@@ -221,28 +321,86 @@ std::map<std::string, int> add_quantized_target(Document& document, const Model&
   return attributes;
 }
 
-Model quantized(const Model& model) {
+VertexRows vertex_rows(const Model& model, const MorphSet& morphs,
+                       const std::optional<Quantization>& quantization) {
+  const auto count = static_cast<std::size_t>(model.vertex_count());
+  Rows rows(count);
+  std::vector<std::uint16_t> joints = model.influence_joints;
+  if (quantization) {
+    const PositionGrid grid = PositionGrid::of(model.positions, *quantization);
+    const auto add_steps_of = [&](std::span<const Vec3f> positions) {
+      std::vector<std::int32_t> steps;
+      for (const Vec3f& position : positions) {
+        for (int c = 0; c < 3; ++c) {
+          const double place = (static_cast<double>(position[c]) - grid.corner[c]) / grid.step;
+          steps.push_back(static_cast<std::int32_t>(std::round(std::clamp(place, -1e9, 1e9))));
+        }
+      }
+      rows.add(steps);
+    };
+    add_steps_of(model.positions);
+    rows.add(stored_directions(padded(unit_vectors(model.normals)), *quantization));
+    rows.add(stored_directions(unit_tangents_of(model.tangents), *quantization));
+    std::vector<float> coordinates;
+    for (const Vec2f& pair : model.texture_coordinates) {
+      for (const float value : pair) {
+        coordinates.push_back(
+            quantization->filtered ? in_steps(value, -quantization->coordinate_bits) : value);
+      }
+    }
+    rows.add(coordinates);
+    const std::vector<std::uint16_t> weights = all_weight_steps(model, *quantization);
+    rows.add(weights);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (weights[i] == 0) joints[i] = 0;
+    }
+    for (int t = 0; t < morphs.target_count(); ++t) add_steps_of(morphs.target_positions(t));
+  } else {
+    rows.add(model.positions);
+    rows.add(model.normals);
+    rows.add(model.tangents);
+    rows.add(model.texture_coordinates);
+    rows.add(model.influence_weights);
+    for (int t = 0; t < morphs.target_count(); ++t) rows.add(morphs.target_positions(t));
+  }
+  rows.add(joints);
+  if (!morphs.normals.empty()) {
+    for (int t = 0; t < morphs.target_count(); ++t) rows.add(morphs.target_normals(t));
+  }
+  return rows.take();
+}
+
+Model quantized(const Model& model, const Quantization& quantization) {
   Model result = model;
-  const PositionGrid grid = PositionGrid::of(model.positions);
+  const PositionGrid grid = PositionGrid::of(model.positions, quantization);
   for (Vec3f& position : result.positions) {
     const auto steps = steps_of(position, grid);
     position = (grid.corner + grid.step * Vec3(steps[0], steps[1], steps[2])).cast<float>();
   }
-  const auto places = static_cast<std::size_t>(model.influences_per_vertex);
-  std::vector<std::uint16_t> steps(places);
-  for (std::size_t v = 0; v < result.positions.size(); ++v) {
-    const std::span weights = std::span(result.influence_weights).subspan(v * places, places);
-    quantize_weights(weights, steps);
-    for (std::size_t k = 0; k < places; ++k) {
-      weights[k] = static_cast<float>(steps[k] / kShorts);
-      if (steps[k] == 0) result.influence_joints[v * places + k] = 0;
-    }
+  const std::vector<std::uint16_t> steps = all_weight_steps(model, quantization);
+  const double all = weight_steps(quantization);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    result.influence_weights[i] = static_cast<float>(steps[i] / all);
+    if (steps[i] == 0) result.influence_joints[i] = 0;
   }
   return result;
 }
 
-double quantization_bound(const Model& model) {
-  return 0.5 * std::sqrt(3.0) * PositionGrid::of(model.positions).step;
+double quantization_bound(const Model& model, const Quantization& quantization) {
+  return 0.5 * std::sqrt(3.0) * PositionGrid::of(model.positions, quantization).step;
+}
+
+double normal_error(const Model& model, const Quantization& quantization) {
+  const std::vector<Vec4f> normals = padded(unit_vectors(model.normals));
+  std::vector<std::int8_t> stored = stored_directions(normals, quantization);
+  if (quantization.filtered) decode_octahedral(stored);
+  double largest = 0;
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    const Vec3 shown(stored[4 * v], stored[4 * v + 1], stored[4 * v + 2]);
+    const Vec3 normal = normals[v].head<3>().cast<double>();
+    largest = std::max(largest, std::atan2(shown.cross(normal).norm(), shown.dot(normal)));
+  }
+  return largest;
 }
 
 }  // namespace krok::gltf

@@ -4,12 +4,21 @@
 
 namespace krok::gltf {
 
-// What a quantized file holds of a model (WriteOptions::quantized), as a viewer decodes it, to
-// measure what it loses: positions in steps of the longest side of the mesh's box / 65535 (off by
-// up to half a step along each axis), weights in steps of 1 / 65535.
-Model quantized(const Model& model);
+// How exactly a quantized file holds vertices (WriteOptions::quantized).
+struct Quantization {
+  double position_step = 0;  // metres; or the longest side of the mesh's box / 65535, if larger
+  int weight_bits = 16;      // steps of 1 / 255 (8), 1 / 65535 (16) or, if filtered, 2^-bits
+  int coordinate_bits = 16;  // steps of 2^-bits if filtered, else of 1 / 65535
+  bool filtered = false;     // through the filters of EXT_meshopt_compression; for compressed files
+};
+
+// What a quantized file holds of a model, as a viewer decodes it, to measure what it loses.
+Model quantized(const Model& model, const Quantization& quantization);
 
 // The largest distance of a vertex from where it was, in the reference pose: metres.
-double quantization_bound(const Model& model);
+double quantization_bound(const Model& model, const Quantization& quantization);
+
+// The largest angle between a normal and what the file holds of it: radians.
+double normal_error(const Model& model, const Quantization& quantization);
 
 }  // namespace krok::gltf

@@ -3,13 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "formats/gltf/reduce_tracks.h"
 #include "formats/gltf/track_poses.h"
-#include "math/quaternion.h"
 
 namespace krok::gltf {
 
 namespace {
+
+// Of the tolerance, what bits of one joint's keys may take; joints of a chain add up.
+constexpr double kBitsShare = 0.15;
+constexpr int kFewestBits = 6, kMostBits = 23;
+// Of joints without vertices, for what viewers attach to them: metres.
+constexpr double kLeastReach = 0.05;
 
 // For each joint the largest share of a turn about it that a vertex takes: weight times distance.
 // Joints without vertices still have to be in place, for what viewers attach to them.
@@ -43,8 +49,48 @@ PaletteSource palettes_of(const Model& model, const JointTracks& tracks) {
   };
 }
 
-float rounded_to_short(float value) {
-  return std::round(std::clamp(value, -1.0f, 1.0f) * 32767.0f) / 32767.0f;
+// For each joint the largest distance of a vertex that moves with it, or with a joint below it.
+std::vector<double> reaches_of(const Model& model) {
+  std::vector<double> reaches(model.skeleton.names.size(), kLeastReach);
+  const auto places = static_cast<std::size_t>(model.influences_per_vertex);
+  for (std::size_t i = 0; i < model.influence_weights.size(); ++i) {
+    const double weight = static_cast<double>(model.influence_weights[i]);
+    if (!(weight > 0)) continue;
+    const Vec3 position = model.positions[i / places].cast<double>();
+    for (int joint = model.influence_joints[i]; joint >= 0;
+         joint = model.skeleton.parents[at(joint)]) {
+      const Vec3 offset = position - model.skeleton.reference[at(joint)].position;
+      reaches[at(joint)] = std::max(reaches[at(joint)], weight * offset.norm());
+    }
+  }
+  return reaches;
+}
+
+// Bits so that each joint's keys alone move vertices by about `error` metres at most.
+void choose_bits(std::span<const double> reaches, double error, bool filtered,
+                 JointTracks& tracks) {
+  const int step = std::clamp(static_cast<int>(std::floor(std::log2(error))), -23, 0);
+  for (std::size_t j = 0; j < tracks.joints.size(); ++j) {
+    JointTrack& track = tracks.joints[j];
+    // Half a step of 2^(1 - bits) in each of three components of a half angle.
+    const double bits = 1 + std::log2(std::sqrt(3.0) * reaches[j] / error);
+    const int needed = std::max(kFewestBits, static_cast<int>(std::ceil(bits)));
+    if (filtered) {
+      track.rotation_bits = needed <= kMostBits ? needed : JointTrack::kExact;
+      track.translation_exponent = step;
+    } else {
+      track.rotation_bits =
+          needed <= JointTrack::kShortBits ? JointTrack::kShortBits : JointTrack::kExact;
+    }
+  }
+}
+
+std::size_t key_count(const JointTracks& tracks) {
+  std::size_t count = 0;
+  for (const JointTrack& track : tracks.joints) {
+    count += track.translations.size() + track.rotations.size();
+  }
+  return count;
 }
 
 }  // namespace
@@ -56,31 +102,22 @@ MeshError mesh_error(const Model& a, const JointTracks& a_tracks, const Model& b
                           std::max(1, 2 * frames - 1), jobs);
 }
 
-void round_rotations(JointTracks& tracks) {
-  for (JointTrack& track : tracks.joints) {
-    for (std::vector<Quatf>* rotations : {&track.rotations, &track.inner_rotations}) {
-      for (Quatf& rotation : *rotations) {
-        rotation.normalize();
-        for (float& component : rotation.coeffs()) component = rounded_to_short(component);
-      }
-    }
-  }
-}
-
-Result<MeshReduction> reduce_for_mesh(const Model& model, double tolerance, bool short_rotations,
-                                      int jobs, JointTracks& tracks) {
+Result<MeshReduction> reduce_for_mesh(const Model& model, const Model& shown,
+                                      const MeshReduceOptions& options, int jobs,
+                                      JointTracks& tracks) {
   const JointTracks full = tracks;
-  const std::vector<double> shells = shells_of(model);
+  const std::vector<double> shells = shells_of(model), reaches = reaches_of(model);
   MeshReduction best;
   bool found = false;
   const auto attempt = [&](double factor) -> Result<bool> {
     JointTracks fewer = full;
-    const ReduceOptions options{.tolerance = factor * tolerance, .shell_distances = shells};
-    auto reduction = reduce_tracks(model.skeleton, options, jobs, fewer);
+    const double tolerance = factor * options.tolerance;
+    auto reduction = reduce_tracks(
+        model.skeleton, {.tolerance = tolerance, .shell_distances = shells}, jobs, fewer);
     if (!reduction) return std::move(reduction).error();
-    if (short_rotations) round_rotations(fewer);
-    const MeshError error = mesh_error(model, full, model, fewer, jobs);
-    const bool fits = error.largest <= tolerance;
+    if (options.short_keys) choose_bits(reaches, kBitsShare * tolerance, options.filtered, fewer);
+    const MeshError error = mesh_error(model, full, shown, rounded(fewer, options.filtered), jobs);
+    const bool fits = error.largest <= options.tolerance;
     if (fits && (!found || reduction->keys_after < best.keys_after)) {
       best = {error, reduction->keys_before, reduction->keys_after};
       tracks = std::move(fewer);
@@ -98,16 +135,9 @@ Result<MeshReduction> reduce_for_mesh(const Model& model, double tolerance, bool
     (*fits ? low : high) = middle;
   }
   if (found) return best;
-  const std::size_t keys = [&] {
-    std::size_t count = 0;
-    for (const JointTrack& track : full.joints) {
-      count += track.translations.size() + track.rotations.size();
-    }
-    return count;
-  }();
   tracks = full;
-  if (short_rotations) round_rotations(tracks);
-  return MeshReduction{mesh_error(model, full, model, tracks, jobs), keys, keys};
+  return MeshReduction{mesh_error(model, full, shown, tracks, jobs), key_count(full),
+                       key_count(full)};
 }
 
 }  // namespace krok::gltf

@@ -13,20 +13,25 @@ struct MeshReduction {
   std::size_t keys_before = 0, keys_after = 0;
 };
 
-// Removes keys of tracks of all frames while no vertex of `model` moves by more than `tolerance`
-// metres; rotations are of 16 bits after that if `short_rotations`. choose_keys() bounds the error
-// of a sphere around each joint, with the radius of its vertices here, which is more than what a
-// vertex between several joints moves by, or less for vertices far off. So its tolerance is
-// searched for. Codes: reduce-tolerance, reduce-stretch (joints that change scale).
-Result<MeshReduction> reduce_for_mesh(const Model& model, double tolerance, bool short_rotations,
-                                      int jobs, JointTracks& tracks);
+struct MeshReduceOptions {
+  double tolerance = 1e-4;  // metres, > 0
+  bool short_keys = false;  // may store keys with fewer bits, see JointTrack
+  bool filtered = false;    // see rounded()
+};
+
+// Removes keys of tracks of all frames, and bits of those that stay, while no vertex of `shown`,
+// what is left of `model`, is further than the tolerance from that of `model` with all keys.
+// choose_keys() bounds the error of a sphere around each joint, with the radius of its vertices
+// here, which is more than what a vertex between several joints moves by, or less for vertices far
+// off. So its tolerance is searched for. Codes: reduce-tolerance, reduce-stretch (joints that
+// change scale).
+Result<MeshReduction> reduce_for_mesh(const Model& model, const Model& shown,
+                                      const MeshReduceOptions& options, int jobs,
+                                      JointTracks& tracks);
 
 // The largest distance between the vertices of two models of one mesh, moved by tracks of the same
 // frames, at the moments of MeshReduction.
 MeshError mesh_error(const Model& a, const JointTracks& a_tracks, const Model& b,
                      const JointTracks& b_tracks, int jobs);
-
-// Rotations rounded to the 16 bits a component that glTF may store, normalised as a viewer does.
-void round_rotations(JointTracks& tracks);
 
 }  // namespace krok::gltf

@@ -103,10 +103,11 @@ void declare(CommandOptions& command, Options& options) {
   command.add_flag(
       "--quantize", options.quantize,
       "For --as rig: vertices and, within the tolerance, rotations of 16 bits, normals of 8 "
-      "(KHR_mesh_quantization); the error is measured on the mesh");
+      "(KHR_mesh_quantization); with --compress and --reduce of as few bits as the tolerance "
+      "allows; the error is measured on the mesh");
   command.add_flag("--compress", options.compress,
-                   "For --as rig as .glb: compress meshes and keys without further loss "
-                   "(EXT_meshopt_compression); reorders vertices");
+                   "For --as rig as .glb: compress meshes and keys (EXT_meshopt_compression), "
+                   "without --quantize exactly; equal vertices become one, and are reordered");
 }
 
 Result<double> reduce_tolerance(const Options& options) {

@@ -202,8 +202,7 @@ Status write_rig(const Options& chosen, const Subject& subject, ToolContext& con
     options.eyes = subject.eyes;
     if (rig->morphs.target_count() > 0) options.morphs = &rig->morphs;
     if (subject.changes_shape()) options.weights = &subject.weights;
-    options.quantized = chosen.quantize;
-    options.short_rotations = rig->short_rotations;
+    options.quantized = rig->quantization;
     options.compressed = chosen.compress;
     return gltf::write_rig(rig->model, rig->clips.named(), options, file);
   });

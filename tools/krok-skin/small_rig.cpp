@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/numbers.h"
@@ -13,6 +14,9 @@
 namespace krok::cli::skin {
 
 namespace {
+
+// Of the tolerance of --reduce, what positions, and weights, of vertices may take alone.
+constexpr double kVertexShare = 0.5;
 
 std::string millimetres(double metres) {
   return readable(1e3 * metres, 3) + " mm";
@@ -132,30 +136,19 @@ namespace {
 // What --reduce does to all clips.
 struct Reduction {
   std::size_t keys = 0, keys_before = 0;
-  double largest = 0;  // error, metres
 };
 
-Result<Reduction> reduce(const Model& model, double tolerance, bool short_rotations, int jobs,
+Result<Reduction> reduce(const Model& model, const Model& shown,
+                         const gltf::MeshReduceOptions& options, int jobs,
                          std::vector<gltf::JointTracks>& clips) {
   Reduction all;
   for (gltf::JointTracks& tracks : clips) {
-    const auto one = gltf::reduce_for_mesh(model, tolerance, short_rotations, jobs, tracks);
+    const auto one = gltf::reduce_for_mesh(model, shown, options, jobs, tracks);
     if (!one) return one.error();
     all.keys += one->keys_after;
     all.keys_before += one->keys_before;
-    all.largest = std::max(all.largest, one->error.largest);
   }
   return all;
-}
-
-// Fewer keys, and rotations of 16 bits if the tolerance allows them in all clips.
-Result<Reduction> reduce(double tolerance, int jobs, SmallRig& rig) {
-  const std::vector<gltf::JointTracks> full = rig.clips.tracks;
-  auto reduction = reduce(rig.model, tolerance, rig.short_rotations, jobs, rig.clips.tracks);
-  if (!reduction || !rig.short_rotations || reduction->largest <= tolerance) return reduction;
-  rig.short_rotations = false;
-  rig.clips.tracks = full;
-  return reduce(rig.model, tolerance, false, jobs, rig.clips.tracks);
 }
 
 // The largest error on the mesh of all clips, and the clip's index.
@@ -172,29 +165,73 @@ std::pair<MeshError, std::size_t> largest_error(const Model& model,
   return largest;
 }
 
+// The bits of weights whose error alone is less than `limit`, for vertices of the finest step.
+int weight_bits_within(double limit, const SmallRig& rig, bool filtered, int jobs) {
+  gltf::Quantization trial{.filtered = filtered};
+  const auto fits = [&](int bits) {
+    trial.weight_bits = bits;
+    const Model shown = gltf::quantized(rig.model, trial);
+    return largest_error(rig.model, rig.clips.tracks, shown, rig.clips.tracks, jobs).first.largest <
+           limit;
+  };
+  if (fits(8)) return 8;
+  if (!filtered) return 16;
+  int low = 8, high = 16;  // the first does not fit
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (fits(middle) ? high : low) = middle;
+  }
+  return high;
+}
+
+// How exactly vertices are stored, with a tolerance for them and their keys; 0 without one.
+gltf::Quantization quantization_for(double tolerance, const SmallRig& rig, bool filtered,
+                                    int jobs) {
+  gltf::Quantization result{.filtered = filtered};
+  if (filtered) result.coordinate_bits = 14;
+  if (tolerance == 0) return result;
+  // A vertex is off by half a step along each axis.
+  result.position_step = kVertexShare * tolerance * 2 / std::sqrt(3.0);
+  result.weight_bits = weight_bits_within(kVertexShare * tolerance, rig, filtered, jobs);
+  return result;
+}
+
 // Applies --reduce and --quantize, and reports the error of both.
 Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
   const std::vector<gltf::JointTracks> full = rig.clips.tracks;
-  const Model shown = options.quantize ? gltf::quantized(rig.model) : rig.model;
+  double tolerance = 0;
+  if (!options.reduce.empty()) {
+    const auto given = reduce_tolerance(options);
+    if (!given) return given.error();
+    tolerance = *given;
+  }
+  const bool filtered = options.compress && options.quantize;
+  if (options.quantize) {
+    rig.quantization = quantization_for(tolerance, rig, filtered, context.jobs);
+  }
+  const Model shown = rig.quantization ? gltf::quantized(rig.model, *rig.quantization) : rig.model;
   Json facts;
   std::string words;
-  rig.short_rotations = options.quantize;
-  if (!options.reduce.empty()) {
-    const auto tolerance = reduce_tolerance(options);
-    if (!tolerance) return tolerance.error();
-    // What vertices lose already is not left for keys.
-    const double lost = largest_error(rig.model, full, shown, full, context.jobs).first.largest;
+  if (tolerance > 0) {
     const auto reduction =
-        reduce(std::max(*tolerance - lost, 0.25 * *tolerance), context.jobs, rig);
+        reduce(rig.model, shown,
+               {.tolerance = tolerance, .short_keys = options.quantize, .filtered = filtered},
+               context.jobs, rig.clips.tracks);
     if (!reduction) return reduction.error();
     facts["keys"] = reduction->keys;
     facts["keys_before"] = reduction->keys_before;
     words = fmt::format("{} of {}, ", grouped(static_cast<long long>(reduction->keys)),
                         counted(static_cast<long long>(reduction->keys_before), "key"));
   } else {
-    for (gltf::JointTracks& tracks : rig.clips.tracks) gltf::round_rotations(tracks);
+    for (gltf::JointTracks& tracks : rig.clips.tracks) {
+      for (gltf::JointTrack& track : tracks.joints) track.rotation_bits = 16;
+    }
   }
-  const auto [error, clip] = largest_error(rig.model, full, shown, rig.clips.tracks, context.jobs);
+  std::vector<gltf::JointTracks> stored;
+  for (const gltf::JointTracks& tracks : rig.clips.tracks) {
+    stored.push_back(gltf::rounded(tracks, filtered));
+  }
+  const auto [error, clip] = largest_error(rig.model, full, shown, stored, context.jobs);
   facts["largest_error"] = error.largest;
   facts["vertex"] = error.vertex;
   facts["frame"] = 0.5 * error.moment;
@@ -203,8 +240,11 @@ Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
     facts["clip"] = rig.clips.names[clip];
     where = rig.clips.names[clip] + ", ";
   }
-  facts["rotation_bits"] = rig.short_rotations ? 16 : 32;
-  if (options.quantize) facts["quantization_bound"] = gltf::quantization_bound(rig.model);
+  if (rig.quantization) {
+    facts["quantization_bound"] = gltf::quantization_bound(rig.model, *rig.quantization);
+    facts["weight_bits"] = rig.quantization->weight_bits;
+    facts["normal_error"] = gltf::normal_error(rig.model, *rig.quantization);
+  }
   context.report.result["rig"] = std::move(facts);
   context.log(fmt::format("{}max error on the mesh {} (vertex {}, {}frame {})", words,
                           millimetres(error.largest), error.vertex, where,
@@ -226,7 +266,7 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
   if (!options.reduce.empty() || options.quantize) {
     if (Status status = lose_bits(options, rig, context); !status) return status.error();
   }
-  if (options.compress) gltf::order_for_compression(rig.model, rig.morphs);
+  if (options.compress) gltf::order_for_compression(rig.model, rig.morphs, rig.quantization);
   return rig;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ struct SmallRig {
   Model model;
   MorphSet morphs;
   Clips clips;
-  bool short_rotations = false;  // rotations are of 16 bits
+  std::optional<gltf::Quantization> quantization;
 };
 
 // Reports the error of what is lost. Warns where the file needs a second set of influences. Codes:

@@ -85,7 +85,7 @@ TEST(GltfWriter, PartsHaveVerticesOfTheirOwn) {
   for (const bool quantized : {false, true}) {
     gltf::WriteOptions options;
     options.morphs = &morphs;
-    options.quantized = quantized;
+    if (quantized) options.quantized.emplace();
     const auto glb = rig(model, motion(), options);
     const auto& accessors = glb.json["accessors"];
     const auto& primitives = glb.json["meshes"][0]["primitives"];
