@@ -228,7 +228,8 @@ async function goalsAgree(page, motion, report, rate) {
   const told = report.result.goals.map((goal) => goal.frames.find((f) => f.frame === frame));
   expect(told[0].distance > 1 && Math.abs(hand.distance - told[0].distance) < 1e-4,
     `the page has ${hand.distance} m, krok-ik ${told[0].distance} m`);
-  expect(Math.abs(head.angle - told[1].angle) < 1e-4, `the page has ${head.angle} rad, krok-ik ${told[1].angle}`);
+  const degrees = (head.angle * 180) / Math.PI;
+  expect(Math.abs(degrees - told[1].angle) < 6e-3, `the page has ${degrees} degrees, krok-ik ${told[1].angle}`);
   expect(later.strength === 0 && told[2] === undefined, 'a goal of later is active');
   const rows = await page.locator('#goals li').allTextContents();
   expect(rows[0] === `rail (position)off by ${(told[0].distance * 1000).toFixed(0)} mm`, `the legend has ${rows[0]}`);

@@ -47,6 +47,32 @@ def strings(value):
             yield from strings(item)
 
 
+# A unit in a key's name, or another name for what the reports of other tools have.
+OTHER_WORDS = ("_mm", "_cm", "_deg", "_degrees", "_rad", "_radians", "_per_second", "_ms", "_fps")
+OTHER_NAMES = {"fps": "rate", "frame_rate": "rate", "least": "smallest", "most": "largest",
+               "low": "smallest", "high": "largest", "begin": "start"}
+
+
+def other_conventions(value, key=""):
+    """Numbers of a result in other units or under other names than everywhere: angles are degrees,
+    lengths metres, times seconds. Lists of a motion's own joints or clips keep their names."""
+    if isinstance(value, dict):
+        for name, item in value.items():
+            if isinstance(item, (int, float)) and not isinstance(item, bool):
+                if name in OTHER_NAMES:
+                    yield f"'{name}' is called '{OTHER_NAMES[name]}'"
+                if name.endswith(OTHER_WORDS):
+                    yield f"'{name}' has its unit in its name"
+                if name != "rate" and isinstance(item, float) and float(f"{item:.9g}") != item:
+                    yield f"'{name}' is {item!r}, more than nine digits"
+            if name == "unit" and item == "rad":
+                yield "a unit of radians"
+            yield from other_conventions(item, name)
+    elif isinstance(value, list):
+        for item in value:
+            yield from other_conventions(item, key)
+
+
 def fault_of(data):
     try:
         report = json.loads(data.decode("utf-8"), parse_constant=refuse_constant, parse_float=finite,
@@ -59,6 +85,8 @@ def fault_of(data):
     for text in strings(report):
         if any(0xD800 <= ord(c) < 0xE000 for c in text):
             return "half of a surrogate pair"
+    for fault in other_conventions(report["result"]):
+        return fault
     if VALIDATOR is not None and report["schema"] == "krok.report/1":
         for fault in VALIDATOR.iter_errors(report):
             return f"{fault.json_path}: {fault.message}"

@@ -26,7 +26,8 @@ inline int colourfulness(render::Colour colour) {
 
 // The pixel at which a cell of the report shows a world point, computed from the report.
 inline Vec2 place_in(const nlohmann::json& cell, double pixels_per_metre, const Vec3& point) {
-  const double yaw = cell["yaw"], elevation = cell["elevation"];
+  const double yaw = cell["yaw"].get<double>() * kRadiansPerDegree;
+  const double elevation = cell["elevation"].get<double>() * kRadiansPerDegree;
   const auto& target = cell["target"];
   const Vec3 offset = point - Vec3(target[0], target[1], target[2]);
   const double right = std::cos(yaw) * offset.x() - std::sin(yaw) * offset.z();

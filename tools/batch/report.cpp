@@ -21,7 +21,7 @@ Status BatchReport::begin(const std::string& path, OutputFile::Options how, cons
 // The file keeps write errors; end() returns them.
 void BatchReport::add(const Json& file) {
   if (!file_) return;
-  (void)file_->write((first_ ? "\n    " : ",\n    ") + json_line(file)).ok();
+  (void)file_->write((first_ ? "\n    " : ",\n    ") + json_line(rounded(file))).ok();
   first_ = false;
 }
 
@@ -29,7 +29,7 @@ Status BatchReport::end(const Diagnostics& issues, const Json& result) {
   if (!file_) return {};
   const Status status = file_->write(fmt::format("{}],\n  \"issues\": {},\n  \"result\": {}\n}}\n",
                                                  first_ ? "" : "\n  ", json_line(to_json(issues)),
-                                                 json_line(result)));
+                                                 json_line(rounded(result))));
   const Status done = file_->commit();
   file_.reset();
   return status ? done : status;

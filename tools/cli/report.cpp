@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "core/file.h"
+#include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/json_object.h"
 
@@ -25,6 +27,18 @@ const char* severity_name(Severity severity) {
 }
 
 }  // namespace
+
+Json rounded(Json json) {
+  if (json.is_structured()) {
+    for (auto& [key, item] : json.items()) {
+      if (key != "rate") item = rounded(std::move(item));
+    }
+  } else if (json.is_number_float()) {
+    const double value = json.get<double>();
+    if (std::isfinite(value)) json = *parse_finite(fmt::format("{:.9g}", value));
+  }
+  return json;
+}
 
 Json to_json(const Diagnostic& diagnostic) {
   const Location& where = diagnostic.where;
@@ -67,7 +81,7 @@ Json Report::to_json() const {
   json["options"] = options;
   json["outputs"] = outputs;
   json["issues"] = krok::cli::to_json(issues);
-  json["result"] = result;
+  json["result"] = rounded(result);
   return json;
 }
 

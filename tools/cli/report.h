@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
+#include "math/types.h"
 #include "tools/cli/json.h"
 
 namespace krok::cli {
@@ -31,6 +33,22 @@ struct Report {
 
   Json to_json() const;
 };
+
+// Angles of reports are in degrees.
+inline double to_degrees(double radians) {
+  return radians / kRadiansPerDegree;
+}
+// A value in `unit`, and the unit, as reports have them: degrees in place of "rad".
+inline double reported(double value, std::string_view unit) {
+  return unit == "rad" ? to_degrees(value) : value;
+}
+inline std::string reported_unit(std::string_view unit) {
+  return unit == "rad" ? "deg" : std::string(unit);
+}
+
+// The same with all numbers but frame rates rounded to nine significant digits, which hold what a
+// float holds.
+Json rounded(Json json);
 
 Json to_json(const Diagnostic& diagnostic);
 Json to_json(const Diagnostics& diagnostics);

@@ -181,7 +181,7 @@ void report(const std::vector<Motion>& motions, const Correspondence& moments,
     Json entry;
     entry["name"] = motions[m].name;
     entry["weight"] = motions[m].weight.is_constant() ? Json(motions[m].weight.weights[0]) : Json();
-    entry["moments"] = moments.times[m];
+    entry["times"] = moments.times[m];
     list.push_back(std::move(entry));
   }
   Json& result = context.report.result;
@@ -191,7 +191,7 @@ void report(const std::vector<Motion>& motions, const Correspondence& moments,
   result["moments"] = moments.names;
   result["motions"] = std::move(list);
   result["keytimes"] = to_json(blended.keys.keytimes);
-  result["widest_spread_degrees"] = blended.widest_spread / kRadiansPerDegree;
+  result["largest_spread_angle"] = to_degrees(blended.widest_spread);
 }
 
 }  // namespace

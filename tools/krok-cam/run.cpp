@@ -272,12 +272,11 @@ void report(const Shot& shot, ToolContext& context) {
   result["duration"] = duration;
   result.update(shot.facts);
   result["way"] = motion.length;
-  result["largest_speed"] = {{"metres_per_second", motion.largest_speed},
-                             {"frame", motion.fastest_frame}};
-  result["largest_turning"] = {{"degrees_per_second", motion.largest_turning / kRadiansPerDegree},
+  result["largest_speed"] = {{"speed", motion.largest_speed}, {"frame", motion.fastest_frame}};
+  result["largest_turning"] = {{"angular_velocity", to_degrees(motion.largest_turning)},
                                {"frame", motion.fastest_turning_frame}};
-  result["field_of_view"] = {{"least", motion.least_field_of_view / kRadiansPerDegree},
-                             {"most", motion.most_field_of_view / kRadiansPerDegree}};
+  result["field_of_view"] = {{"smallest", to_degrees(motion.least_field_of_view)},
+                             {"largest", to_degrees(motion.most_field_of_view)}};
   context.report.result = std::move(result);
   context.log(fmt::format("{}: {}, {} s{}{}; max {} m/s and {} degrees/s", context.output,
                           counted(track.frame_count(), "frame"), readable(duration, 3),

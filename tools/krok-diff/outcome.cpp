@@ -39,7 +39,7 @@ const char* unit_name(Unit unit) {
     case Unit::length:
       return "m";
     case Unit::angle:
-      return "rad";
+      return "deg";
     case Unit::time:
       return "s";
     case Unit::side:
@@ -145,10 +145,13 @@ Json to_json(const Row& row, const PlaceNames& names) {
   Json entry;
   entry["what"] = row.what;
   entry["unit"] = unit_name(row.unit);
-  entry["largest"] = measure.largest;
-  entry["rms"] = measure.rms();
-  entry["percentile_95"] = measure.percentile(0.95);
-  entry["tolerance"] = measure.tolerance;
+  const auto reported = [&](double value) {
+    return row.unit == Unit::angle ? to_degrees(value) : value;
+  };
+  entry["largest"] = reported(measure.largest);
+  entry["rms"] = reported(measure.rms());
+  entry["percentile_95"] = reported(measure.percentile(0.95));
+  entry["tolerance"] = reported(measure.tolerance);
   entry["over"] = measure.over;
   entry["count"] = measure.count;
   entry["where"] = measure.largest > 0 ? to_json(measure.where, names) : Json();
@@ -310,12 +313,12 @@ std::string worst_of(const Outcome& outcome) {
 
 Json to_json(const compare::Tolerance& tolerance) {
   return {{"length", tolerance.length},
-          {"angle", tolerance.angle},
+          {"angle", to_degrees(tolerance.angle)},
           {"ratio", tolerance.ratio},
           {"time", tolerance.time},
-          {"normals", tolerance.of_normals()},
+          {"normals", to_degrees(tolerance.of_normals())},
           {"joint_positions", tolerance.of_joint_positions()},
-          {"joint_orientations", tolerance.of_joint_orientations()}};
+          {"joint_orientations", to_degrees(tolerance.of_joint_orientations())}};
 }
 
 Json to_json(const Outcome& outcome, const compare::Tolerance& tolerance) {

@@ -74,7 +74,7 @@ std::string worst_of(const Outcome& outcome);
 // differences that no tolerance can cover, 0 for none.
 double excess_of(const Outcome& outcome);
 
-// All metrics, in metres and radians.
+// All metrics, in metres and degrees.
 Json to_json(const Outcome& outcome, const compare::Tolerance& tolerance);
 Json to_json(const compare::Tolerance& tolerance);
 

@@ -66,7 +66,8 @@ Status remove_spikes(const Options& options, ToolContext& context,
     entry["first_frame"] = spike.first_frame;
     entry["last_frame"] = spike.last_frame;
     entry["of"] = spike.of_position ? "position" : "rotation";
-    entry["size"] = spike.size;
+    entry["size"] = spike.of_position ? spike.size : to_degrees(spike.size);
+    entry["unit"] = spike.of_position ? "m" : "deg";
     list.push_back(std::move(entry));
     frames += spike.last_frame - spike.first_frame + 1;
   }

@@ -80,7 +80,7 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
   if (line.empty()) return {};
   Json metrics;
   metrics["moved"] = {move.position.x(), move.position.y(), move.position.z()};
-  metrics["turned"] = 2 * std::atan2(move.orientation.y(), move.orientation.w());
+  metrics["turned"] = to_degrees(2 * std::atan2(move.orientation.y(), move.orientation.w()));
   edit.note("place", std::move(metrics), std::move(line));
   return {};
 }

@@ -97,12 +97,12 @@ Result<Range> typed_range(const Options& options, const Edit& edit) {
 
 Json seam_json(const Seam& seam, const Edit& edit) {
   Json json;
-  json["angle"] = seam.angle;
+  json["angle"] = to_degrees(seam.angle);
   json["angle_joint"] = joint_name(edit, seam.angle_joint);
   json["distance"] = seam.distance;
-  json["angular_velocity"] = seam.angular_velocity;
+  json["angular_velocity"] = to_degrees(seam.angular_velocity);
   json["angular_velocity_joint"] = joint_name(edit, seam.angular_velocity_joint);
-  json["usual_angular_velocity"] = seam.usual_angular_velocity;
+  json["usual_angular_velocity"] = to_degrees(seam.usual_angular_velocity);
   json["velocity"] = seam.velocity;
   return json;
 }
@@ -125,8 +125,8 @@ Json loop_json(const Looped& looped, const Edit& edit) {
   json["blended_frames"] = looped.blended_frames;
   const Vec3& way = looped.displacement.position;
   json["displacement"] = {way.x(), way.y(), way.z()};
-  json["turn"] = looped.turn;
-  json["straightened"] = looped.straightened;
+  json["turn"] = to_degrees(looped.turn);
+  json["straightened"] = to_degrees(looped.straightened);
   json["levelled"] = looped.levelled;
   json["root_carried"] = looped.carried;
   json["seam_before"] = seam_json(looped.before, edit);
@@ -194,7 +194,7 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
     last = best->last;
     metrics["cycle"] = {{"from", fmt::format("{}[{}]", best->name, best->number)},
                         {"to", fmt::format("{}[{}]", best->name, best->number + 1)},
-                        {"angle", best->angle},
+                        {"angle", to_degrees(best->angle)},
                         {"compared", best->compared}};
     chosen = fmt::format("cycle {}[{}] to [{}], of {} the one that matches best, ", best->name,
                          best->number, best->number + 1, best->compared);
@@ -291,7 +291,7 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
     metrics["frames"] = edit.clip.frame_count();
     metrics["joint_frame"] = joined->joint_frame;
     metrics["shared_frames"] = joined->shared_frames;
-    metrics["largest_angle"] = joined->largest_angle;
+    metrics["largest_angle"] = to_degrees(joined->largest_angle);
     metrics["largest_angle_joint"] = joint_name(edit, joined->largest_joint);
     std::string line = fmt::format("appended {}: {} shared about frame {}", base_name(path),
                                    counted(joined->shared_frames, "frame"), joined->joint_frame);

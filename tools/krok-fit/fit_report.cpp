@@ -279,7 +279,8 @@ void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolC
 
 }  // namespace
 
-Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
+// Libraries keep angles in radians, and so does the report in their file.
+Json saved_json(const LibraryInput& input, const FittedLibrary& fitted) {
   const parametric::Library& library = input.library;
   Json result;
   result["name"] = input.description.name;
@@ -312,18 +313,44 @@ Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
   result["rounds"] = rounds_json(input, fitted);
   result["refused_points"] = refused_json(fitted);
   if (fitted.refined.polished) {
-    result["polished"] = {{"after", metrics_json(fitted.refined.polished->after, input)}};
+    result["polished"] = {{"after", metrics_json(fitted.refined.polished->after, input)},
+                          {"found_rows", fitted.refined.polished->found_rows}};
   }
   result["leave_one_out"] = left_out_json(fitted.left_out);
   result["stop"] = std::string(krok::fit::stop_name(fitted.refined.stop));
   return result;
 }
 
-Json saved_json(const LibraryInput& input, const FittedLibrary& fitted) {
-  Json result = report_json(input, fitted);
-  if (fitted.refined.polished) {
-    result["polished"]["found_rows"] = fitted.refined.polished->found_rows;
+Json report_json(const LibraryInput& input, const FittedLibrary& fitted) {
+  Json result = saved_json(input, fitted);
+  if (fitted.refined.polished) result["polished"].erase("found_rows");
+  std::vector<std::string> units;
+  for (Json& parameter : result["parameters"]) {
+    const std::string unit = parameter["unit"];
+    units.push_back(unit);
+    parameter["unit"] = reported_unit(unit);
+    for (const char* key : {"from", "to", "tolerance"}) {
+      parameter[key] = reported(parameter[key].get<double>(), unit);
+    }
   }
+  for (Json& example : result["examples"]) {
+    for (std::size_t d = 0; d < units.size(); ++d) {
+      Json& value = example["parameters"][d];
+      value = reported(value.get<double>(), units[d]);
+    }
+  }
+  const auto convert = [&](Json& metrics) {
+    for (const char* where : {"within", "extrapolated"}) {
+      auto unit = units.begin();
+      for (Json& errors : metrics[where]) {
+        for (Json& value : errors) value = reported(value.get<double>(), *unit);
+        ++unit;
+      }
+    }
+  };
+  convert(result["before"]);
+  for (Json& round : result["rounds"]) convert(round["after"]);
+  if (result.contains("polished")) convert(result["polished"]["after"]);
   return result;
 }
 

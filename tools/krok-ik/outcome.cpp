@@ -155,7 +155,7 @@ Json to_json(const Outcome& outcome) {
     entry["active_frames"] = frames.size();
     entry["reached_frames"] = summary.reached;
     entry["largest_distance"] = summary.distance;
-    entry["largest_angle"] = summary.angle;
+    entry["largest_angle"] = to_degrees(summary.angle);
     entry["worst_frame"] = summary.worst != nullptr ? Json(summary.worst->frame) : Json();
     entry["held_by"] =
         summary.worst != nullptr ? joint_name(outcome, summary.worst->residual.held_by) : Json();
@@ -164,14 +164,14 @@ Json to_json(const Outcome& outcome) {
       entry["frames"].push_back({{"frame", frame.frame},
                                  {"strength", frame.strength},
                                  {"distance", frame.residual.distance},
-                                 {"angle", frame.residual.angle},
+                                 {"angle", to_degrees(frame.residual.angle)},
                                  {"reached", frame.residual.reached},
                                  {"held_by", joint_name(outcome, frame.residual.held_by)}});
     }
     json["goals"].push_back(std::move(entry));
   }
   json["limits"] = limits_json(outcome.limits, outcome.input.skeleton);
-  json["limits"]["largest_excess"] = outcome.motion.largest_excess;
+  json["limits"]["largest_excess"] = to_degrees(outcome.motion.largest_excess);
   return json;
 }
 

@@ -170,7 +170,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
   }
   report_all(found);
   facts["source_rate"] = to_json(sampling->rate);
-  facts["keys"] = {{"from", sampling->keys_from}, {"to", sampling->keys_to}};
+  facts["keys"] = {{"start", sampling->keys_from}, {"end", sampling->keys_to}};
   clip_facts_.push_back(std::move(facts));
   if (Status status = add_weights(chosen, *sampling); !status) return status;
   return wants_camera() ? add_camera(chosen, *sampling) : Status();

@@ -126,7 +126,8 @@ Result<Description> describe_cam(const InputFile& file, ToolContext&) {
     out.add("field of view",
             *low == *high ? fmt::format("{} deg, vertical", degrees(*low))
                           : fmt::format("{} to {} deg, vertical", degrees(*low), degrees(*high)));
-    out.json["field_of_view"] = {{"least", *low}, {"most", *high}};
+    out.json["field_of_view"] = {{"smallest", to_degrees(static_cast<double>(*low))},
+                                 {"largest", to_degrees(static_cast<double>(*high))}};
     Eigen::AlignedBox3d box;
     for (const Vec3f& position : camera->positions) box.extend(position.cast<double>());
     const Vec3 size = box.sizes();

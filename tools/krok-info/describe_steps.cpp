@@ -30,10 +30,10 @@ void add_parameters(const steps::StepsFile& steps, Description& out) {
                     readable(bounds.upper[d] * factor, 3), angle ? "deg" : unit, measures));
     list.push_back({{"name", names[d]},
                     {"measures", measures},
-                    {"unit", unit},
-                    {"from", bounds.lower[d]},
-                    {"to", bounds.upper[d]},
-                    {"tolerance", library.parameters[d].tolerance}});
+                    {"unit", reported_unit(unit)},
+                    {"from", reported(bounds.lower[d], unit)},
+                    {"to", reported(bounds.upper[d], unit)},
+                    {"tolerance", reported(library.parameters[d].tolerance, unit)}});
   }
   out.add("parameters", std::move(lines));
   out.json["parameters"] = std::move(list);
@@ -99,7 +99,8 @@ void add_fit(const steps::StepsFile& steps, Description& out) {
                                 : unit == "s" ? "ms"
                                               : "mm",
                                 readable(*mean * factor, 3)));
-    json["errors"][names[d]] = {{"largest", *most}, {"mean", *mean}};
+    json["errors"][names[d]] = {{"largest", reported(*most, unit)},
+                                {"mean", reported(*mean, unit)}};
   }
   out.add("errors", std::move(lines));
   const auto least = get("least_weight", errors + "/least_weight");
@@ -142,9 +143,13 @@ Result<Description> describe_steps(const InputFile& file, ToolContext&) {
   out.add("examples", count_of(library.examples.size(), "motion"));
   Json examples = Json::array();
   for (const parametric::Example& example : library.examples) {
+    std::vector<double> parameters = example.parameters;
+    for (std::size_t d = 0; d < parameters.size(); ++d) {
+      parameters[d] = reported(parameters[d], unit_of(library.parameters[d]));
+    }
     examples.push_back({{"name", example.name},
                         {"mirrored", example.mirrored},
-                        {"parameters", example.parameters},
+                        {"parameters", std::move(parameters)},
                         {"frames", example.motion.frame_count()}});
   }
   out.json["examples"] = std::move(examples);

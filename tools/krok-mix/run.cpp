@@ -118,7 +118,7 @@ Json paces_report(const Mixed& mixed, const ChangeFacts& change) {
   Json paces;
   for (std::size_t of = 0; of < kNames.size(); ++of) {
     const timeline::Pace& pace = change.paces[of];
-    paces[kNames[of]] = {{"most", pace.most},
+    paces[kNames[of]] = {{"largest", pace.most},
                          {"usual", pace.usual},
                          {"joint", joint_name(mixed, pace.joint)},
                          {"frame", pace.frame}};
@@ -131,16 +131,16 @@ Json changes_report(const timeline::Timeline& timeline, const Mixed& mixed) {
   for (const ChangeFacts& change : mixed.changes) {
     list.push_back({{"into", timeline.base[static_cast<std::size_t>(change.item)].name},
                     {"kind", timeline::change_name(change.kind)},
-                    {"begin", change.begin},
+                    {"start", change.begin},
                     {"end", change.end},
                     {"in_step", change.in_step},
                     {"on_feet", change.on_feet},
-                    {"angle_degrees", change.angle / kRadiansPerDegree},
+                    {"angle", to_degrees(change.angle)},
                     {"angle_joint", joint_name(mixed, change.angle_joint)},
-                    {"fastest_degrees_per_second", change.fastest / kRadiansPerDegree},
-                    {"fastest_joint", joint_name(mixed, change.fastest_joint)},
-                    {"fastest_frame", change.fastest_frame},
-                    {"usual_degrees_per_second", change.usual / kRadiansPerDegree},
+                    {"angular_velocity", to_degrees(change.fastest)},
+                    {"angular_velocity_joint", joint_name(mixed, change.fastest_joint)},
+                    {"angular_velocity_frame", change.fastest_frame},
+                    {"usual_angular_velocity", to_degrees(change.usual)},
                     {"paces", paces_report(mixed, change)},
                     {"pops", change.pops()}});
   }

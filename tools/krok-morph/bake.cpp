@@ -46,7 +46,7 @@ void report(const MorphWeights& weights, ToolContext& context) {
       least = std::min(least, weights.values[i]);
       most = std::max(most, weights.values[i]);
     }
-    list.push_back({{"name", weights.names[t]}, {"least", least}, {"most", most}});
+    list.push_back({{"name", weights.names[t]}, {"smallest", least}, {"largest", most}});
   }
   Json result;
   result["frames"] = weights.frame_count();

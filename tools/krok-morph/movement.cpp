@@ -33,9 +33,9 @@ Movement movement_of(std::span<const Vec3f> base, std::span<const Vec3f> target)
 Json to_json(const Movement& movement) {
   Json result;
   result["vertices_moved"] = movement.moved;
-  result["largest_mm"] = movement.largest * kMillimetres;
+  result["largest_distance"] = movement.largest;
   result["vertex"] = movement.vertex < 0 ? Json() : Json(movement.vertex);
-  result["mean_mm"] = movement.mean * kMillimetres;
+  result["mean_distance"] = movement.mean;
   return result;
 }
 

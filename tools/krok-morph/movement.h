@@ -18,7 +18,7 @@ struct Movement {
 
 Movement movement_of(std::span<const Vec3f> base, std::span<const Vec3f> target);
 
-// For reports: "vertices_moved", "largest_mm", "vertex", "mean_mm".
+// For reports: "vertices_moved", "largest_distance", "vertex", "mean_distance".
 Json to_json(const Movement& movement);
 
 // "moves 312 vertices, max 12.3 mm (vertex 88), mean 3.1 mm".

@@ -163,21 +163,22 @@ class MotionChart {
   }
 
   void report(const draw::MotionDifference& difference, const Skeleton& skeleton) {
-    const auto measure = [&](const compare::Measure& values) {
+    const auto measure = [&](const compare::Measure& values, const char* unit) {
       Json json;
-      json["largest"] = values.largest;
+      json["unit"] = reported_unit(unit);
+      json["largest"] = reported(values.largest, unit);
       json["joint"] = values.where.joint < 0
                           ? Json()
                           : Json(skeleton.names[static_cast<std::size_t>(values.where.joint)]);
       json["frame"] = values.where.frame < 0 ? Json() : Json(values.where.frame);
-      json["rms"] = values.rms();
+      json["rms"] = reported(values.rms(), unit);
       return json;
     };
     Json json;
     json["joints"] = difference.joints;
     json["frames"] = difference.times.size();
-    json["positions"] = measure(difference.positions);        // metres
-    json["orientations"] = measure(difference.orientations);  // radians
+    json["positions"] = measure(difference.positions, "m");
+    json["orientations"] = measure(difference.orientations, "rad");
     context_.report.result["difference"] = std::move(json);
     const compare::Measure& positions = difference.positions;
     context_.log(fmt::format(

@@ -77,8 +77,8 @@ Json summary_of(const draw::Chart& chart) {
       Json line;
       line["name"] = to_utf8(series.name);
       line["values"] = values;
-      line["low"] = values > 0 ? Json(low) : Json();
-      line["high"] = values > 0 ? Json(high) : Json();
+      line["smallest"] = values > 0 ? Json(low) : Json();
+      line["largest"] = values > 0 ? Json(high) : Json();
       line["mean"] = values > 0 ? Json(sum / static_cast<double>(values)) : Json();
       line["unit"] = to_utf8(panel.y.unit);
       lines.push_back(std::move(line));

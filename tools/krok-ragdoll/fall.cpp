@@ -8,6 +8,7 @@
 
 #include "core/hash.h"
 #include "core/index.h"
+#include "tools/cli/report.h"
 
 namespace krok::cli::ragdoll {
 
@@ -21,7 +22,7 @@ constexpr double kMaxAcceleration = 1.5, kMaxDepth = 0.01;
 
 Json json_of(const krok::ragdoll::WorldMeasures& of) {
   return Json{{"joint_gap", of.joint_gap},
-              {"limit_excess", of.limit_excess},
+              {"limit_excess", to_degrees(of.limit_excess)},
               {"penetration", of.penetration}};
 }
 
@@ -114,11 +115,12 @@ Json report_of(const Subject& subject, const Fallen& fallen) {
   json["bodies"] = subject.bodies.size();
   if (subject.covered) json["mesh_within_3cm"] = *subject.covered;
   json["hash"] = hex(hash.digest());
-  json["rest"] = fallen.fall.rest < 0 ? Json() : Json(fallen.fall.rest);
+  json["rest_time"] = fallen.fall.rest < 0 ? Json() : Json(fallen.fall.rest);
   json["largest"] = json_of(fallen.fall.largest);
   json["settling"] = json_of(fallen.fall.settling);
   if (fallen.fall.follows) {
-    json["off_motion"] = {{"mean", fallen.fall.mean_off}, {"largest", fallen.fall.largest_off}};
+    json["off_motion"] = {{"mean_angle", to_degrees(fallen.fall.mean_off)},
+                          {"largest_angle", to_degrees(fallen.fall.largest_off)}};
   }
   if (!fallen.risen) return json;
   const krok::ragdoll::RisenClip& risen = *fallen.risen;

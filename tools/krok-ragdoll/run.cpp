@@ -276,7 +276,7 @@ Result<int> Run::write_all() {
     rows[i] = {{"name", plan.name},
                {"status", fallen ? "done" : "failed"},
                {"output", fallen ? Json(plan.output) : Json()},
-               {"at", plan.fall.at}};
+               {"start", plan.fall.at}};
     if (!fallen) {
       rows[i]["code"] = fallen.error().code;
       rows[i]["message"] = fallen.error().message;

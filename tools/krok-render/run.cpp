@@ -175,7 +175,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   const int frames = shot->frame_count();
   Json& result = context.report.result;
   result["frames"] = frames;
-  result["fps"] = setting.rate;
+  result["rate"] = setting.rate;
   result["start"] = setting.start;
   result["duration"] = frames / setting.rate;
   result["width"] = setting.width;

@@ -139,7 +139,7 @@ Json to_json(const Outcome& outcome) {
       entry["and_from"] = outcome.source.names[at(joint.second_source)];
       entry["share"] = joint.share;
     }
-    entry["reference_turned"] = joint.alignment;
+    entry["reference_turned"] = to_degrees(joint.alignment);
     json["joints"].push_back(std::move(entry));
   }
   const auto names = [](const Skeleton& skeleton, const std::vector<int>& joints) {

@@ -225,8 +225,8 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
     std::string line =
         fmt::format("{}: {} s", motion.path, readable(motion.made.clip.duration(), 4));
     for (std::size_t d = 0; d < parameters.size(); ++d) {
-      asked[parameters[d].name] = motion.asked[d];
-      measured[parameters[d].name] = motion.measured[d];
+      asked[parameters[d].name] = reported(motion.asked[d], parameters[d].unit);
+      measured[parameters[d].name] = reported(motion.measured[d], parameters[d].unit);
       line += fmt::format(", {} {}", parameters[d].name,
                           with_unit(motion.measured[d], parameters[d].unit));
     }

@@ -67,7 +67,7 @@ Json parameters_json(const parametric::Library& library, std::span<const double>
   Json object = Json::object();
   for (std::size_t d = 0; d < values.size(); ++d) {
     object[parametric::name_of(library.parameters[d], library.skeleton, library.keytimes)] =
-        values[d];
+        reported(values[d], unit_of(library.parameters[d]));
   }
   return object;
 }

@@ -193,8 +193,8 @@ Json to_json(const render::CellLayout& cell) {
   json["row"] = cell.row;
   json["column"] = cell.column;
   json["box"] = {cell.left, cell.top, cell.right, cell.bottom};
-  json["yaw"] = camera.yaw;
-  json["elevation"] = camera.elevation;
+  json["yaw"] = to_degrees(camera.yaw);
+  json["elevation"] = to_degrees(camera.elevation);
   json["target"] = {camera.target.x(), camera.target.y(), camera.target.z()};
   json["target_pixel"] = {camera.place_of_target.x(), camera.place_of_target.y()};
   return json;

@@ -50,7 +50,7 @@ TEST_F(FallStory, HoldsWhatItsReadmeTells) {
 
   const json stairs = json::parse(get(out / "stairs.json"))["result"];
   EXPECT_LT(stairs["largest"]["penetration"].get<double>(), 0.005);
-  EXPECT_GT(stairs["rest"].get<double>(), 0);
+  EXPECT_GT(stairs["rest_time"].get<double>(), 0);
   EXPECT_LT(stairs["get_up"]["penetration"].get<double>(), 0.015);
 
   // Walks on at the foot of the stairs, 2.04 m down.

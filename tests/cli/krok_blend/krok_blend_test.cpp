@@ -54,8 +54,8 @@ TEST_F(KrokBlend, KeytimesAreFoundAndWritten) {
   ASSERT_GE(moments.size(), 6u);
   EXPECT_NE(std::find(moments.begin(), moments.end(), "left_strike"), moments.end());
   // Half the speed and double the speed of 1.5 times the quick one's time.
-  const json& slow = result["motions"][0]["moments"];
-  const json& fast = result["motions"][1]["moments"];
+  const json& slow = result["motions"][0]["times"];
+  const json& fast = result["motions"][1]["times"];
   const json written = json::parse(get(path("out.keys.json")));
   std::size_t k = moments[0] == "begin" ? 1 : 0;
   for (const json& key : result["keytimes"]) {
@@ -94,8 +94,8 @@ TEST_F(KrokBlend, WeightsFromATable) {
 TEST_F(KrokBlend, DtwMatchesWithoutKeytimes) {
   const json result = result_of({walk("0.5"), quick("0.5"), "--warp", "dtw"});
   ASSERT_GE(result["moments"].size(), 8u);
-  const json& slow = result["motions"][0]["moments"];
-  const json& fast = result["motions"][1]["moments"];
+  const json& slow = result["motions"][0]["times"];
+  const json& fast = result["motions"][1]["times"];
   for (std::size_t k = 0; k < slow.size(); ++k) {
     EXPECT_NEAR(2 * fast[k].get<double>(), slow[k].get<double>(), 0.1) << k;
   }

@@ -97,8 +97,8 @@ TEST_F(DiffTangents, OneTurnedByADegreeInFrame37IsFoundAndNamed) {
   const auto& mesh = result["meshes"][0]["measures"];
   ASSERT_EQ(mesh.size(), 3u);
   EXPECT_EQ(mesh[2]["what"], "tangents");
-  EXPECT_EQ(mesh[2]["unit"], "rad");
-  EXPECT_NEAR(mesh[2]["largest"].get<double>(), kRadiansPerDegree, 1e-6);
+  EXPECT_EQ(mesh[2]["unit"], "deg");
+  EXPECT_NEAR(mesh[2]["largest"].get<double>(), 1, 1e-4);
   EXPECT_EQ(mesh[2]["percentile_95"], 0.0);
   EXPECT_EQ(mesh[2]["over"], 1);
   EXPECT_EQ(mesh[2]["where"]["frame"], 37);

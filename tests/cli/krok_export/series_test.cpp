@@ -119,8 +119,8 @@ TEST_F(ExportSeries, AnglesAreThoseThatKrokPlotDraws) {
           sum += value;
         }
         const json& line = panel["lines"][side];
-        EXPECT_NEAR(line["low"].get<double>(), low, 1e-4) << column;
-        EXPECT_NEAR(line["high"].get<double>(), high, 1e-4) << column;
+        EXPECT_NEAR(line["smallest"].get<double>(), low, 1e-4) << column;
+        EXPECT_NEAR(line["largest"].get<double>(), high, 1e-4) << column;
         EXPECT_NEAR(line["mean"].get<double>(), sum / static_cast<double>(wide.size() - 1), 1e-4);
         EXPECT_EQ(line["unit"], "\u00B0");
         ++compared;

@@ -114,7 +114,7 @@ TEST_F(KrokInfo, JsonHoldsTheMetrics) {
   EXPECT_EQ(files[1]["vertices"], 4);
   EXPECT_EQ(files[1]["influences_per_vertex"], 3);
   EXPECT_EQ(files[1]["parts"][0]["material"], "skin");
-  EXPECT_EQ(files[2]["field_of_view"]["most"], 0.875);
+  EXPECT_NEAR(files[2]["field_of_view"]["largest"].get<double>(), 0.875 * 180 / kPi, 1e-6);
 }
 
 TEST_F(KrokInfo, TellsWhatACaptureIsTakenFor) {

@@ -68,7 +68,7 @@ TEST_F(KrokMix, TellsItemsChangesAndEvents) {
   EXPECT_EQ(change["into"], "quick");
   EXPECT_EQ(change["in_step"], true);
   EXPECT_EQ(change["pops"], false);
-  EXPECT_LT(change["fastest_degrees_per_second"], change["usual_degrees_per_second"]);
+  EXPECT_LT(change["angular_velocity"], change["usual_angular_velocity"]);
   std::vector<std::string> events;
   for (const json& event : result["events"]) {
     events.push_back(event["event"].get<std::string>() + " " + event["item"].get<std::string>());

@@ -103,7 +103,7 @@ TEST_F(KrokMorph, PacksShapesUnderTheNamesOfTheirFiles) {
   EXPECT_EQ(result["targets"][0]["name"], "bump");
   // The highest vertex is one of the four beside the middle.
   const double off = 0.5 / (kSide - 1);
-  EXPECT_NEAR(result["targets"][0]["largest_mm"].get<double>(), 1000 * bump(off, off), 1e-3);
+  EXPECT_NEAR(result["targets"][0]["largest_distance"].get<double>(), bump(off, off), 1e-6);
   EXPECT_EQ(result["targets"][0]["vertex"], kSide * (kSide / 2 - 1) + kSide / 2 - 1);
 
   const MorphSet morphs = morphs_at("face.exr");
@@ -182,7 +182,7 @@ TEST_F(KrokMorph, InfoTellsLayoutAndMovement) {
   EXPECT_EQ(alone["vertices"], kSide * kSide);
   EXPECT_EQ(alone["normals"], true);
   EXPECT_EQ(alone["targets"][1]["first_texel"], kSide * kSide);
-  EXPECT_FALSE(alone["targets"][1].contains("largest_mm"));
+  EXPECT_FALSE(alone["targets"][1].contains("largest_distance"));
   const json width = alone["picture"]["width"], height = alone["picture"]["height"];
   EXPECT_GE(width.get<int>() * height.get<int>(), 4 * kSide * kSide);
   const json with_base = result_of({"info", exr, base_});
@@ -190,7 +190,7 @@ TEST_F(KrokMorph, InfoTellsLayoutAndMovement) {
   for (int i = 0; i < kSide; ++i) {
     highest = std::max(highest, std::abs(wave(i / (kSide - 1.0) - 0.5, 0)));
   }
-  EXPECT_NEAR(with_base["targets"][1]["largest_mm"].get<double>(), 1000 * highest, 1e-3);
+  EXPECT_NEAR(with_base["targets"][1]["largest_distance"].get<double>(), highest, 1e-6);
   const ToolRun text = morph({"info", exr, base_});
   EXPECT_THAT(text.out, HasSubstr("2 targets of 144 vertices, with normals"));
   EXPECT_THAT(text.out, HasSubstr("bump: moves "));
@@ -216,7 +216,7 @@ TEST_F(KrokMorph, AClipAndItsTargetsShowTheSame) {
   const json clip = result_of({"bake", exr, base_, "--weights", weights, "-o", path("clip.glb")});
   EXPECT_EQ(clip["frames"], 21);
   EXPECT_EQ(clip["rate"], 20);
-  EXPECT_EQ(clip["targets"][0]["most"], 1.0);
+  EXPECT_EQ(clip["targets"][0]["largest"], 1.0);
   for (const char* name : {"targets.glb", "targets.gltf"}) {
     const ToolRun run =
         morph({"bake", exr, base_, "--weights", weights, "--as", "targets", "-o", path(name)});
@@ -252,7 +252,7 @@ TEST_F(KrokMorph, ATableOfWeightsIsTakenToo) {
   const json result = result_of({"bake", exr, base_, "--weights", weights, "-o", path("w.glb")});
   EXPECT_EQ(result["frames"], 3);
   EXPECT_EQ(result["rate"], 10);
-  EXPECT_EQ(result["targets"][0]["most"], 0);
+  EXPECT_EQ(result["targets"][0]["largest"], 0);
 }
 
 TEST_F(KrokMorph, KeyShapesGoThroughTheirShapes) {

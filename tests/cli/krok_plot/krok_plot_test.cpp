@@ -60,13 +60,13 @@ TEST_F(KrokPlot, ShowsWhatMattersOfAPersonWithoutOptions) {
   // (Winter 1991, normal gait: knee 0 to 65, hip -11 to 22 and more for long steps).
   const json shown = panels();
   for (const json& line : shown[4]["lines"]) {
-    EXPECT_LT(line["low"].get<double>(), 10);
-    EXPECT_GT(line["high"].get<double>(), 50);
-    EXPECT_LT(line["high"].get<double>(), 75);
+    EXPECT_LT(line["smallest"].get<double>(), 10);
+    EXPECT_GT(line["largest"].get<double>(), 50);
+    EXPECT_LT(line["largest"].get<double>(), 75);
   }
   for (const json& line : shown[3]["lines"]) {
-    EXPECT_LT(line["low"].get<double>(), -10);
-    EXPECT_GT(line["high"].get<double>(), 20);
+    EXPECT_LT(line["smallest"].get<double>(), -10);
+    EXPECT_GT(line["largest"].get<double>(), 20);
   }
 }
 
@@ -171,8 +171,9 @@ TEST_F(KrokPlot, DrawsTheTableThatKrokExportWrites) {
   EXPECT_EQ(panels()[0]["lines"][0]["values"], 264);
   const json from_table = panels()[0]["lines"][0];
   ASSERT_EQ(plot({kWalk, "--show", "positions", "--joint", "LeftFoot"}).exit_code, 0);
-  EXPECT_NEAR(panels()[0]["lines"][1]["low"].get<double>(), from_table["low"].get<double>(), 1e-6);
-  EXPECT_NEAR(panels()[0]["lines"][1]["high"].get<double>(), from_table["high"].get<double>(),
+  EXPECT_NEAR(panels()[0]["lines"][1]["smallest"].get<double>(),
+              from_table["smallest"].get<double>(), 1e-6);
+  EXPECT_NEAR(panels()[0]["lines"][1]["largest"].get<double>(), from_table["largest"].get<double>(),
               1e-6);
 }
 
@@ -197,7 +198,7 @@ TEST_F(KrokPlot, TakesATableOfAnyNameWhereItIsTold) {
   const std::string table = put("numbers.dat", "1;2\n2;4\n3;6\n");
   ASSERT_EQ(plot({"--table", table}).exit_code, 0);
   EXPECT_THAT(lines(0), ElementsAre("column 2"));
-  EXPECT_EQ(panels()[0]["lines"][0]["high"], 6.0);
+  EXPECT_EQ(panels()[0]["lines"][0]["largest"], 6.0);
 }
 
 TEST_F(KrokPlot, SaysWhatIsWrongWithATable) {

@@ -114,7 +114,7 @@ TEST_F(RagdollFiles, ARowThatFailsLeavesTheOthers) {
   EXPECT_EQ(falls[0]["code"], "ragdoll-moving");
   EXPECT_TRUE(falls[0]["output"].is_null());
   EXPECT_EQ(falls[1]["status"], "done");
-  EXPECT_GE(falls[1]["rest"].get<double>(), 0);
+  EXPECT_GE(falls[1]["rest_time"].get<double>(), 0);
 }
 
 TEST_F(RagdollFiles, MistakesInATableAreToldWithTheirPlace) {

@@ -64,7 +64,7 @@ TEST_F(KrokViewGoals, HaveTheResidualsOfTheReport) {
       // motion that went in.
       if (frame["strength"] < 1 || shown["kind"] == "balance") continue;
       EXPECT_NEAR(now[7], frame["distance"].get<double>(), 1e-5) << g;
-      EXPECT_NEAR(now[8], frame["angle"].get<double>(), 1e-5) << g;
+      EXPECT_NEAR(now[8], frame["angle"].get<double>() * kRadiansPerDegree, 1e-5) << g;
     }
   }
   const auto hand = numbers(items[0]["goals"][0], 0, 90);

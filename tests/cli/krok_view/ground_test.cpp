@@ -104,16 +104,16 @@ TEST_F(WalkOnGround, IsInTheCharts) {
   ASSERT_EQ(panels[1]["lines"].size(), 2U);
   for (const nlohmann::json& line : panels[1]["lines"]) {
     // On the ground, never in it, and lifted for each step.
-    EXPECT_NEAR(line["low"].get<double>(), 0, 0.002);
-    EXPECT_GT(line["high"], 0.02);
-    EXPECT_LT(line["high"], 0.2);
+    EXPECT_NEAR(line["smallest"].get<double>(), 0, 0.002);
+    EXPECT_GT(line["largest"], 0.02);
+    EXPECT_LT(line["largest"], 0.2);
   }
   const std::string svg = get(path("out.svg"));
   for (const char* number : {">1</text>", ">5</text>"}) EXPECT_THAT(svg, HasSubstr(number));
   // Over the level they are as high as the slope.
   const ToolRun level = plot({"--show", "feet", "--ground", "level", "--json"});
   const auto high = nlohmann::json::parse(level.out)["result"]["panels"][0]["lines"];
-  EXPECT_GT(high[0]["high"], 0.2);
+  EXPECT_GT(high[0]["largest"], 0.2);
 }
 
 TEST_F(WalkOnGround, WrongFilesAreErrorsAsInKrokWalk) {
