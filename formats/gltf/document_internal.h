@@ -149,6 +149,7 @@ class Document {
   int add_accessor_of(std::size_t bytes, int component, std::size_t component_size, int type,
                       Use use);
   std::vector<std::byte>& own_part();
+  void use_extension(const char* name);  // (materials.cpp)
   // The whole file with its buffer views encoded (compress.cpp).
   Status write_compressed(OutputFile& file);
   // With as many bits as JointTrack has.

@@ -105,7 +105,8 @@ class MaterialReader {
     material.metallic_roughness_texture = texture(object_in(surface, "metallicRoughnessTexture"));
   }
 
-  // What Material has no members for: texture coordinate sets, texture transforms, extensions.
+  // What Material has no members for, and texture coordinate sets and transforms as they were
+  // written.
   void read_parameters(const Json& json) {
     const Json& surface = object_in(json, "pbrMetallicRoughness");
     for (const auto& [holder, name] : {std::pair(&surface, "baseColorTexture"),
@@ -114,7 +115,6 @@ class MaterialReader {
                                        {&json, "occlusionTexture"},
                                        {&json, "emissiveTexture"}}) {
       const Json& info = object_in(*holder, name);
-      if (set_of(info) != 0) parameters_.push_back({name, {}, texture_of(info)});
       read_coordinates(name, info);
     }
     for (const auto& [extension, properties] : object_in(json, "extensions").items()) {
@@ -165,18 +165,40 @@ class MaterialReader {
   Texture texture(const Json& info) {
     Texture texture;
     if (info.empty()) return texture;
-    if (set_of(info) != 0) {
+    const Json set = set_of(info);
+    if (!set.is_number_integer() || set < 0 || set > kMaxTextureSet) {
       ++of_other_coordinates_;
       return texture;
-    }
-    if (!object_in(object_in(info, "extensions"), "KHR_texture_transform").empty()) {
-      left_aside_.insert("KHR_texture_transform");
     }
     if (!has_image(info)) {
       ++without_image_;
       return texture;
     }
-    return texture_of(info);
+    texture = texture_of(info);
+    texture.set = set.get<int>();
+    read_transform(object_in(object_in(info, "extensions"), "KHR_texture_transform"), texture);
+    return texture;
+  }
+
+  void read_transform(const Json& json, Texture& texture) {
+    const auto read = [&](const Json& from, double& to) {
+      const double value = from.is_number() ? from.get<double>() : 0;
+      const double clamped = std::clamp(value, -kMaxTextureTransform, kMaxTextureTransform);
+      if (!from.is_number() || clamped != value) ++out_of_range_;
+      to = clamped;
+    };
+    if (json.contains("rotation")) read(json["rotation"], texture.rotation);
+    for (const auto& [key, to] :
+         {std::pair("scale", &texture.scale), {"offset", &texture.offset}}) {
+      if (!json.contains(key)) continue;
+      const Json& pair = json[key];
+      if (!pair.is_array() || pair.size() != 2) {
+        ++out_of_range_;
+        continue;
+      }
+      read(pair[0], to->x());
+      read(pair[1], to->y());
+    }
   }
 
   bool has_image(const Json& info) const {
@@ -251,8 +273,8 @@ class MaterialReader {
            "they may look different in other programs");
     }
     if (of_other_coordinates_ > 0) {
-      warn(fmt::format("{} with a texture coordinate set other than 0: left out",
-                       counted(of_other_coordinates_, "texture")));
+      warn(fmt::format("{} with a texture coordinate set other than 0 to {}: left out",
+                       counted(of_other_coordinates_, "texture"), kMaxTextureSet));
     }
     if (without_image_ > 0) {
       gltf::warn(

@@ -58,8 +58,28 @@ tinygltf::Material factors_of(const Material& from) {
 }
 
 constexpr const char* kUnlit = "KHR_materials_unlit";
+constexpr const char* kTransform = "KHR_texture_transform";
+
+// Defaults are not written.
+tinygltf::Value transform_of(const Texture& texture) {
+  const auto pair = [](const Vec2& values) {
+    return tinygltf::Value(
+        tinygltf::Value::Array{tinygltf::Value(values.x()), tinygltf::Value(values.y())});
+  };
+  tinygltf::Value::Object transform;
+  if (!texture.offset.isZero(0)) transform["offset"] = pair(texture.offset);
+  if (texture.rotation != 0) transform["rotation"] = tinygltf::Value(texture.rotation);
+  if (texture.scale != Vec2::Ones()) transform["scale"] = pair(texture.scale);
+  return tinygltf::Value(std::move(transform));
+}
 
 }  // namespace
+
+void Document::use_extension(const char* name) {
+  if (std::ranges::find(gltf.extensionsUsed, name) == gltf.extensionsUsed.end()) {
+    gltf.extensionsUsed.emplace_back(name);
+  }
+}
 
 Result<int> Document::add_image(const EncodedImage& encoded) {
   if (const auto known = images_.find(&encoded); known != images_.end()) return known->second;
@@ -95,8 +115,7 @@ Result<int> Document::add_texture(const Texture& texture) {
   const auto image = add_image(*texture.image);
   if (!image) return image;
   // Defaults are not written.
-  const Texture usual{texture.image};
-  const int sampler = texture == usual ? -1 : add_sampler(texture);
+  const int sampler = sampler_of(texture) == sampler_of(Texture()) ? -1 : add_sampler(texture);
   const auto [place, made] =
       textures_.emplace(std::pair(*image, sampler), static_cast<int>(gltf.textures.size()));
   if (made) {
@@ -117,29 +136,37 @@ Result<int> Document::add_material(const std::string& name,
   const Material* const given = find_material(options_.materials, name);
   const Material& from = given != nullptr ? *given : usual;
   tinygltf::Material material = factors_of(from);
-  if (attributes.contains("TEXCOORD_0")) {
-    const Texture none;
-    const bool with_tangents = attributes.contains("TANGENT");
-    for (const auto& [texture, index] :
-         {std::pair{&from.base_color_texture,
-                    &material.pbrMetallicRoughness.baseColorTexture.index},
-          {&from.metallic_roughness_texture,
-           &material.pbrMetallicRoughness.metallicRoughnessTexture.index},
-          {with_tangents ? &from.normal_texture : &none, &material.normalTexture.index},
-          {&from.occlusion_texture, &material.occlusionTexture.index},
-          {&from.emissive_texture, &material.emissiveTexture.index}}) {
-      const auto added = add_texture(*texture);
-      if (!added) return added;
-      *index = *added;
+  const auto refer = [&](const Texture& texture, auto& info) -> Status {
+    if (!attributes.contains(fmt::format("TEXCOORD_{}", texture.set))) return {};
+    const auto added = add_texture(texture);
+    if (!added) return added.error();
+    info.index = *added;
+    if (!texture) return {};
+    info.texCoord = texture.set;
+    if (texture.transforms()) {
+      info.extensions[kTransform] = transform_of(texture);
+      use_extension(kTransform);
     }
+    return {};
+  };
+  Status status = refer(from.base_color_texture, material.pbrMetallicRoughness.baseColorTexture);
+  if (status) {
+    status = refer(from.metallic_roughness_texture,
+                   material.pbrMetallicRoughness.metallicRoughnessTexture);
+  }
+  if (status && attributes.contains("TANGENT")) {
+    status = refer(from.normal_texture, material.normalTexture);
     material.normalTexture.scale = as_meant(from.normal_scale);
+  }
+  if (status) status = refer(from.occlusion_texture, material.occlusionTexture);
+  if (status) status = refer(from.emissive_texture, material.emissiveTexture);
+  if (!status) return status.error();
+  if (material.occlusionTexture.index >= 0) {
     material.occlusionTexture.strength = as_meant(from.occlusion_strength);
   }
   if (from.unlit) {
     material.extensions[kUnlit] = tinygltf::Value(tinygltf::Value::Object{});
-    if (std::ranges::find(gltf.extensionsUsed, kUnlit) == gltf.extensionsUsed.end()) {
-      gltf.extensionsUsed.emplace_back(kUnlit);
-    }
+    use_extension(kUnlit);
   }
   gltf.materials.push_back(std::move(material));
   return place->second;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,6 +48,15 @@ std::string mesh_name(const WriteOptions& options) {
   return options.name + "_mesh";
 }
 
+void for_each_coordinate_set(
+    const Model& model,
+    const std::function<void(const std::string& name, std::span<const Vec2f>)>& visit) {
+  if (!model.texture_coordinates.empty()) visit("TEXCOORD_0", model.texture_coordinates);
+  for (std::size_t s = 0; s < model.more_texture_coordinates.size(); ++s) {
+    visit(fmt::format("TEXCOORD_{}", s + 1), model.more_texture_coordinates[s]);
+  }
+}
+
 std::map<std::string, int> add_shape(Document& document, const Model& model,
                                      const MeshShape& shape) {
   std::map<std::string, int> attributes;
@@ -58,10 +69,14 @@ std::map<std::string, int> add_shape(Document& document, const Model& model,
     attributes["TANGENT"] = document.add_floats({tangents.data()->data(), tangents.size() * 4},
                                                 TINYGLTF_TYPE_VEC4, Use::vertices, false);
   }
-  if (!model.texture_coordinates.empty()) {
-    attributes["TEXCOORD_0"] = document.add_floats(
-        {model.texture_coordinates.data()->data(), model.texture_coordinates.size() * 2},
-        TINYGLTF_TYPE_VEC2, Use::vertices, false);
+  for_each_coordinate_set(model, [&](const std::string& name, std::span<const Vec2f> set) {
+    attributes[name] = document.add_floats({set.data()->data(), set.size() * 2}, TINYGLTF_TYPE_VEC2,
+                                           Use::vertices, false);
+  });
+  if (!model.colours.empty()) {
+    attributes["COLOR_0"] =
+        document.add_floats({model.colours.data()->data(), model.colours.size() * 4},
+                            TINYGLTF_TYPE_VEC4, Use::vertices, false);
   }
   return attributes;
 }

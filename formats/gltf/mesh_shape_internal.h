@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -22,6 +23,11 @@ std::string mesh_name(const WriteOptions& options);
 
 // Normalised vectors; +Y for a zero vector.
 std::vector<Vec3f> unit_vectors(std::span<const Vec3f> vectors);
+
+// Calls `visit` for each set of texture coordinates with its name in glTF.
+void for_each_coordinate_set(
+    const Model& model,
+    const std::function<void(const std::string& name, std::span<const Vec2f>)>& visit);
 
 // The attributes shared by all meshes, with the vertices of `shape`; normals and tangents are
 // normalised, as glTF requires.

@@ -125,6 +125,20 @@ void add_texture_coordinates(Document& document, std::span<const Vec2f> coordina
                            TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC2, true);
 }
 
+// As 16-bit steps, unless one is outside of 0 to 1.
+int add_colours(Document& document, std::span<const Vec4f> colours) {
+  const std::span<const float> values(colours.data()->data(), colours.size() * 4);
+  if (!std::ranges::all_of(values, [](float v) { return v >= 0.0f && v <= 1.0f; })) {
+    return document.add_floats(values, TINYGLTF_TYPE_VEC4, Use::vertices, false);
+  }
+  std::vector<std::uint16_t> steps;
+  for (const float value : values) {
+    steps.push_back(static_cast<std::uint16_t>(std::lround(value * static_cast<float>(kShorts))));
+  }
+  return document.add_strided(std::as_bytes(std::span(steps)), 8,
+                              TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, TINYGLTF_TYPE_VEC4, true);
+}
+
 // The steps of all weights, [vertices x influences_per_vertex].
 std::vector<std::uint16_t> all_weight_steps(const Model& model, const Quantization& quantization) {
   const auto places = static_cast<std::size_t>(model.influences_per_vertex);
@@ -277,10 +291,10 @@ std::map<std::string, int> add_quantized_shape(Document& document, const Model& 
     attributes["TANGENT"] = add_directions(document, unit_tangents_of(model.tangents),
                                            TINYGLTF_TYPE_VEC4, quantization);
   }
-  if (!model.texture_coordinates.empty()) {
-    add_texture_coordinates(document, model.texture_coordinates, quantization,
-                            attributes["TEXCOORD_0"]);
-  }
+  for_each_coordinate_set(model, [&](const std::string& name, std::span<const Vec2f> set) {
+    add_texture_coordinates(document, set, quantization, attributes[name]);
+  });
+  if (!model.colours.empty()) attributes["COLOR_0"] = add_colours(document, model.colours);
   add_quantized_influences(document, model, quantization, attributes);
   return attributes;
 }
@@ -341,14 +355,16 @@ VertexRows vertex_rows(const Model& model, const MorphSet& morphs,
     add_steps_of(model.positions);
     rows.add(stored_directions(padded(unit_vectors(model.normals)), *quantization));
     rows.add(stored_directions(unit_tangents_of(model.tangents), *quantization));
-    std::vector<float> coordinates;
-    for (const Vec2f& pair : model.texture_coordinates) {
-      for (const float value : pair) {
-        coordinates.push_back(
-            quantization->filtered ? in_steps(value, -quantization->coordinate_bits) : value);
+    for_each_coordinate_set(model, [&](const std::string&, std::span<const Vec2f> set) {
+      std::vector<float> coordinates;
+      for (const Vec2f& pair : set) {
+        for (const float value : pair) {
+          coordinates.push_back(
+              quantization->filtered ? in_steps(value, -quantization->coordinate_bits) : value);
+        }
       }
-    }
-    rows.add(coordinates);
+      rows.add(coordinates);
+    });
     const std::vector<std::uint16_t> weights = all_weight_steps(model, *quantization);
     rows.add(weights);
     for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -359,10 +375,12 @@ VertexRows vertex_rows(const Model& model, const MorphSet& morphs,
     rows.add(model.positions);
     rows.add(model.normals);
     rows.add(model.tangents);
-    rows.add(model.texture_coordinates);
+    for_each_coordinate_set(model,
+                            [&](const std::string&, std::span<const Vec2f> set) { rows.add(set); });
     rows.add(model.influence_weights);
     for (int t = 0; t < morphs.target_count(); ++t) rows.add(morphs.target_positions(t));
   }
+  rows.add(model.colours);
   rows.add(joints);
   if (!morphs.normals.empty()) {
     for (int t = 0; t < morphs.target_count(); ++t) rows.add(morphs.target_normals(t));

@@ -38,7 +38,9 @@ void move_vertices(Model& model, MorphSet& morphs, const std::vector<unsigned>& 
   move(model.positions, 1);
   move(model.normals, 1);
   move(model.texture_coordinates, 1);
+  for (auto& set : model.more_texture_coordinates) move(set, 1);
   move(model.tangents, 1);
+  move(model.colours, 1);
   move(model.influence_joints, static_cast<std::size_t>(model.influences_per_vertex));
   move(model.influence_weights, static_cast<std::size_t>(model.influences_per_vertex));
   for (auto* targets : {&morphs.positions, &morphs.normals}) {

@@ -113,7 +113,9 @@ class Reader {
   Status read_texture(const Value& value, const std::string& what, Texture& texture) {
     const Value* file = &value;
     if (value.kind != Kind::string) {
-      if (Status status = in_.only(value, what, {"file", "wrap_u", "wrap_v", "smooth", "comment"});
+      if (Status status = in_.only(value, what,
+                                   {"file", "wrap_u", "wrap_v", "smooth", "set", "scale",
+                                    "rotation", "offset", "comment"});
           !status) {
         return status;
       }
@@ -125,6 +127,7 @@ class Reader {
         if (Status status = read_word(value, what, key, kWrapWords, *wrap); !status) return status;
       }
       if (Status status = read_truth(value, what, "smooth", texture.smooth); !status) return status;
+      if (Status status = read_coordinates(value, what, texture); !status) return status;
     }
     const auto path = in_.path(*file, what);
     if (!path) return path.error();
@@ -133,6 +136,44 @@ class Reader {
       image = std::make_shared<const EncodedImage>(EncodedImage{{}, *path, {}});
     }
     texture.image = image;
+    return {};
+  }
+
+  Status read_coordinates(const Value& value, const std::string& what, Texture& texture) {
+    const auto set = in_.find(value, what, "set", Kind::number);
+    if (!set) return set.error();
+    if (*set != nullptr) {
+      const double number = (*set)->number;
+      if (!(number >= 0 && number <= kMaxTextureSet) || number != std::floor(number)) {
+        return in_.wrong(
+            **set, fmt::format("\"set\" of {} is {}, expected a whole number of 0 to {}", what,
+                               readable(number), kMaxTextureSet));
+      }
+      texture.set = static_cast<int>(number);
+    }
+    const auto is_near = [](const Value& one) {
+      return one.kind == Kind::number && std::abs(one.number) <= kMaxTextureTransform;
+    };
+    const auto range = fmt::format("within +-{}", readable(kMaxTextureTransform));
+    for (const auto& [key, to] :
+         {std::pair{"scale", &texture.scale}, {"offset", &texture.offset}}) {
+      const auto pair = in_.find(value, what, key, Kind::array);
+      if (!pair) return pair.error();
+      if (*pair == nullptr) continue;
+      const auto& items = (*pair)->items;
+      if (items.size() != 2 || !std::ranges::all_of(items, is_near)) {
+        return in_.wrong(
+            **pair, fmt::format("\"{}\" of {} is not a list of two numbers {}", key, what, range));
+      }
+      *to = Vec2(items[0].number, items[1].number);
+    }
+    const auto rotation = in_.find(value, what, "rotation", Kind::number);
+    if (!rotation) return rotation.error();
+    if (*rotation == nullptr) return {};
+    if (!is_near(**rotation)) {
+      return in_.wrong(**rotation, fmt::format("\"rotation\" of {} is not {}", what, range));
+    }
+    texture.rotation = (*rotation)->number * kRadiansPerDegree;
     return {};
   }
 

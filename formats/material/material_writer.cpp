@@ -36,6 +36,15 @@ std::string text_of(const Texture& texture) {
     more += fmt::format(", \"{}\": \"{}\"", key, word_of(kWrapWords, wrap));
   }
   if (!texture.smooth) more += ", \"smooth\": false";
+  if (texture.set != 0) more += fmt::format(", \"set\": {}", texture.set);
+  const auto pair = [](const Vec2& values) {
+    return fmt::format("[{}, {}]", shortest(values.x() + 0.0), shortest(values.y() + 0.0));
+  };
+  if (texture.scale != Vec2::Ones()) more += ", \"scale\": " + pair(texture.scale);
+  if (texture.rotation != 0) {
+    more += ", \"rotation\": " + shortest(texture.rotation / kRadiansPerDegree);
+  }
+  if (!texture.offset.isZero(0)) more += ", \"offset\": " + pair(texture.offset);
   const std::string path = in_quotes(texture.image->path);
   return more.empty() ? path : fmt::format("{{\"file\": {}{}}}", path, more);
 }

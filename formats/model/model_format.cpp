@@ -64,6 +64,41 @@ Status write_parts(const Model& model, ContainerWriter& container) {
   return write_texts("PARTNAME", names, container);
 }
 
+// The sets after the first, one after another.
+Status write_more_coordinates(const Model& model, ContainerWriter& container) {
+  std::vector<Vec2f> all;
+  for (const auto& set : model.more_texture_coordinates) {
+    all.insert(all.end(), set.begin(), set.end());
+  }
+  return write_array("TEXMORE", all, container);
+}
+
+Status read_more_coordinates(const ContainerReader& container, std::uint64_t vertices,
+                             Model& model) {
+  const auto section = container.find("TEXMORE");
+  if (!section) return {};
+  const std::uint64_t each = vertices * sizeof(Vec2f);
+  const std::uint64_t sets = each == 0 ? 0 : section->bytes.size() / each;
+  if (sets == 0 || sets >= Model::kMaxCoordinateSets || section->bytes.size() % each != 0) {
+    return at_section(
+        Error("model-shape",
+              fmt::format("{} bytes are not 1 to {} sets of texture coordinates for {} vertices",
+                          section->bytes.size(), Model::kMaxCoordinateSets - 1, vertices),
+              "create the file again"),
+        container, "TEXMORE");
+  }
+  std::vector<Vec2f> all;
+  if (Status status = read_array(container, "TEXMORE", sets * vertices, all); !status) {
+    return status;
+  }
+  for (std::uint64_t s = 0; s < sets; ++s) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(s * vertices);
+    model.more_texture_coordinates.emplace_back(first,
+                                                first + static_cast<std::ptrdiff_t>(vertices));
+  }
+  return {};
+}
+
 // Whether the section MESHNAME is written.
 bool names_meshes(const Model& model) {
   return std::ranges::any_of(model.parts,
@@ -136,9 +171,12 @@ Status write(const Model& model, const WriteOptions& options, OutputFile& file) 
                      0};
   const bool normals = !model.normals.empty();
   const bool coordinates = !model.texture_coordinates.empty();
+  const bool more = !model.more_texture_coordinates.empty();
   const bool tangents = !model.tangents.empty();
+  const bool colours = !model.colours.empty();
   const bool meshes = names_meshes(model);
-  const std::size_t optional_sections = std::size_t{normals} + coordinates + tangents + meshes;
+  const std::size_t optional_sections =
+      std::size_t{normals} + coordinates + more + tangents + colours + meshes;
   ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
                             8 + kSkeletonSections + optional_sections);
   Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));
@@ -146,7 +184,9 @@ Status write(const Model& model, const WriteOptions& options, OutputFile& file) 
   if (status) status = write_array("POSITION", model.positions, container);
   if (status && normals) status = write_array("NORMAL", model.normals, container);
   if (status && coordinates) status = write_array("TEXCOORD", model.texture_coordinates, container);
+  if (status && more) status = write_more_coordinates(model, container);
   if (status && tangents) status = write_array("TANGENT", model.tangents, container);
+  if (status && colours) status = write_array("COLOUR", model.colours, container);
   if (status) status = write_array("VJOINTS", model.influence_joints, container);
   if (status) status = write_array("VWEIGHTS", model.influence_weights, container);
   if (status) status = write_array("TRIANGLE", model.triangles, container);
@@ -193,7 +233,9 @@ Result<Model> read(std::span<const std::byte> file) {
   if (status) {
     status = read_optional_array(*container, "TEXCOORD", vertices, model.texture_coordinates);
   }
+  if (status) status = read_more_coordinates(*container, vertices, model);
   if (status) status = read_optional_array(*container, "TANGENT", vertices, model.tangents);
+  if (status) status = read_optional_array(*container, "COLOUR", vertices, model.colours);
   if (status) status = read_array(*container, "VJOINTS", influences, model.influence_joints);
   if (status) status = read_array(*container, "VWEIGHTS", influences, model.influence_weights);
   if (status) status = read_array(*container, "TRIANGLE", info.triangle_count, model.triangles);

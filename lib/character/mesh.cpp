@@ -44,6 +44,14 @@ class NameList {
   std::vector<std::string> names_;
 };
 
+// Appends what the file has; `count` values in all, `usual` where it has none.
+template <typename Value>
+void append(const nodes::Shared<Value>& from, std::size_t count, const Value& usual,
+            std::vector<Value>& to) {
+  if (from) to.insert(to.end(), from->begin(), from->end());
+  to.resize(count, usual);
+}
+
 class MeshBuilder {
  public:
   MeshBuilder(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
@@ -100,7 +108,8 @@ class MeshBuilder {
   TargetNames targets_;
   Actor actor_;
   NameList elsewhere_, other_skeleton_, without_triangles_;
-  bool with_normals_ = false, with_texture_ = false, with_tangents_ = false;
+  bool with_normals_ = false, with_texture_ = false, with_tangents_ = false, with_colours_ = false;
+  std::size_t sets_ = 1;  // of texture coordinates
   int influences_ = 4;
 };
 
@@ -140,20 +149,15 @@ void MeshBuilder::report_what_is_left() {
     outside.add(label("mesh", node.mesh, scene_.meshes[at(node.mesh)].name));
   }
   left_out(outside, "their nodes are not in the displayed scene");
-  long long coloured = 0, more_texture = 0;
+  std::ptrdiff_t sets = 0;
   for (const nodes::Instance& instance : wanted_) {
-    const nodes::Primitive& shape = evaluator_.primitive(instance);
-    coloured += shape.colours ? 1 : 0;
-    more_texture += shape.more_texture_coordinates.empty() ? 0 : 1;
+    sets = std::max(sets, std::ssize(evaluator_.primitive(instance).more_texture_coordinates) + 1);
   }
-  const auto no_place = [&](long long count, const char* what) {
-    if (count == 0) return;
+  if (sets > Model::kMaxCoordinateSets) {
     tell(diagnostics_, Severity::warning, "scene-mesh-attributes",
-         fmt::format("a model does not hold {}: those of {} are left out", what,
-                     counted(count, "mesh part")));
-  };
-  no_place(coloured, "vertex colours");
-  no_place(more_texture, "further sets of texture coordinates");
+         fmt::format("{} sets of texture coordinates, a model holds {}: the others are left out",
+                     sets, Model::kMaxCoordinateSets));
+  }
   if (!options_.with_morphs) return;
   long long tangents = 0;
   for (const nodes::Instance& instance : wanted_) {
@@ -173,10 +177,15 @@ void MeshBuilder::look_at_attributes() {
     const nodes::Primitive& shape = evaluator_.primitive(instance);
     with_normals_ = with_normals_ || shape.normals;
     with_texture_ = with_texture_ || shape.texture_coordinates;
+    with_colours_ = with_colours_ || shape.colours;
+    sets_ = std::clamp(shape.more_texture_coordinates.size() + 1, sets_,
+                       std::size_t{Model::kMaxCoordinateSets});
     with_tangents_ = with_tangents_ && shape.tangents;
     if (is_skinned(instance) && shape.influences_per_vertex > 4) influences_ = 8;
   }
   with_tangents_ = with_tangents_ && with_normals_;
+  with_texture_ = with_texture_ || sets_ > 1;
+  actor_.model.more_texture_coordinates.resize(sets_ - 1);
 }
 
 void MeshBuilder::add_influences(const nodes::Instance& instance, std::size_t vertices) {
@@ -269,15 +278,17 @@ void MeshBuilder::add_vertices(const nodes::Instance& instance) {
     model.positions.push_back((placements_.of(v) * position.homogeneous()).cast<float>());
   }
   add_normals(shape);
+  const std::size_t count = model.positions.size();
   if (with_texture_) {
-    if (shape.texture_coordinates) {
-      model.texture_coordinates.insert(model.texture_coordinates.end(),
-                                       shape.texture_coordinates->begin(),
-                                       shape.texture_coordinates->end());
-    } else {
-      model.texture_coordinates.resize(model.positions.size(), Vec2f::Zero());
-    }
+    append<Vec2f>(shape.texture_coordinates, count, Vec2f::Zero(), model.texture_coordinates);
   }
+  for (std::size_t s = 0; s + 1 < sets_; ++s) {
+    const auto& sets = shape.more_texture_coordinates;
+    append<Vec2f>(s < sets.size() ? sets[s] : nullptr, count, Vec2f::Zero(),
+                  model.more_texture_coordinates[s]);
+  }
+  // White, where a part has none, looks the same.
+  if (with_colours_) append<Vec4f>(shape.colours, count, Vec4f::Ones(), model.colours);
   add_influences(instance, shape.vertex_count());
 }
 

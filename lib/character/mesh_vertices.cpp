@@ -27,6 +27,7 @@ bool same_vertices(const nodes::Primitive& a, const nodes::Primitive& b) {
   };
   return a.positions == b.positions && a.normals == b.normals && a.tangents == b.tangents &&
          a.texture_coordinates == b.texture_coordinates &&
+         a.more_texture_coordinates == b.more_texture_coordinates && a.colours == b.colours &&
          a.influences_per_vertex == b.influences_per_vertex &&
          std::ranges::equal(a.targets, b.targets, same_target) &&
          a.influence_joints == b.influence_joints && a.influence_weights == b.influence_weights;

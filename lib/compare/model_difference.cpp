@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "compare/mesh_difference.h"
 #include "compare/skeleton_match.h"
 #include "math/quaternion.h"
@@ -108,7 +110,7 @@ void compare_weights(const Model& first, const Model& second, const SkeletonMatc
 bool ModelDifference::same() const {
   return structure.empty() && reference_positions.within() && reference_orientations.within() &&
          positions.within() && normals.within() && texture_coordinates.within() &&
-         tangents.within() && tangent_sides.within() && weights.within();
+         colours.within() && tangents.within() && tangent_sides.within() && weights.within();
 }
 
 Result<ModelDifference> difference(const Model& first, const Model& second,
@@ -126,7 +128,7 @@ Result<ModelDifference> difference(const Model& first, const Model& second,
   result.normals = result.tangents = Measure(tolerance.of_normals());
   result.reference_positions = Measure(tolerance.of_joint_positions());
   result.reference_orientations = Measure(tolerance.of_joint_orientations());
-  result.texture_coordinates = result.weights = Measure(tolerance.ratio);
+  result.texture_coordinates = result.colours = result.weights = Measure(tolerance.ratio);
 
   const SkeletonMatch skeletons = match_skeletons(first.skeleton, second.skeleton, matching);
   compare_skeletons(first, second, skeletons, result);
@@ -150,6 +152,20 @@ Result<ModelDifference> difference(const Model& first, const Model& second,
                 result.structure)) {
     add_coordinate_differences(first.texture_coordinates, second.texture_coordinates, {},
                                result.texture_coordinates);
+  }
+  if (first.more_texture_coordinates.size() != second.more_texture_coordinates.size()) {
+    result.structure.push_back(
+        fmt::format("{} further sets of texture coordinates in the first, {} in the second",
+                    first.more_texture_coordinates.size(), second.more_texture_coordinates.size()));
+  }
+  for (std::size_t s = 0;
+       s < std::min(first.more_texture_coordinates.size(), second.more_texture_coordinates.size());
+       ++s) {
+    add_coordinate_differences(first.more_texture_coordinates[s],
+                               second.more_texture_coordinates[s], {}, result.texture_coordinates);
+  }
+  if (both_have("vertex colours", first.colours, second.colours, result.structure)) {
+    add_colour_differences(first.colours, second.colours, {}, result.colours);
   }
   if (both_have("tangents", first.tangents, second.tangents, result.structure)) {
     compare_tangents(first, second, result);

@@ -21,7 +21,8 @@ struct ModelDifference {
   Measure reference_positions, reference_orientations;  // of joints
   Measure positions;                                    // metres
   Measure normals;                                      // radians
-  Measure texture_coordinates;                          // max of u and v
+  Measure texture_coordinates;                          // max of u and v, of all sets
+  Measure colours;                                      // max of red, green, blue, alpha
   Measure tangents;                                     // radians, of their directions
   Measure tangent_sides;  // 1 if the handedness differs, else 0; tolerance 0
   Measure weights;        // max per vertex; the location includes the joint

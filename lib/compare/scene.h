@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -32,6 +33,10 @@ struct SceneMesh {
   std::span<const Vec2f> texture_coordinates;                      // [vertices] or none
   std::vector<std::span<const Vec2f>> more_texture_coordinates{};  // sets 1 and so on, or empty
   std::span<const Vec4f> colours{};  // [vertices] or none: linear red, green, blue, alpha
+  // Whether a vertex is not white: white ones look as if there were none.
+  bool is_painted() const {
+    return std::ranges::any_of(colours, [](const Vec4f& one) { return one != Vec4f::Ones(); });
+  }
   bool visible = true;
 
   // Displacements of a morph target, [vertices] or empty; in world space unless the scene has

@@ -114,7 +114,7 @@ void group_meshes(SceneComparison& comparison) {
   report_missing("texture coordinates", true,
                  [](const SceneMesh& mesh) { return !mesh.texture_coordinates.empty(); });
   report_missing("vertex colours", comparison.options.materials,
-                 [](const SceneMesh& mesh) { return !mesh.colours.empty(); });
+                 [](const SceneMesh& mesh) { return mesh.is_painted(); });
   report_tangents_in_groups(comparison);
   const auto any = [&](const auto& has) {
     return std::ranges::any_of(first, has) || std::ranges::any_of(second, has);

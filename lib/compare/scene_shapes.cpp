@@ -108,9 +108,11 @@ void compare_attributes(SceneComparison& comparison, const SceneMesh& a, const S
     }
   };
   if (a.colours.empty() != b.colours.empty()) {
-    report(fmt::format("{}: only the {} has vertex colours", name,
-                       a.colours.empty() ? "second" : "first"),
-           comparison.options.materials);
+    if (a.is_painted() || b.is_painted()) {
+      report(fmt::format("{}: only the {} has vertex colours", name,
+                         a.colours.empty() ? "second" : "first"),
+             comparison.options.materials);
+    }
   } else {
     add_colour_differences(a.colours, b.colours, place, comparison.result.colours);
   }

@@ -27,13 +27,24 @@ class LookPacker {
     look["materials"] = std::move(materials_);
     look["pictures"] = std::move(images_);
     if (!body_.texture_coordinates.empty()) {
-      look["coordinates"] = blob_.add(std::span(body_.texture_coordinates.front().data(),
-                                                body_.texture_coordinates.size() * 2));
+      Json sets = Json::array({add(body_.texture_coordinates)});
+      for (const auto& set : body_.more_texture_coordinates) {
+        if (sets.size() < kSets) sets.push_back(add(set));
+      }
+      look["coordinates"] = std::move(sets);
     }
+    if (!body_.colours.empty()) look["colours"] = add(body_.colours);
     return look;
   }
 
  private:
+  static constexpr std::size_t kSets = 4;  // that three.js has names for
+
+  template <typename Vector>
+  Json add(const std::vector<Vector>& rows) {
+    return blob_.add(std::span(rows.front().data(), rows.size() * Vector::RowsAtCompileTime));
+  }
+
   // Index of the material in the page's list. Unset properties keep their defaults.
   Result<std::size_t> place_of(const std::string& name, std::span<const Material> materials) {
     const auto [at, added] = places_.try_emplace(name, materials_.size());
@@ -64,7 +75,8 @@ class LookPacker {
     Json textures = Json::object();
     const auto all = textures_of(material);
     for (std::size_t t = 0; t < all.size() && !body_.texture_coordinates.empty(); ++t) {
-      if (!*all[t]) continue;
+      const auto set = static_cast<std::size_t>(all[t]->set);
+      if (!*all[t] || set > body_.more_texture_coordinates.size() || set >= kSets) continue;
       auto texture = to_json(*all[t]);
       if (!texture) return texture.error();
       textures[kTextures[t]] = std::move(*texture);
@@ -83,10 +95,17 @@ class LookPacker {
       image["type"] = media_type(facts->kind);
       images_.push_back(std::move(image));
     }
-    return Json{{"picture", at->second},
-                {"wrapU", kWraps[static_cast<std::size_t>(texture.wrap_u)]},
-                {"wrapV", kWraps[static_cast<std::size_t>(texture.wrap_v)]},
-                {"smooth", texture.smooth}};
+    Json json{{"picture", at->second},
+              {"wrapU", kWraps[static_cast<std::size_t>(texture.wrap_u)]},
+              {"wrapV", kWraps[static_cast<std::size_t>(texture.wrap_v)]},
+              {"smooth", texture.smooth}};
+    if (texture.set != 0) json["set"] = texture.set;
+    if (texture.transforms()) {
+      // Where (0, 0), (1, 0) and (0, 1) come to.
+      json["transform"] = {list(texture.at(Vec2f(0, 0))), list(texture.at(Vec2f(1, 0))),
+                           list(texture.at(Vec2f(0, 1)))};
+    }
+    return json;
   }
 
   template <typename Vector>

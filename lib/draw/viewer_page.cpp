@@ -144,7 +144,7 @@ Result<Json> add_body(const Model& model, std::span<const Material> materials, P
   if (Status status = check(model); !status) return status.error();
   Blob blob;
   Json body = pack_body(model, blob);
-  if (!materials.empty()) {
+  if (!materials.empty() || !model.colours.empty()) {
     if (Status status = check(materials); !status) return status.error();
     auto look = pack_look(model, materials, blob);
     if (!look) return look.error();

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "core/text.h"
+#include "scene/model.h"
 
 namespace krok {
 
@@ -27,6 +28,16 @@ std::string fault_of(const Material& material) {
   if (outside(material.occlusion_strength)) return out_of_range("occlusion strength");
   if (any(material.emissive)) return out_of_range("emissive colour");
   if (outside(material.alpha_cutoff)) return out_of_range("alpha cutoff");
+  const auto is_far = [](const Texture* texture) {
+    const double largest =
+        std::max({texture->scale.cwiseAbs().maxCoeff(), texture->offset.cwiseAbs().maxCoeff(),
+                  std::abs(texture->rotation)});
+    return texture->set < 0 || texture->set > kMaxTextureSet || !(largest <= kMaxTextureTransform);
+  };
+  if (std::ranges::any_of(textures_of(material), is_far)) {
+    return fmt::format("a texture's set is not 0 to {} or its transform not within +-{}",
+                       kMaxTextureSet, kMaxTextureTransform);
+  }
   if (!(std::abs(material.normal_scale) <= kMaxNormalScale)) {
     return fmt::format("the normal scale is not within +-{}", kMaxNormalScale);
   }
@@ -34,6 +45,15 @@ std::string fault_of(const Material& material) {
 }
 
 }  // namespace
+
+static_assert(kMaxTextureSet + 1 == Model::kMaxCoordinateSets);
+
+Vec2f Texture::at(const Vec2f& coordinates) const {
+  const Vec2 scaled = scale.cwiseProduct(coordinates.cast<double>());
+  const double c = std::cos(rotation), s = std::sin(rotation);
+  return (offset + Vec2(c * scaled.x() + s * scaled.y(), c * scaled.y() - s * scaled.x()))
+      .cast<float>();
+}
 
 std::array<Texture*, 5> textures_of(Material& material) {
   return {&material.base_color_texture, &material.metallic_roughness_texture,

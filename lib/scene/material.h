@@ -12,8 +12,12 @@
 
 namespace krok {
 
-// An image mapped to a surface by the model's texture coordinates: u to the right, v down, 0 to 1
-// over the image.
+inline constexpr float kMaxNormalScale = 1000.0f;
+inline constexpr int kMaxTextureSet = 7;
+inline constexpr double kMaxTextureTransform = 1e6;  // of scale, radians and offset
+
+// An image mapped to a surface by a set of the model's texture coordinates: u to the right, v down,
+// 0 to 1 over the image. Source of the transform: Khronos Group, KHR_texture_transform.
 struct Texture {
   enum class Wrap : unsigned char { repeat, clamp, mirror };  // outside 0 .. 1
 
@@ -21,6 +25,14 @@ struct Texture {
   Wrap wrap_u = Wrap::repeat;
   Wrap wrap_v = Wrap::repeat;
   bool smooth = true;  // false: nearest-neighbour magnification
+  int set = 0;         // of the model's texture coordinates, 0 .. kMaxTextureSet
+  // Coordinates are scaled, turned from u towards -v (counter-clockwise on the image), then moved.
+  Vec2 scale = Vec2::Ones();
+  double rotation = 0.0;  // radians
+  Vec2 offset = Vec2::Zero();
+
+  bool transforms() const { return rotation != 0 || scale != Vec2::Ones() || !offset.isZero(0); }
+  Vec2f at(const Vec2f& coordinates) const;  // transformed
 
   explicit operator bool() const { return image != nullptr; }
   friend bool operator==(const Texture&, const Texture&) = default;  // same image object
@@ -58,8 +70,6 @@ struct Material {
   // Names of shaders used by other software; kept but not used.
   std::vector<std::string> shaders;
 };
-
-inline constexpr float kMaxNormalScale = 1000.0f;
 
 // All its textures, including empty ones: base colour, metallic-roughness, normal, occlusion,
 // emissive.

@@ -100,9 +100,18 @@ Status check(const Model& model) {
   const std::size_t count = model.positions.size();
   const auto fits = [count](std::size_t size) { return size == 0 || size == count; };
   if (!fits(model.normals.size()) || !fits(model.texture_coordinates.size()) ||
-      !fits(model.tangents.size())) {
+      !fits(model.tangents.size()) || !fits(model.colours.size()) ||
+      !std::ranges::all_of(model.more_texture_coordinates,
+                           [count](const auto& set) { return set.size() == count; })) {
     return Error("model-shape",
-                 "normals, texture coordinates or tangents do not match the vertices");
+                 "normals, texture coordinates, tangents or colours do not match the vertices");
+  }
+  const std::size_t more = model.more_texture_coordinates.size();
+  if (more >= Model::kMaxCoordinateSets || (more > 0 && model.texture_coordinates.empty())) {
+    return Error("model-shape",
+                 fmt::format("{} sets of texture coordinates after the first, expected up to {} if "
+                             "there is a first, else none",
+                             more, Model::kMaxCoordinateSets - 1));
   }
   if (model.influences_per_vertex < 1 || model.influences_per_vertex > Model::kMaxInfluences) {
     return Error("model-shape", fmt::format("{} influences per vertex, expected 1 to {}",
@@ -113,7 +122,9 @@ Status check(const Model& model) {
     return Error("model-shape", "joint indices or weights do not match the vertices");
   }
   if (!all_near(model.positions) || !all_near(model.normals) ||
-      !all_near(model.texture_coordinates) || !all_near(model.tangents)) {
+      !all_near(model.texture_coordinates) || !all_near(model.tangents) ||
+      !all_near(model.colours) ||
+      !std::ranges::all_of(model.more_texture_coordinates, all_near<Vec2f>)) {
     return Error("model-value", "a vertex is not finite or over 1e9 m away");
   }
   if (Status status = check_directions(model); !status) return status;

@@ -16,17 +16,23 @@ namespace krok {
 // blend skinning moves a vertex v to sum_j w_j M_j C_j^-1 v.
 //
 // Per-vertex arrays have [vertices] elements, or none if the file has no such data (normals,
-// texture_coordinates, tangents). Influences have [vertices x influences_per_vertex] elements,
-// vertex by vertex, weights in decreasing order, unused ones with weight 0 and joint 0.
+// texture_coordinates, tangents, colours). Influences have [vertices x influences_per_vertex]
+// elements, vertex by vertex, weights in decreasing order, unused ones with weight 0 and joint 0.
 struct Model {
   static constexpr int kMaxInfluences = 8;
+  static constexpr int kMaxCoordinateSets = 8;
 
   Skeleton skeleton;
 
   std::vector<Vec3f> positions;            // metres
   std::vector<Vec3f> normals;              // unit, pointing outwards
   std::vector<Vec2f> texture_coordinates;  // u to the right, v down (glTF's)
-  std::vector<Vec4f> tangents;             // unit xyz; w is +1 or -1, glTF's handedness
+  // The sets after that, glTF's TEXCOORD_1 and so on, each of [vertices]; none without a first set.
+  std::vector<std::vector<Vec2f>> more_texture_coordinates;
+  std::vector<Vec4f> tangents;  // unit xyz; w is +1 or -1, glTF's handedness
+  // Linear red, green, blue, alpha, normally 0 .. 1, by which the material's base colour
+  // is multiplied.
+  std::vector<Vec4f> colours;
 
   int influences_per_vertex = 4;  // 1 .. kMaxInfluences
   std::vector<std::uint16_t> influence_joints;

@@ -189,7 +189,7 @@ class Camera:
 @dataclass
 class Model:
     """A skinned mesh (.model): `positions`, `normals` (vertices, 3), `texture_coordinates` (vertices, 2),
-    `tangents` (vertices, 4), `joints` and `weights` (vertices, influences), `triangles` (triangles, 3)."""
+    `tangents` (vertices, 4), `colours` (vertices, 4), linear, `more_texture_coordinates` (sets, vertices, 2), `joints` and `weights` (vertices, influences), `triangles` (triangles, 3)."""
     skeleton: Skeleton
     positions: np.ndarray
     normals: np.ndarray | None
@@ -200,6 +200,8 @@ class Model:
     triangles: np.ndarray
     parts: list[Part]
     provenance: dict[str, Any] = field(default_factory=dict)
+    colours: np.ndarray | None = None
+    more_texture_coordinates: np.ndarray | None = None
 
 
 @dataclass
@@ -333,8 +335,8 @@ def _read_camera(file: _Container) -> Camera:
 # Arrays of a model: section, attribute, type and columns (0: influences); those of _OPTIONAL may be absent.
 _MESH = (("POSITION", "positions", "<f4", 3), ("NORMAL", "normals", "<f4", 3),
          ("TEXCOORD", "texture_coordinates", "<f4", 2), ("TANGENT", "tangents", "<f4", 4),
-         ("VJOINTS", "joints", "<u2", 0), ("VWEIGHTS", "weights", "<f4", 0), ("TRIANGLE", "triangles", "<u4", 3))
-_OPTIONAL = ("NORMAL", "TEXCOORD", "TANGENT")
+         ("COLOUR", "colours", "<f4", 4),         ("VJOINTS", "joints", "<u2", 0), ("VWEIGHTS", "weights", "<f4", 0), ("TRIANGLE", "triangles", "<u4", 3))
+_OPTIONAL = ("NORMAL", "TEXCOORD", "TANGENT", "COLOUR")
 
 
 def _read_model(file: _Container) -> Model:
@@ -344,6 +346,9 @@ def _read_model(file: _Container) -> Model:
     arrays = {attribute: None if section in _OPTIONAL and section not in file.sections else
               file.array(section, kind, triangles if section == "TRIANGLE" else vertices, columns or influences)
               for section, attribute, kind, columns in _MESH}
+    if "TEXMORE" in file.sections:
+        sets = file.sections["TEXMORE"][1] // max(8 * vertices, 1)
+        arrays["more_texture_coordinates"] = file.array("TEXMORE", "<f4", sets, vertices, 2)
     model = Model(file.skeleton(joints), **arrays, provenance=file.page("META"),
                   parts=[Part(*names[2 * i:2 * i + 2], *runs[i], meshes[i]) for i in range(parts)])
     file.require(not model.joints.size or int(model.joints.max()) < joints, "a joint out of range")
@@ -413,6 +418,8 @@ def write(data: Motion | Model | Camera, path: Path) -> None:
                                data.weights.shape[1], 0)
             mesh = [(section, _finite(getattr(data, attribute), kind).tobytes()) for section, attribute, kind, _ in _MESH
                     if getattr(data, attribute) is not None]
+            if data.more_texture_coordinates is not None:
+                mesh.append(("TEXMORE", _finite(data.more_texture_coordinates, "<f4").tobytes()))
             magic, sections = b"KROKMODL", [("INFO", info), *bones, *mesh,
                                             ("PARTS", np.array([part[2:4] for part in data.parts], "<u4").tobytes()),
                                             ("PARTNAME", _texts(text for part in data.parts for text in part[:2]))]

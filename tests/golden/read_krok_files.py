@@ -142,11 +142,19 @@ def read_model(container):
     require(all(abs(sum(row) - 1) <= 1e-4 and min(row) >= 0 for row in weights), "weights")
     corners = container.numbers("TRIANGLE", "I", 3, triangles)
     require(all(vertex < vertices for row in corners for vertex in row), "a vertex out of range")
+    further = []
+    if "TEXMORE" in container.sections:
+        size = len(container.sections["TEXMORE"])
+        require(size % (8 * vertices) == 0 and 1 <= size // (8 * vertices) <= 7, "TEXMORE")
+        further = container.numbers("TEXMORE", "f", 2, size // 8)
     return {"kind": "model", "skeleton": skeleton,
             "positions": container.numbers("POSITION", "f", 3, vertices),
             "normals": container.optional_numbers("NORMAL", "f", 3, vertices),
             "texture_coordinates": container.optional_numbers("TEXCOORD", "f", 2, vertices),
+            "more_texture_coordinates": [
+                further[i * vertices:(i + 1) * vertices] for i in range(len(further) // vertices)],
             "tangents": container.optional_numbers("TANGENT", "f", 4, vertices),
+            "colours": container.optional_numbers("COLOUR", "f", 4, vertices),
             "joints": bound, "weights": weights, "triangles": corners,
             "parts": [{"name": names[2 * i], "material": names[2 * i + 1],
                        "first_triangle": ranges[i][0], "triangle_count": ranges[i][1],

@@ -1,5 +1,5 @@
 // Prints how three.js shows a glTF file's meshes, as a line of JSON: for each its part's material
-// with factors and the files of its textures in hexadecimal; and the nodes that have neither mesh
+// with factors and the files of its textures in hexadecimal, how coordinates are used, colours; and the nodes that have neither mesh
 // nor bone, with their places in the world at the file's first moment.
 //
 // Usage: node three_look.mjs FILE
@@ -23,10 +23,22 @@ function lookOf(mesh) {
     roughness: material.roughness,
     emissive: material.emissive?.toArray(),
     maps: {},
+    placed: {}, // set of coordinates, scale, rotation, offset
+    corners: {}, // of the first vertex
   };
   for (const name of MAPS) {
     const texture = material[name];
-    if (texture) look.maps[name] = Buffer.from(texture.image.file).toString('hex');
+    if (texture) {
+      look.maps[name] = Buffer.from(texture.image.file).toString('hex');
+      const { channel, rotation } = texture;
+      look.placed[name] = [channel, ...texture.repeat, rotation, ...texture.offset];
+    }
+  }
+  for (const name of ['uv', 'uv1', 'uv2', ...(material.vertexColors ? ['color'] : [])]) {
+    const attribute = mesh.geometry.attributes[name];
+    if (attribute) {
+      look.corners[name] = Array.from({ length: attribute.itemSize }, (_, k) => attribute.getComponent(0, k));
+    }
   }
   return look;
 }

@@ -152,7 +152,7 @@ def main():
     parser.add_argument("--minutes", type=float, default=60)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "fuzz")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     program = options.program.resolve()
     known = subprocess.run([program, "--list"], capture_output=True, text=True, check=True).stdout.split()
     unknown = set(options.targets) - set(known)

@@ -41,6 +41,7 @@ Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
   outcome.add_row("positions", Unit::length, found->positions);
   outcome.add_row("normals", Unit::angle, found->normals);
   outcome.add_row("texture coordinates", Unit::ratio, found->texture_coordinates);
+  outcome.add_row("vertex colours", Unit::ratio, found->colours);
   outcome.add_tangents(found->tangents, found->tangent_sides);
   outcome.add_row("weights", Unit::ratio, found->weights);
   outcome.add_joints(found->joints);

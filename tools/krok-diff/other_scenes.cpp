@@ -103,6 +103,9 @@ compare::Scene scene_of(const Model& model) {
   mesh.has_tangents = !model.tangents.empty();
   mesh.triangles = model.triangles;
   mesh.texture_coordinates = model.texture_coordinates;
+  mesh.more_texture_coordinates.assign(model.more_texture_coordinates.begin(),
+                                       model.more_texture_coordinates.end());
+  mesh.colours = model.colours;
   mesh.influences = {model.influences_per_vertex, model.influence_joints, model.influence_weights};
   scene.meshes.push_back(mesh);
   scene.evaluate = [&model](int, double, compare::SceneState& state) {

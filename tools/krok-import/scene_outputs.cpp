@@ -19,6 +19,18 @@ namespace krok::cli::import {
 
 using registry::Kind;
 
+namespace {
+
+int moved_targets(const nodes::Animation& animation) {
+  int targets = 0;
+  for (const nodes::Channel& channel : animation.channels) {
+    if (channel.path == nodes::Path::weights) targets += channel.width;
+  }
+  return targets;
+}
+
+}  // namespace
+
 Status SceneImporter::add_actor() {
   if (!wants_model() && !wants_character() && !wants_morphs()) return {};
   Diagnostics found;
@@ -135,6 +147,12 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     if (!character::moves_rig(scene_, *rig_, chosen.animation)) {
       warn("import-still",
            fmt::format("{} does not move any joint of the skeleton", shown(chosen.name)));
+    }
+    if (const int targets = moved_targets(animation); targets > 0 && options_.weights.empty()) {
+      warn("import-weights",
+           fmt::format("{} moves {}: not written", shown(chosen.name),
+                       counted(targets, "morph target")),
+           "write their weights with --morph-weights OUT.csv");
     }
     Stretches stretches;
     auto clip =

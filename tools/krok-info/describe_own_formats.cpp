@@ -91,6 +91,12 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
   std::vector<std::string> with;
   if (!model->normals.empty()) with.emplace_back("normals");
   if (!model->texture_coordinates.empty()) with.emplace_back("texture coordinates");
+  if (!model->more_texture_coordinates.empty()) {
+    with.push_back(counted(std::ssize(model->more_texture_coordinates),
+                           "further set of texture coordinates",
+                           "further sets of texture coordinates"));
+  }
+  if (!model->colours.empty()) with.emplace_back("vertex colours");
   if (!model->tangents.empty()) with.emplace_back("tangents");
   out.add("mesh", vertices == 0 ? std::string("none, skeleton only")
                                 : fmt::format("{}, {}", count_of(vertices, "vertex", "vertices"),

@@ -252,6 +252,24 @@ Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
   return {};
 }
 
+// Sets of texture coordinates after the last that a texture of a part uses.
+void drop_unused_sets(std::span<const Material> materials, Model& model, ToolContext& context) {
+  std::size_t used = 0;
+  for (const Model::Part& part : model.parts) {
+    const Material* const material = find_material(materials, part.material);
+    if (material == nullptr) continue;
+    for (const Texture* texture : textures_of(*material)) {
+      if (*texture) used = std::max(used, static_cast<std::size_t>(texture->set));
+    }
+  }
+  if (model.more_texture_coordinates.size() <= used) return;
+  context.log(fmt::format(
+      "{} that no texture uses left out",
+      counted(std::ssize(model.more_texture_coordinates) - static_cast<std::ptrdiff_t>(used),
+              "set of texture coordinates", "sets of texture coordinates")));
+  model.more_texture_coordinates.resize(used);
+}
+
 }  // namespace
 
 Result<SmallRig> small_rig(const Options& options, const Subject& subject,
@@ -263,6 +281,9 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
   if (!clips) return clips.error();
   warn_of_second_set(subject.model, context);
   SmallRig rig{subject.model, subject.morphs, *std::move(clips)};
+  if (options.quantize || options.compress) {
+    drop_unused_sets(subject.materials, rig.model, context);
+  }
   if (!options.reduce.empty() || options.quantize) {
     if (Status status = lose_bits(options, rig, context); !status) return status.error();
   }

@@ -34,7 +34,7 @@ struct SmallRig {
   Model model;
   MorphSet morphs;
   Clips clips;
-  std::optional<gltf::Quantization> quantization;
+  std::optional<gltf::Quantization> quantization = {};
 };
 
 // Reports the error of what is lost. Warns where the file needs a second set of influences. Codes:

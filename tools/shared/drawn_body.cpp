@@ -23,25 +23,41 @@ std::vector<Value> chosen(const std::vector<Value>& values,
 DrawnBody::DrawnBody(std::shared_ptr<const Model> model, std::span<const Material> materials,
                      SkinMethod method, const DecodedImages& images)
     : model_(std::move(model)), binding_(*model_, method) {
+  Material usual;
+  if (materials.empty()) usual.base_color = Vec4f::Ones();  // vertex colours alone
   for (const Model::Part& part : model_->parts) {
-    if (materials.empty()) break;
-    static const Material kUsual;
+    if (materials.empty() && model_->colours.empty()) break;
     const Material* const found = find_material(materials, part.material);
-    const Material& material = found != nullptr ? *found : kUsual;
+    const Material& material = found != nullptr ? *found : usual;
     if (part.triangle_count == 0) continue;
     Part drawn = part_of(part);
-    const auto look = look_of(material, coordinates_of(drawn), images);
+    const int set = material.base_color_texture.set;
+    const auto look = look_of(material, coordinates_of(drawn, set), images);
     if (!look) continue;
     drawn.look = *look;
+    drawn.colours = {look->colour};
+    if (!model_->colours.empty()) {
+      // A texture has the base colour as its factor.
+      const Vec3f factor =
+          look->paint != nullptr ? Vec3f(Vec3f::Ones()) : Vec3f(material.base_color.head<3>());
+      drawn.colours.clear();
+      for (const Vec4f& colour : chosen(model_->colours, drawn.vertices)) {
+        drawn.colours.push_back(render::to_colour(factor.cwiseProduct(colour.head<3>())));
+      }
+    }
     parts_.push_back(std::move(drawn));
   }
   if (parts_.empty()) triangles_ = std::make_shared<render::Triangles>(model_->triangles);
 }
 
-SharedCoordinates DrawnBody::coordinates_of(const Part& part) const {
-  if (model_->texture_coordinates.empty()) return nullptr;
+SharedCoordinates DrawnBody::coordinates_of(const Part& part, int set) const {
+  const auto more = static_cast<std::size_t>(set);
+  if (model_->texture_coordinates.empty() || more > model_->more_texture_coordinates.size()) {
+    return nullptr;
+  }
   return std::make_shared<const std::vector<Vec2f>>(
-      chosen(model_->texture_coordinates, part.vertices));
+      chosen(set == 0 ? model_->texture_coordinates : model_->more_texture_coordinates[more - 1],
+             part.vertices));
 }
 
 DrawnBody::Part DrawnBody::part_of(const Model::Part& part) const {
@@ -78,11 +94,8 @@ std::vector<render::Surface> DrawnBody::at(std::span<const Transform> pose) cons
   }
   surfaces.reserve(parts_.size());
   for (const Part& part : parts_) {
-    surfaces.push_back({chosen(positions, part.vertices),
-                        chosen(normals, part.vertices),
-                        part.triangles,
-                        {part.look.colour},
-                        part.look.paint});
+    surfaces.push_back({chosen(positions, part.vertices), chosen(normals, part.vertices),
+                        part.triangles, part.colours, part.look.paint});
   }
   return surfaces;
 }

@@ -13,7 +13,8 @@
 
 namespace krok::cli {
 
-// A model prepared for rendering. Without materials it has the default body colour. With materials,
+// A model prepared for rendering. Without materials and vertex colours it has the default body
+// colour. With them,
 // parts are drawn as look_of() returns, light grey if their material is missing. If look_of() drops
 // all parts, the model is drawn as if without materials.
 class DrawnBody {
@@ -29,9 +30,10 @@ class DrawnBody {
     std::vector<std::uint32_t> vertices;                 // indices into the model; empty: all
     std::shared_ptr<const render::Triangles> triangles;  // of these
     SurfaceLook look;
+    std::vector<render::Colour> colours;  // of the vertices, or one
   };
   Part part_of(const Model::Part& part) const;
-  SharedCoordinates coordinates_of(const Part& part) const;
+  SharedCoordinates coordinates_of(const Part& part, int set) const;
 
   std::shared_ptr<const Model> model_;
   SkinBinding binding_;

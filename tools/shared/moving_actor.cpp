@@ -211,7 +211,13 @@ class SceneActor {
       static const Material kUsual;
       const auto place = static_cast<std::size_t>(std::max(primitive.material_index, 0));
       const Material& material = primitive.material_index >= 0 ? scene_.materials[place] : kUsual;
-      looks_.push_back(look_of(material, primitive.texture_coordinates, images));
+      const auto set = static_cast<std::size_t>(material.base_color_texture.set);
+      const auto& more = primitive.more_texture_coordinates;
+      looks_.push_back(look_of(material,
+                               set == 0             ? primitive.texture_coordinates
+                               : set <= more.size() ? more[set - 1]
+                                                    : nullptr,
+                               images));
       drawn = drawn || (looks_.back() && !primitive.triangles.empty());
       if (!looks_.back()) continue;
       if (primitive.colours != nullptr) {

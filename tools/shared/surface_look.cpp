@@ -86,6 +86,11 @@ std::optional<SurfaceLook> look_of(const Material& material, const SharedCoordin
   auto paint = std::make_shared<render::Paint>();
   paint->image = found->second;
   paint->coordinates = coordinates;
+  if (texture.transforms()) {
+    auto moved = *coordinates;
+    for (Vec2f& place : moved) place = texture.at(place);
+    paint->coordinates = std::make_shared<const std::vector<Vec2f>>(std::move(moved));
+  }
   paint->wrap_u = texture.wrap_u;
   paint->wrap_v = texture.wrap_v;
   paint->smooth = texture.smooth;

@@ -33,10 +33,10 @@ struct SurfaceLook {
 
 using SharedCoordinates = std::shared_ptr<const std::vector<Vec2f>>;
 
-// Textured if the image is in `images` and `coordinates` is not null. Alpha cuts out texels:
-// Material::Alpha::mask by its cutoff, blend below an alpha of 0.5. Empty if the whole surface is
-// more transparent than that; such surfaces are not drawn, so that eyes are visible behind their
-// cornea.
+// Textured if the image is in `images` and `coordinates`, the set of the base colour texture, is
+// not null. Alpha cuts out texels: Material::Alpha::mask by its cutoff, blend below an alpha of
+// 0.5. Empty if the whole surface is more transparent than that; such surfaces are not drawn, so
+// that eyes are visible behind their cornea.
 std::optional<SurfaceLook> look_of(const Material& material, const SharedCoordinates& coordinates,
                                    const DecodedImages& images);
 

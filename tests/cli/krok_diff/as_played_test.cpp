@@ -289,6 +289,7 @@ TEST_F(KrokDiffAsPlayed, VertexColoursCountWithMaterials) {
   write("red.glb", coloured(red));
   write("other.glb", coloured(other));
   write("none.glb", square());
+  write("white.glb", coloured(std::vector<float>(16, 1.0F)));  // looks like none
   GlbBuilder bytes = square();
   primitive_of(bytes)["attributes"]["COLOR_0"] = bytes.add(
       std::vector<std::uint8_t>{255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255, 255, 0, 0, 255},
@@ -305,6 +306,7 @@ TEST_F(KrokDiffAsPlayed, VertexColoursCountWithMaterials) {
     EXPECT_THAT(diff({"red.glb", "none.glb", "--match", how}).out,
                 HasSubstr("only the first has vertex colours"));
     EXPECT_EQ(diff({"red.glb", "none.glb", "--materials", "--match", how}).exit_code, 1) << how;
+    EXPECT_EQ(diff({"white.glb", "none.glb", "--materials", "--match", how}).exit_code, 0) << how;
   }
 }
 

@@ -117,6 +117,37 @@ TEST_F(CharacterImportTest, WritesAllThatBelongsTogether) {
   EXPECT_EQ(morphs->names, std::vector<std::string>{"Nose"});
 }
 
+// Painted parts, a second set of texture coordinates and a moved texture, there and back.
+TEST_F(CharacterImportTest, ColoursCoordinatesAndTransformsComeBack) {
+  GlbBuilder builder = character({"Skin"});
+  builder.json["nodes"].erase(3);  // the eye, which the skin does not have
+  builder.json["nodes"][2].erase("children");
+  auto& shape = builder.json["meshes"][0]["primitives"][0];
+  shape["attributes"]["TEXCOORD_1"] =
+      builder.add(std::vector<float>{0, 0.5f, 0.25f, 1, 0.75f, 0, 0, 0.125f}, "VEC2");
+  shape["attributes"]["COLOR_0"] = builder.add(
+      std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 51, 255, 0, 0, 255, 102, 255, 255, 255, 0},
+      "VEC4", true);
+  auto& material = builder.json["materials"][0];
+  material["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = {
+      {"scale", {3, 0.5}}, {"rotation", 0.3}, {"offset", {-1, 0.2}}};
+  material["occlusionTexture"] = {{"index", 0}, {"texCoord", 1}};
+  put_glb(builder);
+  ASSERT_EQ(import({"--character", path("hero.character"), "-o", path("a.anim")}).exit_code, 0);
+  for (const auto& options : {std::vector<std::string>{}, {"--quantize", "--compress"}}) {
+    std::vector<std::string> skin = {path("hero.character"), path("a.anim"), "-o", path("out.glb")};
+    skin.insert(skin.end(), options.begin(), options.end());
+    const ToolRun made = run_tool("krok-skin", skin);
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const ToolRun compared =
+        run_tool("krok-diff", {path("in.glb"), path("out.glb"), "--materials", "--tolerance",
+                               "0.1mm", "--angle", "0.5deg", "--match", "nearest"});
+    EXPECT_EQ(compared.exit_code, 0) << compared.out << compared.err;
+    EXPECT_THAT(compared.out, HasSubstr("vertex colours: "));
+    EXPECT_THAT(compared.out, Not(HasSubstr("only the")));
+  }
+}
+
 TEST_F(CharacterImportTest, WhatItWroteIsSound) {
   put_glb(character({"Skin"}));
   ASSERT_EQ(import({"--character", path("hero.character")}).exit_code, 0);

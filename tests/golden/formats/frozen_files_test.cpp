@@ -112,8 +112,10 @@ TEST(FrozenFiles, AStretchedMotionHoldsEveryValue) {
 }
 
 TEST(FrozenFiles, ModelsHoldEveryValue) {
-  const std::pair<const char*, Model> models[] = {{"full.model", samples::model()},
-                                                  {"plain_xyzw.model", samples::plain_model()}};
+  const std::pair<const char*, Model> models[] = {
+      {"full.model", samples::model()},
+      {"plain_xyzw.model", samples::plain_model()},
+      {"coloured_xyzw.model", samples::coloured_model()}};
   for (const auto& [name, expected] : models) {
     SCOPED_TRACE(name);
     const auto model = model::read(open(kFrozen + name).bytes());
@@ -122,7 +124,9 @@ TEST(FrozenFiles, ModelsHoldEveryValue) {
     EXPECT_THAT(model->positions, ElementsAreArray(expected.positions));
     EXPECT_THAT(model->normals, ElementsAreArray(expected.normals));
     EXPECT_THAT(model->texture_coordinates, ElementsAreArray(expected.texture_coordinates));
+    EXPECT_EQ(model->more_texture_coordinates, expected.more_texture_coordinates);
     EXPECT_THAT(model->tangents, ElementsAreArray(expected.tangents));
+    EXPECT_THAT(model->colours, ElementsAreArray(expected.colours));
     EXPECT_EQ(model->influences_per_vertex, expected.influences_per_vertex);
     EXPECT_EQ(model->influence_joints, expected.influence_joints);
     EXPECT_EQ(model->influence_weights, expected.influence_weights);
@@ -321,7 +325,11 @@ void expect_model(const json& found, const Model& model) {
   EXPECT_EQ(found["positions"], lists(model.positions));
   EXPECT_EQ(found["normals"], lists(model.normals));
   EXPECT_EQ(found["texture_coordinates"], lists(model.texture_coordinates));
+  json further = json::array();
+  for (const auto& set : model.more_texture_coordinates) further.push_back(lists(set));
+  EXPECT_EQ(found["more_texture_coordinates"], further);
   EXPECT_EQ(found["tangents"], lists(model.tangents));
+  EXPECT_EQ(found["colours"], lists(model.colours));
   std::vector<std::uint16_t> joints;
   for (const json& row : found["joints"]) joints.insert(joints.end(), row.begin(), row.end());
   EXPECT_EQ(joints, model.influence_joints);

@@ -120,5 +120,49 @@ TEST_F(GltfLook, ShowsMaterialsTexturesAndEyes) {
   }
 }
 
+// A painted character would come back white, a tiled texture once, ambient occlusion in the wrong
+// places: in whole files and in small ones.
+TEST_F(GltfLook, ShowsVertexColoursFurtherCoordinatesAndTransforms) {
+  const std::size_t count = model_.positions.size();
+  model_.colours.assign(count, Vec4f(0.25f, 0.5f, 1, 0.75f));
+  model_.more_texture_coordinates = {std::vector<Vec2f>(count, Vec2f(0.5f, 0.125f)),
+                                     std::vector<Vec2f>(count, Vec2f(0, 1))};
+  Material& skin = materials_[0];
+  skin.base_color_texture.scale = {4, 2};
+  skin.base_color_texture.rotation = 0.5;
+  skin.base_color_texture.offset = {0.25, -3};
+  skin.occlusion_texture.set = 2;
+  skin.emissive_texture.set = 1;
+  options_.materials = materials_;
+  const Clip clip = test::swinging_clip(model_.skeleton, 3, 30);
+  write("rig.glb", [&](OutputFile& file) { return gltf::write_rig(model_, clip, options_, file); });
+  const MeshMotion motion = test::wobble(model_, 3);
+  write("baked.glb",
+        [&](OutputFile& file) { return gltf::write_baked(model_, motion, options_, file); });
+  options_.quantized = gltf::Quantization();
+  write("small.glb",
+        [&](OutputFile& file) { return gltf::write_rig(model_, clip, options_, file); });
+  valid("rig.glb baked.glb small.glb");
+  for (const char* name : {"rig.glb", "baked.glb", "small.glb"}) {
+    SCOPED_TRACE(name);
+    const auto look = look_at(name);
+    ASSERT_TRUE(look.is_object()) << content("log.txt");
+    const auto& mesh = look["meshes"][0];
+    EXPECT_EQ(mesh["placed"]["map"], nlohmann::json({0, 4.0, 2.0, 0.5, 0.25, -3.0}));
+    EXPECT_EQ(mesh["placed"]["aoMap"], nlohmann::json({2, 1.0, 1.0, 0, 0, 0}));
+    EXPECT_EQ(mesh["placed"]["emissiveMap"], nlohmann::json({1, 1.0, 1.0, 0, 0, 0}));
+    const nlohmann::json corners = {{"uv", {0.25, 0.75}},
+                                    {"uv1", {0.5, 0.125}},
+                                    {"uv2", {0, 1}},
+                                    {"color", {0.25, 0.5, 1, 0.75}}};
+    for (const auto& [attribute, values] : corners.items()) {
+      ASSERT_EQ(mesh["corners"][attribute].size(), values.size()) << attribute;
+      for (std::size_t k = 0; k < values.size(); ++k) {
+        EXPECT_NEAR(mesh["corners"][attribute][k].get<double>(), values[k].get<double>(), 1e-5);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace krok

@@ -81,6 +81,17 @@ Model model() {
   return model;
 }
 
+Model coloured_model() {
+  Model model = plain_model();
+  model.texture_coordinates = samples::model().texture_coordinates;
+  model.more_texture_coordinates = {
+      {Vec2f(0, 0), Vec2f(0.5f, 0), Vec2f(0.5f, 0.5f), Vec2f(0, 0.5f)},
+      {Vec2f(2, 0.125f), Vec2f(-1, 0), Vec2f(0.75f, 1), Vec2f(0, 3)}};
+  model.colours = {Vec4f(1, 0, 0, 1), Vec4f(0, 0.5f, 0.25f, 1), Vec4f(1, 1, 1, 0.75f),
+                   Vec4f(0, 0, 0, 0)};
+  return model;
+}
+
 Model plain_model() {
   Model model = samples::model();
   model.normals.clear();
@@ -220,6 +231,10 @@ std::vector<Sample> all() {
        [](OutputFile& file) { return model::write(model(), {.orientation = kXyz}, file); }},
       {"plain_xyzw.model",
        [](OutputFile& file) { return model::write(plain_model(), {.orientation = kXyzw}, file); }},
+      {"coloured_xyzw.model",
+       [](OutputFile& file) {
+         return model::write(coloured_model(), {.orientation = kXyzw}, file);
+       }},
       {"camera.cam",
        [](OutputFile& file) { return cam::write(camera(), {.orientation = kXyz}, file); }},
       {"camera_xyzw.cam",

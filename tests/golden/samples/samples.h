@@ -35,6 +35,9 @@ Model model();
 // The same without normals, texture coordinates and tangents, one influence a vertex, one part.
 Model plain_model();
 
+// With colours and three sets of texture coordinates.
+Model coloured_model();
+
 // Two frames, 25 a second.
 CameraTrack camera();
 

@@ -206,18 +206,39 @@ TEST(ImportedShape, MeshesHungOnJointsFollowThem) {
   EXPECT_EQ(imported.clip.joint_count(), 4);
 }
 
-// A model has no place for them: who imports has to know.
-TEST(ImportedShape, VertexColoursThatAModelDoesNotHoldAreReported) {
+// Painted characters would come back white, and textures of a second set would slide off. A part
+// without colours is white, which looks the same.
+TEST(ImportedShape, KeepsVertexColoursAndFurtherTextureCoordinates) {
   nodes::Scene scene = armature_scene();
+  const int other = add_mesh(scene, "Plain", 2, -1, 5);
   nodes::Primitive& shape = scene.meshes.front().primitives.front();
-  shape.colours = std::make_shared<const std::vector<Vec4f>>(shape.vertex_count(), Vec4f::Ones());
+  const std::size_t count = shape.vertex_count();
+  std::vector<Vec4f> colours;
+  std::vector<Vec2f> third;
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto part = static_cast<float>(v) / static_cast<float>(count);
+    colours.emplace_back(part, 1 - part, 0.25f, 0.5f);
+    third.emplace_back(2 * part, -part);
+  }
+  shape.colours = std::make_shared<const std::vector<Vec4f>>(colours);
+  shape.more_texture_coordinates = {nullptr, std::make_shared<const std::vector<Vec2f>>(third)};
   const auto evaluator = *nodes::Evaluator::create(scene);
   const Imported imported = import(scene, evaluator);
-  const auto reported =
-      std::ranges::find(imported.diagnostics, "scene-mesh-attributes", &Diagnostic::code);
-  ASSERT_NE(reported, imported.diagnostics.end());
-  EXPECT_NE(reported->message.find("vertex colours: those of 1 mesh part"), std::string::npos)
-      << reported->message;
+  const Model& model = imported.actor.model;
+  const std::size_t all =
+      count +
+      scene.meshes[static_cast<std::size_t>(scene.nodes[static_cast<std::size_t>(other)].mesh)]
+          .primitives.front()
+          .vertex_count();
+  ASSERT_EQ(model.colours.size(), all);
+  const auto own = static_cast<std::ptrdiff_t>(count);  // the last, behind the plain mesh's
+  ASSERT_EQ(model.more_texture_coordinates.size(), 2u);
+  EXPECT_EQ(model.texture_coordinates.size(), all);
+  EXPECT_TRUE(std::equal(colours.begin(), colours.end(), model.colours.end() - own));
+  EXPECT_TRUE(
+      std::equal(third.begin(), third.end(), model.more_texture_coordinates[1].end() - own));
+  EXPECT_EQ(model.more_texture_coordinates[0], std::vector<Vec2f>(all, Vec2f::Zero()));
+  EXPECT_EQ(model.colours.front(), Vec4f::Ones());
 }
 
 TEST(ImportedShape, AMirroredMeshKeepsItsOutside) {

@@ -97,7 +97,40 @@ TEST(PackedLook, PartsNameTheirMaterialsAndImagesStandOnce) {
   EXPECT_TRUE((*look)["materials"][1]["textures"].empty());
   ASSERT_EQ((*look)["pictures"].size(), 1u);
   EXPECT_EQ((*look)["pictures"][0]["count"], test::png().size());
-  EXPECT_EQ((*look)["coordinates"]["count"], body.positions.size() * 2);
+  ASSERT_EQ((*look)["coordinates"].size(), 1u);
+  EXPECT_EQ((*look)["coordinates"][0]["count"], body.positions.size() * 2);
+  EXPECT_FALSE(look->contains("colours"));
+}
+
+// The page would show ambient occlusion in the wrong places, and painted bodies in one colour.
+TEST(PackedLook, FurtherCoordinatesColoursAndTransformsArePacked) {
+  Model body = test::tube_model(test::human_skeleton());
+  const std::size_t count = body.positions.size();
+  body.texture_coordinates.assign(count, Vec2f(0.25f, 0.75f));
+  body.more_texture_coordinates = {std::vector<Vec2f>(count, Vec2f(1, 2))};
+  body.colours.assign(count, Vec4f::Ones());
+  body.parts[0].material = "One";
+  Material material = textured("One", test::image(test::png()));
+  material.base_color_texture.scale = {2, 4};
+  material.base_color_texture.offset = {0.5, 0};
+  material.base_color_texture.rotation = kPi / 2;
+  material.occlusion_texture = {material.base_color_texture.image};
+  material.occlusion_texture.set = 1;
+  Blob blob;
+  const auto look = pack_look(body, std::vector{material}, blob);
+  ASSERT_TRUE(look.ok());
+  ASSERT_EQ((*look)["coordinates"].size(), 2u);
+  EXPECT_EQ((*look)["colours"]["count"], count * 4);
+  const Json& textures = (*look)["materials"][0]["textures"];
+  EXPECT_EQ(textures["occlusion"]["set"], 1);
+  EXPECT_FALSE(textures["occlusion"].contains("transform"));
+  // Where (0, 0), (1, 0) and (0, 1) come to: turned from u towards -v.
+  const std::vector<std::vector<double>> places = {{0.5, 0}, {0.5, -2}, {4.5, 0}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_NEAR(textures["baseColor"]["transform"][i][k].get<double>(), places[i][k], 1e-6);
+    }
+  }
 }
 
 TEST(PackedLook, AMeshWithoutCoordinatesHasNoImages) {

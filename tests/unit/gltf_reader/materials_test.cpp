@@ -186,7 +186,7 @@ TEST_F(GltfMaterialReader, WhatIsNotKnownIsSaid) {
   builder_.json["materials"] = {{{"extensions",
                                   {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
                                    {"KHR_materials_unlit", nlohmann::ordered_json::object()}}},
-                                 {"emissiveTexture", {{"index", 0}, {"texCoord", 1}}},
+                                 {"emissiveTexture", {{"index", 0}, {"texCoord", 8}}},
                                  {"normalTexture", {{"index", 1}}},
                                  {"occlusionTexture", {{"index", 0}, {"strength", 7}}}}};
   scene_ = read();
@@ -199,10 +199,34 @@ TEST_F(GltfMaterialReader, WhatIsNotKnownIsSaid) {
   for (const Diagnostic& found : scene_.diagnostics) all += found.message + "\n";
   EXPECT_NE(all.find("KHR_materials_clearcoat"), std::string::npos) << all;
   EXPECT_EQ(all.find("KHR_materials_unlit"), std::string::npos) << all;
-  EXPECT_NE(all.find("1 texture with a texture coordinate set other than 0"), std::string::npos)
+  EXPECT_NE(all.find("1 texture with a texture coordinate set other than 0 to 7"),
+            std::string::npos)
       << all;
   EXPECT_NE(all.find("1 texture without a usable image"), std::string::npos) << all;
   EXPECT_NE(all.find("1 factor of materials"), std::string::npos) << all;
+}
+
+// The set and the transform of KHR_texture_transform, which overrides the former.
+TEST_F(GltfMaterialReader, TexturesKeepHowTheyUseCoordinates) {
+  builder_.json["images"] = {{{"bufferView", builder_.add_view(test::png())}}};
+  builder_.json["textures"] = {{{"source", 0}}};
+  const nlohmann::ordered_json transform = {
+      {"offset", {0.5, -2}}, {"rotation", 1.25}, {"scale", {3, 0.1}}, {"texCoord", 3}};
+  builder_.json["materials"] = {
+      {{"emissiveTexture", {{"index", 0}, {"texCoord", 1}}},
+       {"occlusionTexture",
+        {{"index", 0}, {"texCoord", 1}, {"extensions", {{"KHR_texture_transform", transform}}}}}}};
+  scene_ = read();
+  const Material& material = scene_.materials.at(0);
+  EXPECT_TRUE(static_cast<bool>(material.emissive_texture));
+  EXPECT_EQ(material.emissive_texture.set, 1);
+  EXPECT_FALSE(material.emissive_texture.transforms());
+  const Texture& moved = material.occlusion_texture;
+  EXPECT_EQ(moved.set, 3);
+  EXPECT_EQ(moved.scale, Vec2(3, 0.1));
+  EXPECT_EQ(moved.rotation, 1.25);
+  EXPECT_EQ(moved.offset, Vec2(0.5, -2));
+  for (const Diagnostic& found : scene_.diagnostics) ADD_FAILURE() << found.message;
 }
 
 TEST_F(GltfMaterialReader, TheOlderGlossyModelIsTakenAsFarAsItGoes) {

@@ -18,7 +18,8 @@ constexpr const char* kGood = R"({
     {"name": "Skin", "base_color": "#FF8000", "roughness": 0.5,
      "normal_texture": "tex/n.png", "alpha": "mask"},
     {"name": "Glass", "base_color": [0.1, 0.2, 0.3, 0.4],
-     "occlusion_texture": {"file": "tex/n.png", "wrap_u": "clamp", "smooth": false},
+     "occlusion_texture": {"file": "tex/n.png", "wrap_u": "clamp", "smooth": false,
+       "set": 2, "scale": [2, -0.5], "rotation": 90, "offset": [0.25, 1e-3]},
      "comment": ["any"], "shaders": ["glass.frag"]}
   ]
 })";
@@ -43,6 +44,15 @@ TEST(MaterialFile, ReadsWhatTheSpecSays) {
   EXPECT_EQ(glass.occlusion_texture.wrap_u, Texture::Wrap::clamp);
   EXPECT_EQ(glass.occlusion_texture.wrap_v, Texture::Wrap::repeat);
   EXPECT_FALSE(glass.occlusion_texture.smooth);
+  EXPECT_EQ(glass.occlusion_texture.set, 2);
+  EXPECT_EQ(glass.occlusion_texture.scale, Vec2(2, -0.5));
+  EXPECT_DOUBLE_EQ(glass.occlusion_texture.rotation, kPi / 2);
+  EXPECT_EQ(glass.occlusion_texture.offset, Vec2(0.25, 1e-3));
+  // (1, 1) is scaled to (2, -0.5), turned to (-0.5, -2) and moved.
+  EXPECT_LT((glass.occlusion_texture.at(Vec2f(1, 1)) - Vec2f(-0.25f, -1.999f)).norm(), 1e-6f);
+  const std::string again = *write(*materials);
+  EXPECT_EQ((*read(again))[1].occlusion_texture.offset, glass.occlusion_texture.offset);
+  EXPECT_DOUBLE_EQ((*read(again))[1].occlusion_texture.rotation, kPi / 2);
   EXPECT_EQ(glass.occlusion_texture.image, skin.normal_texture.image);
   EXPECT_EQ(glass.shaders, std::vector<std::string>{"glass.frag"});
 }
@@ -89,9 +99,12 @@ TEST(MaterialFile, FaultsAreToldWithTheirPlace) {
       {"tex/n.png\", \"a", "c:\\\\n.png\", \"a", "material-path 5:24", "backslash"},
       {"\"tex/n.png\", \"a", "7, \"a", "material-structure 5:24", "expected an object"},
       {"\"smooth\"", "\"smoth\"", "material-structure 7:68", "did you mean 'smooth'?"},
-      {"[\"glass.frag\"]", "[1]", "material-value 8:38", "list of names"},
+      {"\"set\": 2", "\"set\": 8", "material-value 8:15", "whole number of 0 to 7"},
+      {"[2, -0.5]", "[2]", "material-value 8:27", "list of two numbers"},
+      {"90", "1e7", "material-value 8:50", "within"},
+      {"[\"glass.frag\"]", "[1]", "material-value 9:38", "list of names"},
       {"\"name\": \"Skin\", ", "", "material-structure 4:5", "is missing \"name\""},
-      {"]\n}", "]", "json-syntax 9:4", ""}};
+      {"]\n}", "]", "json-syntax 10:4", ""}};
   test::expect_told(kGood, faults, [](const std::string& text) { return read(text); });
 }
 

@@ -41,15 +41,21 @@ TEST(ModelFormat, EveryNumberOfInfluencesComesBack) {
 }
 
 TEST(ModelFormat, EveryChoiceOfOptionalDataComesBack) {
-  for (int choice = 0; choice < 8; ++choice) {
+  for (int choice = 0; choice < 32; ++choice) {
     Model model = samples::model();
+    model.colours = samples::coloured_model().colours;
+    model.more_texture_coordinates = samples::coloured_model().more_texture_coordinates;
     if ((choice & 1) == 0) model.normals.clear();
     if ((choice & 2) == 0) model.texture_coordinates.clear();
     if ((choice & 4) == 0) model.tangents.clear();
+    if ((choice & 8) == 0) model.colours.clear();
+    if ((choice & 16) == 0 || (choice & 2) == 0) model.more_texture_coordinates.clear();
     const Model back = read_back(model);
     EXPECT_THAT(back.normals, ElementsAreArray(model.normals));
     EXPECT_THAT(back.texture_coordinates, ElementsAreArray(model.texture_coordinates));
     EXPECT_THAT(back.tangents, ElementsAreArray(model.tangents));
+    EXPECT_EQ(back.more_texture_coordinates, model.more_texture_coordinates);
+    EXPECT_THAT(back.colours, ElementsAreArray(model.colours));
   }
 }
 

@@ -49,6 +49,20 @@ TEST(DrawnBody, WithoutMaterialsIsOneSurface) {
   }
 }
 
+// Painted characters would be drawn in one colour.
+TEST(DrawnBody, VertexColoursMultiplyTheMaterial) {
+  Model painted = *two_parts();
+  painted.colours = {Vec4f(1, 1, 1, 1), Vec4f(0.5F, 1, 0, 1), Vec4f(0, 0, 0, 1), Vec4f(0, 0, 1, 1)};
+  const auto model = std::make_shared<const Model>(painted);
+  const auto plain = drawn(model, {});
+  ASSERT_EQ(plain.size(), 2u);
+  EXPECT_EQ(plain[0].colours, (std::vector{render::colour(0xFFFFFF), render::colour(0xBCFF00),
+                                           render::colour(0x000000)}));
+  const auto surfaces = drawn(model, {material("Red", Vec4f(1, 0, 0, 1))});
+  EXPECT_EQ(surfaces[0].colours, (std::vector{render::colour(0xFF0000), render::colour(0xBC0000),
+                                              render::colour(0x000000)}));
+}
+
 TEST(DrawnBody, EachPartHasItsColourAndItsOwnVertices) {
   const auto model = two_parts();
   // Half of the light is 188 of 255 on a screen (sRGB).

@@ -116,9 +116,11 @@ export class BodyView {
   async dress(look, bytes) {
     if (!look) return;
     const { geometry } = this.mesh;
-    if (look.coordinates) {
-      geometry.setAttribute('uv', new BufferAttribute(view(bytes, Float32Array, look.coordinates), 2));
-    }
+    const add = (name, blob, size) => {
+      geometry.setAttribute(name, new BufferAttribute(view(bytes, Float32Array, blob), size));
+    };
+    look.coordinates?.forEach((set, i) => add(i ? `uv${i}` : 'uv', set, 2));
+    if (look.colours) add('color', look.colours, 4);
     for (const { first, count, material } of look.parts) geometry.addGroup(first, count, material);
     this.own = this.mesh.material = await makeMaterials(look, bytes);
     this.own.forEach((material) => this.patch(material));

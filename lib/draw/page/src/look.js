@@ -33,15 +33,22 @@ function makeTexture(image, described, colour) {
   texture.wrapT = WRAPS[described.wrapV];
   if (!described.smooth) texture.magFilter = NearestFilter;
   if (colour) texture.colorSpace = SRGBColorSpace;
+  texture.channel = described.set ?? 0;
+  if (described.transform) {
+    const [[u, v], [uOfU, vOfU], [uOfV, vOfV]] = described.transform;
+    texture.matrixAutoUpdate = false;
+    texture.matrix.set(uOfU - u, uOfV - u, u, vOfU - v, vOfV - v, v, 0, 0, 1);
+  }
   texture.needsUpdate = true;
   return texture;
 }
 
-function makeMaterial(described, textureOf) {
+function makeMaterial(described, textureOf, coloured) {
   const [red, green, blue, alpha] = described.color;
   const material = described.unlit ? new MeshBasicMaterial() : new MeshStandardMaterial();
   material.color.setRGB(red, green, blue, LinearSRGBColorSpace);
   material.map = textureOf('baseColor', true);
+  material.vertexColors = coloured;
   if (described.doubleSided) material.side = DoubleSide;
   if (described.alpha === 'blend') {
     material.transparent = true;
@@ -74,5 +81,5 @@ export async function makeMaterials(look, bytes) {
     const texture = described.textures[name];
     const image = texture ? images[texture.picture] : null;
     return image ? makeTexture(image, texture, colour) : null;
-  }));
+  }, Boolean(look.colours)));
 }
