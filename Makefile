@@ -16,11 +16,12 @@ TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3
 LINT_PACKAGES := clang-tidy
 DEB_PACKAGES := debhelper dh-python python3-all fakeroot lintian
 FUZZ_PACKAGES := afl++
+CLUSTER_PACKAGES := snakemake slurm-wlm munge
 
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'
 
 .DEFAULT_GOAL := all
-.PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench \
+.PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench cluster-test \
   fuzz golden format format-check lint lint-changed headers install deb clean
 
 help:
@@ -35,6 +36,7 @@ help:
 	@echo "make tsan      the tests under ThreadSanitizer"
 	@echo "make fuzz      every reader and many operations under AFL++; MINUTES=60 for all together, of each"
 	@echo "               core; TARGETS='bvh operations' for some of them"
+	@echo "make cluster-test  samples/cluster with Slurm, 50 times killed; installs Snakemake and Slurm"
 	@echo "make bench     benchmarks, as ratios against a reference in the same run"
 	@echo "make golden    write golden files that are missing and renew the generated pages; with FORCE=1"
 	@echo "               replace golden files that differ, too: review them as a diff"
@@ -123,6 +125,10 @@ fuzz: test-deps
 	cmake --preset fuzz $(CMAKE_FLAGS)
 	cmake --build --preset fuzz -j $(JOBS)
 	python3 tests/guided/fuzz.py build-fuzz/tests/krok_targets --minutes $(MINUTES) --jobs $(JOBS) $(TARGETS)
+
+cluster-test: test-build
+	$(call install-missing,$(CLUSTER_PACKAGES))
+	python3 tests/cluster/cluster_test.py $(BUILD)/bin $(BUILD)/samples/make-walk . --kills 50 --captures 200
 
 bench: CMAKE_FLAGS += -DKROK_BUILD_TESTS=ON -DKROK_BUILD_BENCHMARKS=ON
 bench: test-deps all

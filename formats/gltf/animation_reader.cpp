@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
+#include "core/numbers.h"
 #include "formats/gltf/reader_words_internal.h"
 
 namespace krok::gltf {
@@ -16,13 +19,21 @@ class Reader {
 
   Status read_channel(const tinygltf::Animation& source, std::size_t index, std::size_t channel,
                       Animation& animation);
+  void report_repeated();
 
  private:
   Status read_keys(const tinygltf::AnimationSampler& sampler, const std::string& name,
                    Channel& channel);
 
+  void keep_last_of_each_time(const tinygltf::AnimationSampler& sampler, Channel& channel,
+                              std::size_t repeated);
+
   Accessors& accessors_;
   Scene& scene_;
+  // What is left of accessors: of times, and of values by those and their own.
+  std::map<int, Shared<float>> times_;
+  std::map<std::pair<int, int>, Shared<float>> values_;
+  std::size_t repeated_ = 0;
 };
 
 Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index,
@@ -100,10 +111,14 @@ Status Reader::read_keys(const tinygltf::AnimationSampler& sampler, const std::s
   channel.times = std::move(*times);
   const std::vector<float>& keys = *channel.times;
   if (keys.empty()) return Error("gltf-animation", fmt::format("{} has no keys", name));
+  std::size_t repeated = 0;
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    if (keys[k] >= 0 && (k == 0 || keys[k] > keys[k - 1])) continue;
+    if (keys[k] >= 0 && (k == 0 || keys[k] >= keys[k - 1])) {
+      repeated += k > 0 && keys[k] == keys[k - 1] ? 1 : 0;
+      continue;
+    }
     return Error("gltf-animation",
-                 fmt::format("{}: the time of key {} is not after the previous one", name, k),
+                 fmt::format("{}: the time of key {} is before the previous one", name, k),
                  "key times must be positive and increasing");
   }
   const int components = channel.path == Path::weights ? 1 : channel.width;
@@ -116,7 +131,44 @@ Status Reader::read_keys(const tinygltf::AnimationSampler& sampler, const std::s
     return Error("gltf-animation", fmt::format("{} has {} numbers for {} keys, expected {}", name,
                                                channel.values->size(), keys.size(), expected));
   }
+  if (repeated > 0) keep_last_of_each_time(sampler, channel, repeated);
   return {};
+}
+
+// Some exporters write the last key of a segment and the first of the next at one time, which the
+// specification forbids. Channels that share accessors share what is left of them.
+void Reader::keep_last_of_each_time(const tinygltf::AnimationSampler& sampler, Channel& channel,
+                                    std::size_t repeated) {
+  const std::vector<float>& keys = *channel.times;
+  const auto is_last = [&](std::size_t k) { return k + 1 == keys.size() || keys[k + 1] > keys[k]; };
+  Shared<float>& times = times_[sampler.input];
+  if (times == nullptr) {
+    std::vector<float> kept;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      if (is_last(k)) kept.push_back(keys[k]);
+    }
+    times = std::make_shared<const std::vector<float>>(std::move(kept));
+    repeated_ += repeated;
+  }
+  Shared<float>& values = values_[{sampler.input, sampler.output}];
+  if (values == nullptr) {
+    const std::size_t each = channel.values->size() / keys.size();
+    std::vector<float> kept;
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const auto first = channel.values->begin() + static_cast<std::ptrdiff_t>(k * each);
+      if (is_last(k)) kept.insert(kept.end(), first, first + static_cast<std::ptrdiff_t>(each));
+    }
+    values = std::make_shared<const std::vector<float>>(std::move(kept));
+  }
+  channel.times = times;
+  channel.values = values;
+}
+
+void Reader::report_repeated() {
+  if (repeated_ == 0) return;
+  warn(scene_.diagnostics, "gltf-animation-times",
+       fmt::format("{} of animations at the time of the key before: the later ones are kept",
+                   counted(static_cast<long long>(repeated_), "key")));
 }
 
 }  // namespace
@@ -130,6 +182,7 @@ Status read_animations(const tinygltf::Model& model, Accessors& accessors, Scene
       if (auto read = reader.read_channel(model.animations[i], i, c, animation); !read) return read;
     }
   }
+  reader.report_repeated();
   return {};
 }
 

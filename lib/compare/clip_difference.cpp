@@ -51,12 +51,36 @@ void compare_frames(const Clip& first, const Clip& second, const Pairs& joints,
   }
 }
 
+void compare_stretches(const Clip& first, const Clip& second, std::span<const Stretch> a,
+                       std::span<const Stretch> b, const Pairs& joints, const FrameMatch& frames,
+                       ClipDifference& result) {
+  if (a.empty() && b.empty()) return;
+  const auto of = [](const Clip& clip, std::span<const Stretch> all, int frame, int joint) {
+    if (all.empty()) return Stretch();
+    return all[static_cast<std::size_t>(frame) * static_cast<std::size_t>(clip.joint_count()) +
+               static_cast<std::size_t>(joint)];
+  };
+  for (const auto& [frame_a, frame_b] : frames.frames) {
+    for (const auto& [joint_a, joint_b] : joints) {
+      const Stretch one = of(first, a, frame_a, joint_a), other = of(second, b, frame_b, joint_b);
+      if (one == Stretch() && other == Stretch()) continue;
+      result.stretches.add((one.matrix() - other.matrix()).norm(),
+                           {.joint = joint_a, .frame = frame_a, .time = frame_a / first.rate});
+    }
+  }
+}
+
 }  // namespace
 
 Result<ClipDifference> difference(const Clip& first, const Clip& second, const Tolerance& tolerance,
-                                  Matching matching) {
+                                  Matching matching, std::span<const Stretch> first_stretches,
+                                  std::span<const Stretch> second_stretches) {
   if (auto ok = check(first); !ok) return of_which(ok.error(), "the first clip");
   if (auto ok = check(second); !ok) return of_which(ok.error(), "the second clip");
+  if (auto ok = check(first_stretches, first); !ok) return of_which(ok.error(), "the first clip");
+  if (auto ok = check(second_stretches, second); !ok) {
+    return of_which(ok.error(), "the second clip");
+  }
 
   ClipDifference result;
   result.reference_positions = result.positions = Measure(tolerance.of_joint_positions());
@@ -78,6 +102,8 @@ Result<ClipDifference> difference(const Clip& first, const Clip& second, const T
                           frames.differences.end());
   result.compared_frames = static_cast<int>(frames.frames.size());
   compare_frames(first, second, joints, frames, result);
+  result.stretches = Measure(tolerance.ratio);
+  compare_stretches(first, second, first_stretches, second_stretches, joints, frames, result);
   return result;
 }
 

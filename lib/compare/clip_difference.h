@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "compare/measure.h"
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/stretch.h"
 
 namespace krok::compare {
 
@@ -22,11 +24,14 @@ struct ClipDifference {
 
   Measure reference_positions, reference_orientations;  // metres, radians
   Measure positions, orientations;
+  // Of joints that are stretched in one of the clips: the Frobenius norm of what Stretch::matrix()
+  // differs by, 0.1 where one axis is 10 % longer; tolerance `ratio`.
+  Measure stretches;
   std::vector<JointDifference> joints;  // over the frames that were compared
 
   bool same() const {
     return structure.empty() && reference_positions.within() && reference_orientations.within() &&
-           positions.within() && orientations.within();
+           positions.within() && orientations.within() && stretches.within();
   }
 };
 
@@ -36,7 +41,11 @@ struct ClipDifference {
 // Joints are matched by name, or by index if names repeat. Matching::order always matches by index;
 // Matching::name compares the joints that both have even if others are missing; Matching::nearest
 // is the same as Matching::automatic.
+//
+// Stretches are [frames x joints] of their clip, or none for rigid joints.
 Result<ClipDifference> difference(const Clip& first, const Clip& second, const Tolerance& tolerance,
-                                  Matching matching = Matching::automatic);
+                                  Matching matching = Matching::automatic,
+                                  std::span<const Stretch> first_stretches = {},
+                                  std::span<const Stretch> second_stretches = {});
 
 }  // namespace krok::compare

@@ -189,7 +189,8 @@ class Camera:
 @dataclass
 class Model:
     """A skinned mesh (.model): `positions`, `normals` (vertices, 3), `texture_coordinates` (vertices, 2),
-    `tangents` (vertices, 4), `colours` (vertices, 4), linear, `more_texture_coordinates` (sets, vertices, 2), `joints` and `weights` (vertices, influences), `triangles` (triangles, 3)."""
+    `tangents` (vertices, 4), `joints` and `weights` (vertices, influences), `triangles` (triangles, 3), `colours`
+    (vertices, 4), linear, `more_texture_coordinates` (sets, vertices, 2)."""
     skeleton: Skeleton
     positions: np.ndarray
     normals: np.ndarray | None
@@ -335,7 +336,8 @@ def _read_camera(file: _Container) -> Camera:
 # Arrays of a model: section, attribute, type and columns (0: influences); those of _OPTIONAL may be absent.
 _MESH = (("POSITION", "positions", "<f4", 3), ("NORMAL", "normals", "<f4", 3),
          ("TEXCOORD", "texture_coordinates", "<f4", 2), ("TANGENT", "tangents", "<f4", 4),
-         ("COLOUR", "colours", "<f4", 4),         ("VJOINTS", "joints", "<u2", 0), ("VWEIGHTS", "weights", "<f4", 0), ("TRIANGLE", "triangles", "<u4", 3))
+         ("COLOUR", "colours", "<f4", 4), ("VJOINTS", "joints", "<u2", 0), ("VWEIGHTS", "weights", "<f4", 0),
+         ("TRIANGLE", "triangles", "<u4", 3))
 _OPTIONAL = ("NORMAL", "TEXCOORD", "TANGENT", "COLOUR")
 
 

@@ -29,7 +29,9 @@ ENDINGS = {"bvh": [".bvh"], "acclaim_skeleton": [".asf"], "acclaim_motion": [".a
            "import_scene": [".glb", ".gltf"], "image": [".png", ".jpg"], "exr": [".exr"], "zip": [".zip"]}
 EXAMPLE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 MOST_SEED = 20_000
+# Instrumented code is some 30 times slower. An operation is several tools, which may make a body.
 SECONDS_TO_HANG = 10
+SECONDS_TO_HANG_IN = {"operations": 60}
 NUMBERS = ["-1", "1e308", "1e-308", "5e-324", "1e30", "NaN", "Infinity", "2147483648", "4294967295",
            "18446744073709551615", "0.001", "-0", "\\u001b", "1e999"]
 
@@ -119,10 +121,11 @@ def fuzz(program, target, seconds, out, seed_source):
             shutil.copy(path, seeds / f"earlier_{number}")
     write_dictionary(target, seeds, work / "dictionary")
     temporary = tempfile.mkdtemp(prefix="krok-fuzz-", dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
+    hang = 1000 * SECONDS_TO_HANG_IN.get(target, SECONDS_TO_HANG)
     environment = dict(os.environ, AFL_NO_UI="1", AFL_SKIP_CPUFREQ="1", AFL_NO_AFFINITY="1",
                        AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES="1", AFL_FAST_CAL="1",
                        AFL_IGNORE_PROBLEMS="1", AFL_IGNORE_SEED_PROBLEMS="1",
-                       AFL_HANG_TMOUT=str(1000 * SECONDS_TO_HANG), TMPDIR=temporary,
+                       AFL_HANG_TMOUT=str(hang), TMPDIR=temporary,
                        ASAN_OPTIONS="abort_on_error=1:symbolize=0:detect_leaks=0:"
                                     "allocator_may_return_null=0:hard_rss_limit_mb=2048:"
                                     "max_allocation_size_mb=1024",
@@ -130,7 +133,7 @@ def fuzz(program, target, seconds, out, seed_source):
     log = work / "log"
     with open(log, "wb") as stream:
         subprocess.run(["afl-fuzz", "-i", str(seeds), "-o", str(work / "afl"), "-V", str(seconds),
-                        "-m", "none", "-c", "0", "-t", str(1000 * SECONDS_TO_HANG), "-x", str(work / "dictionary"),
+                        "-m", "none", "-c", "0", "-t", str(hang), "-x", str(work / "dictionary"),
                         "--", str(program), target],
                        env=environment, stdout=stream, stderr=subprocess.STDOUT, check=False)
     shutil.rmtree(temporary, ignore_errors=True)

@@ -13,11 +13,13 @@ namespace krok::cli::diff {
 
 Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
                                 const Options& options, ToolContext& context) {
-  auto clips = read_both<Clip>(
-      first, second, [&](const InputFile& file) { return io::open_motion(file, context); });
+  std::vector<Stretches> stretches;
+  auto clips = read_both<Clip>(first, second, [&](const InputFile& file) {
+    return io::open_motion(file, context, {.stretches = &stretches.emplace_back()});
+  });
   if (!clips) return clips.error();
-  const auto found =
-      compare::difference(clips->first, clips->second, options.tolerance, options.matching);
+  const auto found = compare::difference(clips->first, clips->second, options.tolerance,
+                                         options.matching, stretches[0], stretches[1]);
   if (!found) return found.error();
   Outcome outcome;
   const Status status = draw(
@@ -40,6 +42,7 @@ Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
   outcome.add_row("reference orientations", Unit::angle, found->reference_orientations);
   outcome.add_row("positions", Unit::length, found->positions);
   outcome.add_row("orientations", Unit::angle, found->orientations);
+  outcome.add_row("stretches", Unit::ratio, found->stretches);
   outcome.add_joints(found->joints);
   outcome.same = found->same();
   return outcome;

@@ -129,6 +129,27 @@ TEST(ClipDifference, ComparesTheFramesThatBothHave) {
   EXPECT_TRUE(compare(make_clip(0), make_clip(0)).same());
 }
 
+// A squashed ball would pass for a round one. Rigid joints have none to compare.
+TEST(ClipDifference, StretchesAreCompared) {
+  const Clip clip = make_clip();
+  Stretches first(clip.positions.size());
+  first[3 * 7 + 2] = {1.5f, 1, 1, 0, 0, 0};
+  Stretches second = first;
+  second[3 * 7 + 2].xx = 1.4f;
+  const auto same = *difference(clip, clip, {}, Matching::automatic, first, first);
+  EXPECT_TRUE(same.same());
+  EXPECT_EQ(same.stretches.count, 1);
+  const auto other = *difference(clip, clip, {}, Matching::automatic, first, second);
+  EXPECT_FALSE(other.same());
+  EXPECT_NEAR(other.stretches.largest, 0.1, 1e-6);
+  EXPECT_EQ(other.stretches.where.joint, 2);
+  EXPECT_EQ(other.stretches.where.frame, 7);
+  const auto rigid = *difference(clip, clip, {}, Matching::automatic, {}, first);
+  EXPECT_NEAR(rigid.stretches.largest, 0.5, 1e-6);
+  EXPECT_EQ(difference(clip, clip, {}, Matching::automatic, std::span(first).first(3)).error().code,
+            "stretch-shape");
+}
+
 TEST(ClipDifference, ValuesThatAreNotNumbersAreTrouble) {
   Clip bad = make_clip();
   bad.frame_positions(3)[0].y() = std::numeric_limits<float>::quiet_NaN();

@@ -34,6 +34,32 @@ std::vector<float> square_displacements() {
   return {0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0};
 }
 
+// A well-known sample has the last key of a segment and the first of the next at one time: it would
+// be refused.
+TEST(GltfReader, OfKeysAtOneTimeTheLastIsKept) {
+  GlbBuilder builder = test::rig();
+  auto& animation = builder.json["animations"][0];
+  const int times = builder.add(std::vector<float>{0, 0.5f, 0.5f, 0.5f, 1, 1}, "SCALAR");
+  std::vector<float> places;
+  for (int k = 0; k < 6; ++k) places.insert(places.end(), {static_cast<float>(k), 0, 0});
+  for (const int node : {1, 2}) {
+    animation["channels"].push_back({{"sampler", animation["samplers"].size()},
+                                     {"target", {{"node", node}, {"path", "translation"}}}});
+    animation["samplers"].push_back({{"input", times}, {"output", builder.add(places, "VEC3")}});
+  }
+  const nodes::Scene asset = read_good(builder);
+  ASSERT_EQ(asset.animations.at(0).channels.size(), 3u);
+  for (const std::size_t c : {1u, 2u}) {
+    const nodes::Channel& channel = asset.animations[0].channels[c];
+    EXPECT_THAT(*channel.times, ElementsAre(0, 0.5f, 1));
+    EXPECT_THAT(*channel.values, ElementsAre(0, 0, 0, 3, 0, 0, 5, 0, 0));
+  }
+  EXPECT_EQ(asset.animations[0].channels[1].times, asset.animations[0].channels[2].times);
+  ASSERT_EQ(asset.diagnostics.size(), 1u);
+  EXPECT_EQ(asset.diagnostics[0].message,
+            "3 keys of animations at the time of the key before: the later ones are kept");
+}
+
 TEST(GltfReader, ReadsARig) {
   const nodes::Scene asset = read_good(test::rig());
   ASSERT_EQ(asset.nodes.size(), 3u);
