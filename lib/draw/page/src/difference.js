@@ -81,7 +81,7 @@ export class Difference {
   // For the time line.
   curve() {
     return {
-      name: 'Difference', unit: 'mm', colour: '#8f1237', rate: this.rate,
+      name: 'Difference', unit: 'mm', floor: 0, colour: '#8f1237', rate: this.rate,
       values: this.values.map((metres) => metres * 1000),
     };
   }

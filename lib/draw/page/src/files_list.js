@@ -5,6 +5,17 @@ const ROW = 40; // pixels
 const FILTERED = 8; // files from which on there is a filter
 const BEYOND = 4; // rows made above and below those in view
 
+// A long name in two, of which the front is cut where there is no place: takes of a session differ at
+// their ends.
+function parted(name) {
+  if (name.length < 24) return [name];
+  return [name.slice(0, -12), name.slice(-12)].map((part) => {
+    const span = document.createElement('span');
+    span.textContent = part;
+    return span;
+  });
+}
+
 export class FilesList {
   // `show(items)`: shows exactly these, and calls refresh(); `choose(made, clip)`: plays another clip.
   constructor(root, player, { show, choose }) {
@@ -81,7 +92,7 @@ export class FilesList {
     name.className = 'name';
     name.title = `${made.name}: show only this file; again: as before`;
     const words = document.createElement('span');
-    words.textContent = made.name;
+    words.append(...parted(made.name));
     const facts = document.createElement('span');
     facts.className = 'facts';
     facts.textContent = made.item.facts ?? '';

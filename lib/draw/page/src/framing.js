@@ -49,7 +49,7 @@ export class Framing {
     for (const { actor } of actors) {
       whole.union(actor.extents.whole.clone().translate(actor.group.position));
     }
-    const now = player.room();
+    const now = player.bounds();
     for (const { actor } of actors) actor.update(player.time);
     stage.frame(whole, from);
     const far = stage.distance;

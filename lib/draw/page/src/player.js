@@ -20,7 +20,7 @@ export class Player {
       skeleton: true, body: true, apart: false, difference: false, follow: false, goals: true, prints: true,
       wireframe: false,
     };
-    this.before = null; // the room that the followed characters took
+    this.before = null; // the bounds of the followed characters at the last moment
     this.watchers = [];
   }
 
@@ -144,8 +144,8 @@ export class Player {
     for (const watch of this.watchers) watch();
   }
 
-  // The room that the followed characters take, wherever their limbs are.
-  room() {
+  // The bounds of the followed characters, wherever their limbs are.
+  bounds() {
     const box = new Box3();
     for (const { actor } of this.followed()) {
       const root = actor.smoothRootAt(this.time).add(actor.group.position);
@@ -154,14 +154,14 @@ export class Player {
     return box;
   }
 
-  // Moves the camera with them, and away or nearer as they take more or less room.
+  // Moves the camera with them, and away or nearer as their bounds grow or shrink.
   followActors() {
     if (!this.shown.follow || this.stage.flown || this.actors().length === 0) {
       this.before = null;
       return;
     }
-    const room = this.room();
-    if (this.before) this.stage.follow(this.before, room);
-    this.before = room;
+    const bounds = this.bounds();
+    if (this.before) this.stage.follow(this.before, bounds);
+    this.before = bounds;
   }
 }

@@ -152,7 +152,7 @@ export class Stage {
     this.sun.shadow.camera.updateProjectionMatrix();
   }
 
-  // Moves camera and light with characters that took the room `before` and take `now`, and the camera
+  // Moves camera and light with characters whose bounds were `before` and are `now`, and the camera
   // as much farther as that needs.
   follow(before, now) {
     const { target } = this.controls;

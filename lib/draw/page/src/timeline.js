@@ -22,6 +22,7 @@ export class Timeline {
     this.marks = [];
     this.curves = [];
     this.view = [0, 1];
+    this.width = 0; // kept, as asking for it makes the browser lay the page out
     this.listen();
     new ResizeObserver(() => this.draw()).observe(root);
   }
@@ -46,10 +47,6 @@ export class Timeline {
     const { width } = this;
     if (this.lanes.length + this.curves.length === 0) return EDGE;
     return width < 600 ? 64 : NAMES;
-  }
-
-  get width() {
-    return this.root.clientWidth;
   }
 
   placeOf(time) {
@@ -111,6 +108,7 @@ export class Timeline {
   }
 
   draw() {
+    this.width = this.root.clientWidth;
     if (this.width === 0 || !(this.duration > 0)) return;
     const style = getComputedStyle(this.root);
     const colour = (name) => style.getPropertyValue(name).trim();
@@ -207,11 +205,11 @@ export class Timeline {
     this.drawNames(pen);
   }
 
-  drawCurve(pen, { values, rate, colour }, top) {
+  drawCurve(pen, { values, rate, colour, floor }, top) {
     const { line } = this.colours;
     pen.fillStyle = line;
     pen.fillRect(0, top, this.width, 1);
-    const [low, high] = rangeOf(values);
+    const [low, high] = rangeOf(values, floor);
     const y = (value) => top + CURVE - 5 - ((value - low) / Math.max(high - low, 1e-9)) * (CURVE - 11);
     const first = Math.max(0, Math.floor(this.view[0] * rate) - 1);
     const last = Math.min(values.length - 1, Math.ceil(this.view[1] * rate) + 1);
@@ -239,7 +237,7 @@ export class Timeline {
       pen.lineTo(x + 8, 5.5);
       pen.lineTo(x, 9);
       pen.fill();
-      // The name, where it has room before the next flag.
+      // The name, where it fits before the next flag.
       if (x + 14 + pen.measureText(name).width < next) pen.fillText(name, x + 10, 7);
     });
   }
@@ -256,10 +254,10 @@ export class Timeline {
 
   drawNames(pen) {
     const { ink, soft } = this.colours;
-    const room = this.left - 8;
+    const wide = this.left - 8;
     const put = (text, y, colour) => {
       pen.fillStyle = colour;
-      pen.fillText(shortened(pen, text, room), 2, y);
+      pen.fillText(shortened(pen, text, wide), 2, y);
     };
     let top = this.marks.length > 0 ? FLAGS : 0;
     if (top > 0 && this.left > EDGE) put('Events', top / 2, soft);
@@ -267,8 +265,8 @@ export class Timeline {
       put(name, top + LANE / 2 + 0.5, ink);
       top += LANE;
     }
-    for (const { name, unit, values } of this.curves) {
-      const [low, high] = rangeOf(values);
+    for (const { name, unit, values, floor } of this.curves) {
+      const [low, high] = rangeOf(values, floor);
       put(name, top + 11, ink);
       put(`${text(low)} to ${text(high)} ${unit}`, top + 27, soft);
       top += CURVE;
@@ -351,6 +349,11 @@ export class Timeline {
         words = `${curve.name}: ${text(value)} ${curve.unit} at ${time.toFixed(3)} s`;
       }
     }
+    if (event.target === this.canvas && x < this.left) {
+      const lane = this.lanes[Math.floor((y - flags) / LANE)];
+      const curve = this.curves[Math.floor((y - flags - this.lanes.length * LANE) / CURVE)];
+      words = y < flags ? '' : (lane ?? curve)?.name ?? '';
+    }
     tip.hidden = words === '';
     tip.textContent = words;
     tip.style.left = `${Math.min(x + 8, this.width - 160)}px`;
@@ -358,8 +361,9 @@ export class Timeline {
   }
 }
 
-function rangeOf(values) {
-  let low = Infinity;
+// With a floor, such as 0 of a distance, from there on.
+function rangeOf(values, floor = Infinity) {
+  let low = floor;
   let high = -Infinity;
   for (const value of values) {
     low = Math.min(low, value);
@@ -370,9 +374,13 @@ function rangeOf(values) {
 
 const text = (value) => (Math.abs(value) >= 100 ? value.toFixed(0) : Math.abs(value) >= 10 ? value.toFixed(1) : value.toFixed(2));
 
-function shortened(pen, words, room) {
-  if (pen.measureText(words).width <= room) return words;
-  let kept = words;
-  while (kept.length > 1 && pen.measureText(`${kept}…`).width > room) kept = kept.slice(0, -1);
-  return `${kept}…`;
+// Names of a batch often differ at their ends: what does not fit is left out in the middle.
+function shortened(pen, words, wide) {
+  if (pen.measureText(words).width <= wide) return words;
+  for (let kept = words.length - 1; kept > 1; --kept) {
+    const front = Math.ceil(kept / 2);
+    const short = `${words.slice(0, front)}…${words.slice(words.length - (kept - front))}`;
+    if (pen.measureText(short).width <= wide) return short;
+  }
+  return '…';
 }
