@@ -17,3 +17,4 @@ fi
 for tool in "$scratch"/prefix/bin/krok*; do
   "$tool" --version
 done
+"$(dirname "$0")/complete.sh" "$scratch/prefix"
