@@ -21,8 +21,8 @@ CLUSTER_PACKAGES := snakemake slurm-wlm munge
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'
 
 .DEFAULT_GOAL := all
-.PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench cluster-test \
-  fuzz golden format format-check lint lint-changed headers install deb clean
+.PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench \
+  cluster-test fuzz golden format format-check lint lint-changed headers install deb tarball clean
 
 help:
 	@echo "make demo                   build, then capture -> animated glTF on the samples, see out/demo"
@@ -44,6 +44,7 @@ help:
 	@echo "make lint      clang-tidy, and each public header by itself; FILES='a.cpp b.cpp' for some sources"
 	@echo "make install   install tools, library and headers (PREFIX=/usr/local, DESTDIR=)"
 	@echo "make deb       Debian packages krok, libkrok-dev, python3-krok in build-deb"
+	@echo "make tarball   the tools with the libraries they need, for any x86-64 Linux, in build-tarball"
 	@echo "make clean     remove the build folders"
 
 # install-missing PACKAGES: apt-get only for what is not there, so that no network and no root are
@@ -182,5 +183,10 @@ deb: deps
 	cd build-deb/krok && dpkg-buildpackage -b -us -uc -d -j$(JOBS)
 	lintian --pedantic --fail-on error,warning build-deb/*.changes
 
+tarball: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF
+tarball: all
+	$(call install-missing,patchelf)
+	packaging/tarball.sh $(BUILD) build-tarball
+
 clean:
-	rm -rf $(BUILD) build build-asan build-tsan build-debug build-lint build-deb out
+	rm -rf $(BUILD) build build-asan build-tsan build-debug build-lint build-deb build-tarball out
