@@ -87,7 +87,7 @@ ALLOWED = {
 }
 TOP = {
     "CMakeLists.txt", "CMakePresets.json", "Makefile", "README.md", "LICENSE", "CHANGELOG.md", "CONTRIBUTING.md",
-    "tools", "lib", "formats", "tests", "samples", "docs", "packaging", "python",
+    "action.yml", "tools", "lib", "formats", "tests", "samples", "docs", "packaging", "python",
 }
 # Below tools/: the frame of a command line knows nothing of batches, neither knows what tools share.
 SHARED_BY_TOOLS = {"tools/cli", "tools/batch", "tools/shared"}
