@@ -53,7 +53,8 @@ Status write_wide(const SeriesTable& table, OutputFile& file) {
   std::string text = "frame,time";
   for (const std::string& item : table.items) {
     for (const std::string& quantity : table.quantities) {
-      (text += ',') += field(table.quantities.size() == 1 ? item : item + "." + quantity);
+      text += ',';
+      text += field(table.quantities.size() == 1 ? item : fmt::format("{}.{}", item, quantity));
     }
   }
   text += '\n';

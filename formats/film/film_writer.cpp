@@ -21,8 +21,8 @@ std::vector<std::string> encoder_of(Kind kind) {
   switch (kind) {
     case Kind::mp4:
       return {"-vf",
-              "scale=in_range=full:out_range=limited:out_color_matrix=bt709:flags=accurate_rnd+"
-              "full_chroma_int,format=yuv420p",
+              ("scale=in_range=full:out_range=limited:out_color_matrix=bt709:flags=accurate_rnd+"
+               "full_chroma_int,format=yuv420p"),
               "-c:v",
               "libx264",
               "-preset",
@@ -43,8 +43,8 @@ std::vector<std::string> encoder_of(Kind kind) {
               "mp4"};
     case Kind::gif:
       return {"-filter_complex",
-              "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:"
-              "bayer_scale=4:diff_mode=rectangle",
+              ("split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse=dither=bayer:"
+               "bayer_scale=4:diff_mode=rectangle"),
               "-loop",
               "0",
               "-f",

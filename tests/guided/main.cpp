@@ -1,3 +1,6 @@
+#include <sys/prctl.h>
+
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -64,6 +67,7 @@ static int run_under_afl(const Target& target) {
   (void)*deferred;
   __afl_sharedmem_fuzzing = 1;
   __afl_manual_init();
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // afl-fuzz may leave this process stopped behind
   while (__afl_persistent_loop(5000) != 0) run_exact(target, __afl_fuzz_ptr, *__afl_fuzz_len);
   return 0;
 }

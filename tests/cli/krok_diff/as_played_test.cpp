@@ -276,7 +276,7 @@ TEST_F(KrokDiffAsPlayed, NodesThatMirrorLaterAreFound) {
   EXPECT_THAT(found.out, HasSubstr("turned inside out in only one of the two at 1 s"));
 }
 
-GlbBuilder coloured(std::vector<float> colours) {
+GlbBuilder coloured(const std::vector<float>& colours) {
   GlbBuilder builder = square();
   primitive_of(builder)["attributes"]["COLOR_0"] = builder.add(colours, "VEC4");
   return builder;
@@ -312,7 +312,7 @@ TEST_F(KrokDiffAsPlayed, VertexColoursCountWithMaterials) {
 
 // A square with one material that has a texture; `change` alters the material.
 GlbBuilder textured(const std::function<void(Json&)>& change,
-                    std::vector<float> coordinates = {0, 0, 1, 0, 1, 1, 0, 1}) {
+                    const std::vector<float>& coordinates = {0, 0, 1, 0, 1, 1, 0, 1}) {
   GlbBuilder builder = square();
   const int accessor = builder.add(coordinates, "VEC2");
   primitive_of(builder)["attributes"]["TEXCOORD_0"] = accessor;

@@ -218,7 +218,7 @@ TEST(GltfFaults, ValuesThatAreNotFiniteAreErrors) {
 TEST(GltfFaults, KeyTimesMustRise) {
   GlbBuilder builder = test::rig();
   builder.json["animations"][0]["samplers"][0]["input"] =
-      builder.add(std::vector<float>{0, 0.5f, 0.5f}, "SCALAR");
+      builder.add(std::vector<float>{0, 0.5f, 0.25f}, "SCALAR");
   const auto asset = gltf::read(builder.glb());
   ASSERT_FALSE(asset.ok());
   EXPECT_EQ(asset.error().code, "gltf-animation");
