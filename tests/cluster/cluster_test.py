@@ -24,6 +24,7 @@ import tempfile
 import time
 
 MINUTES_OF_A_ROUND = 10
+SECONDS_TO_REGISTER = 15  # more than BatchStartTimeout
 PROGRAMS = ("snakemake", "munged", "slurmctld", "slurmd", "sbatch", "unshare")
 NAMESPACES = ["unshare", "--net", "--pid", "--uts", "--mount-proc", "--fork", "--kill-child"]
 
@@ -175,6 +176,16 @@ class Slurm:
             with open(f"{self.root}/{name}.out") as log:
                 fail(f"{name} ended\n{log.read()[-2000:]}")
 
+    def register(self):
+        """A killed controller comes back with its last saved state, in which jobs that have ended since
+        still run. It drops them when their node registers, which it else does rarely.
+        A job that it could not launch, it holds."""
+        subprocess.run(["scontrol", "reconfigure"], stderr=subprocess.DEVNULL)
+        jobs = subprocess.run(["squeue", "-h", "-t", "PENDING", "-o", "%A %r"], capture_output=True, text=True).stdout
+        for job, reason in (line.split(" ", 1) for line in jobs.splitlines()):
+            if "held" in reason.lower():
+                subprocess.run(["scontrol", "release", job], stderr=subprocess.DEVNULL)
+
     def resume(self):
         """What an administrator does with a node that Slurm took out of use after a crash."""
         node = subprocess.run(["sinfo", "-h", "-o", "%T"], capture_output=True, text=True).stdout.strip()
@@ -220,7 +231,7 @@ def check_kills(given, root, expected):
         attempts = 0
         running = workflow.start(*profile)
         pause = time.monotonic() + 2
-        looked = deadline = time.monotonic()
+        looked = registered = deadline = time.monotonic()
         while True:
             status = running.poll()
             if status == 0:
@@ -240,6 +251,9 @@ def check_kills(given, root, expected):
             if now > looked + 2:
                 slurm.resume()
                 looked = now
+            if now > registered + SECONDS_TO_REGISTER:
+                slurm.register()
+                registered = now
             if left <= 0 or time.monotonic() < pause:
                 continue
             kind = random.choice(["tool", "tool", "job", "slurmctld", "slurmd", "workflow"])
