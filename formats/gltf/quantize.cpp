@@ -19,6 +19,11 @@ using Use = Document::Use;
 
 constexpr double kShorts = 65535;
 
+// Positions are signed and normalized: -kMiddle to kMiddle are -1 to 1, with zero in the box's
+// middle. As whole numbers, a skin's inverse bind matrices would have scales of about 1e-5, which
+// Blender 3.4 inverts with errors of up to 15 mm.
+constexpr int kMiddle = 32767;
+
 // Steps that the weights of a vertex sum to.
 int weight_steps(const Quantization& quantization) {
   if (quantization.weight_bits == 8) return 255;
@@ -50,7 +55,7 @@ std::array<std::uint16_t, 3> steps_of(const Vec3f& position, const PositionGrid&
   for (int c = 0; c < 3; ++c) {
     const double place = (static_cast<double>(position[c]) - grid.corner[c]) / grid.step;
     steps[static_cast<std::size_t>(c)] =
-        static_cast<std::uint16_t>(std::clamp(std::round(place), 0.0, kShorts));
+        static_cast<std::uint16_t>(std::clamp(std::round(place), 0.0, 2.0 * kMiddle));
   }
   return steps;
 }
@@ -84,18 +89,17 @@ void set_bounds(tinygltf::Accessor& accessor, std::span<const std::array<double,
   }
 }
 
-// Whole numbers, three to a vertex and padded to four; with bounds.
-template <typename Number>
-int add_steps(Document& document, std::span<const std::array<Number, 3>> values, int component) {
-  std::vector<Number> padded;
+// Steps of 1 / kMiddle, three to a vertex and padded to four; with bounds.
+int add_steps(Document& document, std::span<const std::array<std::int16_t, 3>> values) {
+  std::vector<std::int16_t> padded;
   std::vector<std::array<double, 3>> exact;
   for (const auto& value : values) {
     padded.insert(padded.end(), value.begin(), value.end());
     padded.push_back(0);
     exact.push_back({double(value[0]), double(value[1]), double(value[2])});
   }
-  const int accessor = document.add_strided(std::as_bytes(std::span(padded)), 4 * sizeof(Number),
-                                            component, TINYGLTF_TYPE_VEC3, false);
+  const int accessor = document.add_strided(
+      std::as_bytes(std::span(padded)), 8, TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_TYPE_VEC3, true);
   set_bounds(document.gltf.accessors[static_cast<std::size_t>(accessor)], exact);
   return accessor;
 }
@@ -265,13 +269,13 @@ PositionGrid PositionGrid::of(std::span<const Vec3f> positions, const Quantizati
   for (const Vec3f& position : positions) box.extend(position.cast<double>());
   const double longest = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
   return {box.isEmpty() ? Vec3(Vec3::Zero()) : box.min(),
-          longest > 0 ? std::max(longest / kShorts, quantization.position_step) : 1.0};
+          longest > 0 ? std::max(longest / (2.0 * kMiddle), quantization.position_step) : 1.0};
 }
 
 Mat4 PositionGrid::to_model() const {
   Mat4 result = Mat4::Identity();
-  result.topLeftCorner<3, 3>() *= step;
-  result.topRightCorner<3, 1>() = corner;
+  result.topLeftCorner<3, 3>() *= kMiddle * step;
+  result.topRightCorner<3, 1>() = corner + Vec3::Constant(kMiddle * step);
   return result;
 }
 
@@ -279,10 +283,14 @@ std::map<std::string, int> add_quantized_shape(Document& document, const Model& 
                                                const PositionGrid& grid,
                                                const Quantization& quantization) {
   std::map<std::string, int> attributes;
-  std::vector<std::array<std::uint16_t, 3>> steps;
-  for (const Vec3f& position : model.positions) steps.push_back(steps_of(position, grid));
-  attributes["POSITION"] =
-      add_steps<std::uint16_t>(document, steps, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+  std::vector<std::array<std::int16_t, 3>> steps;
+  for (const Vec3f& position : model.positions) {
+    auto& signed_steps = steps.emplace_back();
+    std::ranges::transform(steps_of(position, grid), signed_steps.begin(), [](int from_corner) {
+      return static_cast<std::int16_t>(from_corner - kMiddle);
+    });
+  }
+  attributes["POSITION"] = add_steps(document, steps);
   if (!model.normals.empty()) {
     attributes["NORMAL"] = add_directions(document, padded(unit_vectors(model.normals)),
                                           TINYGLTF_TYPE_VEC3, quantization);
@@ -314,16 +322,15 @@ std::map<std::string, int> add_quantized_target(Document& document, const Model&
       const double place = (static_cast<double>(positions[v][c]) - grid.corner[c]) / grid.step -
                            base[static_cast<std::size_t>(c)];
       const bool still = positions[v][c] == model.positions[v][c];
-      fits = fits && std::abs(place) < 32767;
-      exact[v][c] = still ? 0.0f : static_cast<float>(place);
+      fits = fits && std::abs(place) < kMiddle;
+      exact[v][c] = still ? 0.0f : static_cast<float>(place / kMiddle);
       steps[v][static_cast<std::size_t>(c)] =
           still ? std::int16_t{0}
-                : static_cast<std::int16_t>(std::clamp(std::round(place), -32767.0, 32767.0));
+                : static_cast<std::int16_t>(
+                      std::clamp(std::round(place), -double(kMiddle), double(kMiddle)));
     }
   }
-  attributes["POSITION"] =
-      fits ? add_steps<std::int16_t>(document, steps, TINYGLTF_COMPONENT_TYPE_SHORT)
-           : document.add_positions(exact);
+  attributes["POSITION"] = fits ? add_steps(document, steps) : document.add_positions(exact);
   if (morphs.normals.empty() || model.normals.empty()) return attributes;
   const auto normals = morphs.target_normals(target);
   std::vector<Vec3f> turns(normals.size());

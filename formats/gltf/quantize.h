@@ -6,7 +6,7 @@ namespace krok::gltf {
 
 // How exactly a quantized file holds vertices (WriteOptions::quantized).
 struct Quantization {
-  double position_step = 0;  // metres; or the longest side of the mesh's box / 65535, if larger
+  double position_step = 0;  // metres; or the longest side of the mesh's box / 65534, if larger
   int weight_bits = 16;      // steps of 1 / 255 (8), 1 / 65535 (16) or, if filtered, 2^-bits
   int coordinate_bits = 16;  // steps of 2^-bits if filtered, else of 1 / 65535
   bool filtered = false;     // through the filters of EXT_meshopt_compression; for compressed files

@@ -27,9 +27,7 @@ for (const argument of clips) {
   action.clampWhenFinished = true;
   action.play();
   const rows = readFileSync(path, 'utf8').trim().split('\n').slice(1).map((row) => row.split(','));
-  const frames = [...new Set(rows.map((row) => row[0]))].filter((_, i) => i % 20 === 0);
-  for (const [frame, time, joint, ...place] of rows) {
-    if (!frames.includes(frame)) continue;
+  for (const [, time, joint, ...place] of rows) {
     action.reset();
     mixer.setTime(Number(time));
     scene.root.updateMatrixWorld(true);
