@@ -217,7 +217,7 @@ class KeytimeFinder {
     if (rolls.empty() || !(first_roll > 0)) return;
     const double strike = first_roll - contacts::middle(rolls);
     if (is_cut_short(foot, strike)) return;
-    if (strike > -kFrame && strike < first_roll) {
+    if (strike > -kFrame && strike < std::min(first_roll, 3 * kFrame)) {
       strikes.insert(strikes.begin(), std::max(0.0, strike));
     }
   }

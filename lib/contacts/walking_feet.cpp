@@ -134,7 +134,7 @@ void WalkingFeet::prepare(FootSide side) {
   add_sliding(foot);
   open_ends(foot);
   for (std::size_t i = 0; i < foot.stances.size(); ++i) {
-    const double before = i == 0 ? 0 : foot.stances[i - 1].end;
+    const double before = i == 0 ? -1 : foot.stances[i - 1].end;  // -1: frame 0 is looked at, too
     const double after =
         i + 1 == foot.stances.size() ? clip_.duration() : foot.stances[i + 1].start;
     to_touches(foot, before, after, foot.stances[i]);
@@ -284,7 +284,8 @@ void WalkingFeet::to_touches(const Foot& foot, double before, double after, Stan
   stance.end = end;
   if (starts.empty()) return;
   stance.start = *std::ranges::min_element(starts);
-  if (!jittery_) return;
+  stance.open_start = stance.open_start || stance.start <= 0;
+  if (!jittery_ || stance.open_start) return;
   // The earliest of several starts that jitter scatters around one time is too early.
   std::erase_if(starts, [&](double start) { return start > stance.start + kTogether; });
   stance.start =
@@ -307,6 +308,12 @@ double WalkingFeet::touch(std::size_t t, double from, double limit, bool first) 
   };
   if (!touches(f)) return from;
   while (touches(f + step)) f += step;
+  // A foot that rolls over its heel in the first frame, and does not slow down as one that lands,
+  // has struck before.
+  const auto soon = static_cast<std::size_t>(
+      std::clamp<long>(std::lround(clip_.rate / 60), 1, clip_.frame_count() - 1));
+  const double slowing = (track.speed[0] - track.speed[soon]) * clip_.rate / double(soon);
+  if (first && f == 0 && slowing < 2 * kEndMovement * scale) return 0;
   const double seconds = jittery_ ? kJitteryWindow : kWindow;
   const double window = std::max(seconds * clip_.rate, 4.0);
   const double stiffness = jittery_ ? 0.3 : 0.1;
