@@ -41,6 +41,9 @@ Result<MotionKeys> read(std::string_view text, const std::string& path, const Sk
 Result<Sidecar> read_sidecar(std::string_view text, const std::string& path,
                              const Skeleton& skeleton, double duration);
 
+// Whether the file, of whatever motion, was edited by hand; true if it cannot be read.
+bool has_edits(std::string_view text);
+
 // The text of the file. `keys` must pass check(). Times are rounded to 1 us (keytimes are kept at
 // least 2 us apart), contact positions to 0.01 mm. Deterministic.
 std::string write(const MotionKeys& keys, const Skeleton& skeleton, double duration);

@@ -23,11 +23,19 @@ constexpr double kBeyond = 1e-3;        // seconds: written times are rounded
 constexpr double kMinReadGap = 1.5e-6;  // seconds, between keytimes
 constexpr double kFurthest = 1e6;       // metres
 constexpr std::size_t kLongestName = 200;
+constexpr std::string_view kMakeAnew =
+    "is this the file of another motion, or was the motion changed? krok-keys --discard-edits "
+    "makes "
+    "it anew";
 
 class Reader {
  public:
   Reader(std::string_view text, const Skeleton& skeleton, double duration)
-      : text_(text), in_(text, "keys"), skeleton_(skeleton), duration_(duration) {
+      : text_(text),
+        in_(text, "keys"),
+        skeleton_(skeleton),
+        duration_(duration),
+        joints_are_ordered_(std::isfinite(duration)) {
     for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
       joints_.emplace(skeleton.names[j], static_cast<int>(j));
     }
@@ -86,7 +94,7 @@ class Reader {
       return json::error_at(text_, object.find(key)->offset, "keys-time",
                             fmt::format("\"{}\" of {} is {} s, outside the motion's 0 to {} s", key,
                                         what, readable(*time, 9), readable(duration_, 9)),
-                            "is this the file of another motion, or was the motion trimmed?");
+                            std::string(kMakeAnew));
     }
     return time;
   }
@@ -110,7 +118,7 @@ class Reader {
     if (found == joints_.end()) {
       return json::error_at(text_, (*name)->offset, "keys-joint",
                             fmt::format("the motion has no joint '{}'", shown((*name)->text)),
-                            "krok-info -v lists its joints");
+                            std::string(kMakeAnew));
     }
     return found->second;
   }
@@ -170,8 +178,9 @@ class Reader {
       if (!contact) return contact.error();
       contacts.push_back(*contact);
     }
-    sort(contacts, sidecar_.contacts_by_hand,
-         [](const Contact& c) { return std::tuple(c.start, c.joint); });
+    sort(contacts, sidecar_.contacts_by_hand, [this](const Contact& c) {
+      return std::tuple(c.start, joints_are_ordered_ ? c.joint : 0);
+    });
     sidecar_.keys.contacts = std::move(contacts);
     return {};
   }
@@ -245,6 +254,7 @@ class Reader {
   double duration_;
   std::unordered_map<std::string, int> joints_;
   std::string checksum_;
+  const bool joints_are_ordered_;
   Sidecar sidecar_;
 };
 
@@ -263,6 +273,23 @@ Result<Sidecar> read_sidecar(std::string_view text, const std::string& path,
     return std::move(status).error().in_file(path);
   }
   return sidecar;
+}
+
+bool has_edits(std::string_view text) {
+  const auto root = json::parse(text);
+  if (!root) return true;
+  // A skeleton of the joints that it names; their order is not known, and contacts that start at
+  // one time stay in the file's.
+  Skeleton named;
+  if (const Value* contacts = root->find("contacts")) {
+    for (const Value& contact : contacts->items) {
+      const Value* joint = contact.find("joint");
+      if (joint == nullptr || named.find(joint->text) >= 0) continue;
+      named.add(joint->text, named.joint_count() - 1, {});
+    }
+  }
+  const auto sidecar = Reader(text, named, HUGE_VAL).read();
+  return !sidecar || sidecar->has_edits();
 }
 
 Result<MotionKeys> read(std::string_view text, const std::string& path, const Skeleton& skeleton,

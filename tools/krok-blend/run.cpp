@@ -117,7 +117,7 @@ std::string warp_table(const std::vector<Motion>& motions, const Blended& blende
 
 Status write_results(const Options& options, const std::vector<Motion>& motions, Blended& blended,
                      ToolContext& context) {
-  const auto keys_path = place_for_keys(blended.keys, blended.clip.skeleton, context.output);
+  const auto keys_path = place_for_keys(blended.keys, context.output);
   if (!keys_path) return keys_path.error();
   blended.clip.provenance = context.provenance();
   for (const Motion& motion : motions) {

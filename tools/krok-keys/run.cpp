@@ -35,12 +35,17 @@ Result<std::optional<krok::keys::Sidecar>> read_before(const Options& options, c
     if (!sidecar) return std::move(sidecar).error();
     return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
   }
-  if (context.output.empty()) return read_keys_beside(options.input, clip, context);
-  if (!stands(context.output)) return std::optional<krok::keys::Sidecar>();
-  const auto file = InputFile::open(context.output);
+  const bool beside = context.output.empty();
+  const std::string path = beside ? keys_sidecar_path(options.input) : context.output;
+  if (!stands(path)) return std::optional<krok::keys::Sidecar>();
+  const auto file = InputFile::open(path);
   if (!file) return file.error();
-  auto sidecar =
-      krok::keys::read_sidecar(file->text(), context.output, clip.skeleton, clip.duration());
+  // What was found and not edited is found again, whatever motion it was.
+  if (options.find != Find::none && !krok::keys::has_edits(file->text())) {
+    return std::optional<krok::keys::Sidecar>();
+  }
+  if (beside) return read_keys_beside(options.input, clip, context);
+  auto sidecar = krok::keys::read_sidecar(file->text(), path, clip.skeleton, clip.duration());
   if (!sidecar) {
     Error error = std::move(sidecar).error();
     if (error.hint.empty()) error.hint = "--discard-edits replaces the file";

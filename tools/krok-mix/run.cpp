@@ -74,7 +74,7 @@ void warn_of_pops(const timeline::Timeline& timeline, const Mixed& mixed, ToolCo
 
 Status write_results(const Options& options, const TimelineSources& motions, Mixed& mixed,
                      ToolContext& context) {
-  const auto keys_path = place_for_keys(mixed.keys, mixed.clip.skeleton, context.output);
+  const auto keys_path = place_for_keys(mixed.keys, context.output);
   if (!keys_path) return keys_path.error();
   mixed.clip.provenance = context.provenance();
   for (const timeline::Source& source : motions.sources) {

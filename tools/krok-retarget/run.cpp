@@ -177,7 +177,7 @@ Status write_all(const Clip& clip, const FollowedFeet* followed, const anim::Wri
   if (status && followed != nullptr) {
     MotionKeys keys;
     keys.contacts = followed->contacts;
-    const auto path = place_for_keys(keys, clip.skeleton, context.output);
+    const auto path = place_for_keys(keys, context.output);
     if (!path) return path.error();
     status = outputs.add(*path, [&](OutputFile& file) {
       return file.write(keys::write(keys, clip.skeleton, clip.duration()));

@@ -174,7 +174,7 @@ Status write_all(const Options& options, std::vector<Motion>& motions, ToolConte
           clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
     });
     if (!status) return status;
-    const auto keys_path = place_for_keys(motion.made.keys, clip.skeleton, motion.path);
+    const auto keys_path = place_for_keys(motion.made.keys, motion.path);
     if (!keys_path) return keys_path.error();
     if (keys_path->empty()) continue;
     status = outputs.add(*keys_path, [&](OutputFile& file) {

@@ -148,7 +148,7 @@ Status write_all(const Options& options, const gait::Walk& walk,
                        file);
   });
   if (!status) return status;
-  const auto keys_path = place_for_keys(details.keys, frames.skeleton, context.output);
+  const auto keys_path = place_for_keys(details.keys, context.output);
   if (!keys_path) return keys_path.error();
   if (!keys_path->empty()) {
     status = outputs.add(*keys_path, [&](OutputFile& file) {

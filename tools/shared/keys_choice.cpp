@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -51,17 +50,15 @@ Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::stri
   return std::optional(std::move(*found));
 }
 
-Result<std::string> place_for_keys(const MotionKeys& keys, const Skeleton& skeleton,
-                                   const std::string& motion_path) {
+Result<std::string> place_for_keys(const MotionKeys& keys, const std::string& motion_path) {
   const std::string path = keys_sidecar_path(motion_path);
   if (keys.empty() || path.empty()) return std::string();
   std::error_code unknown;
   if (!std::filesystem::exists(path, unknown)) return path;
   const auto file = InputFile::open(path);
   if (!file) return file.error();
-  const auto before = krok::keys::read_sidecar(file->text(), path, skeleton, HUGE_VAL);
-  if (before && !before->has_edits()) return path;
-  return Error("keys-edited", "was edited by hand, or is not a keytime file for this motion",
+  if (!krok::keys::has_edits(file->text())) return path;
+  return Error("keys-edited", "was edited by hand, or is not a keytime file",
                "the result's keytimes would overwrite it: move it away, or choose another name for "
                "the result")
       .in_file(path);

@@ -27,7 +27,6 @@ Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::stri
 
 // The sidecar path for a result written to `motion_path`. Fails (code keys-edited) if that file was
 // edited by hand. Empty if there are no keys or the motion has no path.
-Result<std::string> place_for_keys(const MotionKeys& keys, const Skeleton& skeleton,
-                                   const std::string& motion_path);
+Result<std::string> place_for_keys(const MotionKeys& keys, const std::string& motion_path);
 
 }  // namespace krok::cli

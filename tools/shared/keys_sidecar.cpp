@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -15,19 +16,52 @@ std::string keys_sidecar_path(const std::string& motion_path) {
   return std::filesystem::path(motion_path).replace_extension(".keys.json").string();
 }
 
+namespace {
+
+constexpr double kFar = 0.05;  // metres; feet slide by less while they stand
+
+// The median distance, in metres, of the contacts' places from where the motion has their joints;
+// 0 without contacts.
+double distance_of_contacts(const MotionKeys& keys, const Clip& clip) {
+  std::vector<double> distances;
+  for (const Contact& contact : keys.contacts) {
+    const double middle = 0.5 * (contact.start + contact.end) * clip.rate;
+    const auto frame =
+        static_cast<int>(std::clamp<double>(std::lround(middle), 0, clip.frame_count() - 1));
+    const auto positions = clip.frame_positions(frame);
+    const Vec3f& at = positions[static_cast<std::size_t>(contact.joint)];
+    distances.push_back((at.cast<double>() - contact.place).norm());
+  }
+  if (distances.empty()) return 0;
+  const auto half = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+  std::ranges::nth_element(distances, half);
+  return *half;
+}
+
+// How it shows that keys were made for another motion; nothing if it does not.
+std::string sign_of_another_motion(const krok::keys::Sidecar& sidecar, const Clip& clip) {
+  // Half a frame: more than rounding errors, less than any cut.
+  if (sidecar.duration > 0 && std::abs(sidecar.duration - clip.duration()) > 0.5 / clip.rate) {
+    return fmt::format("made for a motion of {} s, but this one has {} s",
+                       readable(sidecar.duration), readable(clip.duration()));
+  }
+  const double away = clip.frame_count() > 0 ? distance_of_contacts(sidecar.keys, clip) : 0;
+  if (away <= kFar) return {};
+  return fmt::format("made for another motion: its contacts are {:.0f} mm (median) from the joints",
+                     1e3 * away);
+}
+
+}  // namespace
+
 Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
                                            ToolContext& context) {
   const auto input = context.open_input(path);
   if (!input) return input.error();
   auto sidecar = krok::keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
-  // Half a frame: more than rounding errors, less than any cut.
-  if (sidecar && sidecar->duration > 0 &&
-      std::abs(sidecar->duration - clip.duration()) > 0.5 / clip.rate) {
-    Diagnostic stale =
-        make_warning("keys-stale",
-                     fmt::format("made for a motion of {} s, but this one has {} s",
-                                 readable(sidecar->duration), readable(clip.duration())),
-                     "if the motion was cut or retimed, run krok-keys again");
+  if (!sidecar) return sidecar;
+  if (std::string sign = sign_of_another_motion(*sidecar, clip); !sign.empty()) {
+    Diagnostic stale = make_warning("keys-stale", std::move(sign),
+                                    "if the motion was changed, run krok-keys again");
     stale.where.file = path;
     context.diagnose(std::move(stale));
   }
@@ -43,8 +77,18 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return std::optional<krok::keys::Sidecar>();
   auto sidecar = read_keys_file(path, clip, context);
-  if (!sidecar) return std::move(sidecar).error();
-  return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
+  if (sidecar) return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
+  const std::string& code = sidecar.error().code;
+  const auto input = InputFile::open(path);
+  const bool replaceable = (code == "keys-joint" || code == "keys-time") && input &&
+                           !krok::keys::has_edits(input->text());
+  if (!replaceable) return std::move(sidecar).error();
+  Diagnostic ignored_file =
+      make_warning("keys-stale", fmt::format("not used, since {}", sidecar.error().message),
+                   "it was not edited by hand; krok-keys makes it anew");
+  ignored_file.where.file = path;
+  context.diagnose(std::move(ignored_file));
+  return std::optional<krok::keys::Sidecar>();
 }
 
 Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context) {

@@ -17,11 +17,13 @@ namespace krok::cli {
 std::string keys_sidecar_path(const std::string& motion_path);
 
 // Reads the file `path`, opened by context.open_input. Warns (code keys-stale) if the file was made
-// for a motion of another duration.
+// for a motion of another duration, or if its contacts are elsewhere than the motion's joints (the
+// median by over 50 mm).
 Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
                                            ToolContext& context);
 
-// Reads the sidecar of a motion read from `motion_path`; empty if there is none.
+// Reads the sidecar of a motion read from `motion_path`; empty if there is none, and with a warning
+// (keys-stale) if it has other joints or times outside the motion, and was not edited by hand.
 Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
                                                             const Clip& clip, ToolContext& context);
 

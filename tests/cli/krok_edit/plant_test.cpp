@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/motion_fixture.h"
@@ -47,6 +48,34 @@ TEST_F(KrokEditPlant, FeetStandAndTheReportSaysWhere) {
     }
   }
   EXPECT_GE(stays, 6);
+}
+
+// Would fail if the keytimes of another motion were used without a word: feet were held a third of
+// a metre beside the steps.
+TEST_F(KrokEditPlant, KeysOfAnotherMotionAreToldOrLeftOut) {
+  ASSERT_EQ(run_here("krok-keys", {"walk.anim", "-o", "walk.keys.json"}).exit_code, 0);
+  const auto own = run_here("krok-edit", {"walk.anim", "--plant", "-o", "planted.anim"});
+  EXPECT_EQ(own.err.find("keys-stale"), std::string::npos) << own.err;
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--mirror", "-o", "mirrored.anim"}).exit_code, 0);
+  std::filesystem::copy_file(path("walk.keys.json"), path("mirrored.keys.json"));
+  const auto mirrored = run_here("krok-edit", {"mirrored.anim", "--plant", "-o", "planted.anim"});
+  EXPECT_THAT(mirrored.err, HasSubstr("keys-stale"));
+
+  // Other joints: not used, unless somebody edited it.
+  Clip renamed = walk_.clip;
+  for (std::string& name : renamed.skeleton.names) name = "hero:" + name;
+  write("renamed.anim", renamed);
+  std::filesystem::copy_file(path("walk.keys.json"), path("renamed.keys.json"));
+  const auto left_out =
+      run_here("krok-edit", {"renamed.anim", "--plant", "-o", "planted.anim", "--json"});
+  ASSERT_EQ(left_out.exit_code, 0) << left_out.err;
+  EXPECT_THAT(left_out.err, HasSubstr("keys-stale"));
+  EXPECT_EQ(nlohmann::json::parse(left_out.out)["result"]["steps"][0]["contacts"], "found");
+  put("renamed.keys.json", R"({"schema": "krok.keys/1", "contacts": [
+    {"joint": "LeftToeBase", "start": 1.0, "end": 1.2, "place": [0, 0, 0], "by": "hand"}]})");
+  const auto refused = run_here("krok-edit", {"renamed.anim", "--plant", "-o", "planted.anim"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--discard-edits"));
 }
 
 TEST_F(KrokEditPlant, ContactsOfTheSidecarAreTaken) {
