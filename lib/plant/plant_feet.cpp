@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "contacts/contacts.h"
+#include "contacts/gait_keytimes.h"
 #include "plant/foot_paths_internal.h"
 #include "plant/leg_pose_internal.h"
 #include "plant/legs_internal.h"
@@ -24,6 +26,10 @@ constexpr double kStands = 0.0004;
 
 // Feet that stand still show longer stays than feet that slide: times that these are looked at.
 constexpr int kRounds = 3;
+
+// Stances without a contact that are worth a warning: their number, and their part of all.
+constexpr int kFewMissed = 2;
+constexpr double kPartMissed = 0.2;
 
 void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing>& captured,
                 const std::vector<plant::Footing>& footings, PlantedFeet& planted) {
@@ -56,6 +62,38 @@ Diagnostic reach_warning(int frames, const Clip& clip) {
           "slides",
           frames, clip.frame_count()),
       "are contacts marked where the foot does not stand?");
+}
+
+// Stances of walking in which neither heel nor ball was held, if they are more than a few.
+Diagnostics missed_stances(const Clip& clip, const RoleMap& roles, const FoundContacts& found,
+                           const std::vector<FixedStay>& stays) {
+  const std::vector<Keytime> keytimes = find_gait(clip, roles, found).keytimes;
+  int stances = 0, missed = 0;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    const std::string foot = name_of(side);
+    const auto is_held = [&](double from, double to) {
+      return std::ranges::any_of(stays, [&](const FixedStay& stay) {
+        return stay.point.side == side && stay.point.part != FootPart::tip &&
+               stay.first < to * clip.rate && stay.last > from * clip.rate;
+      });
+    };
+    const Keytime* strike = nullptr;
+    for (const Keytime& key : keytimes) {
+      if (key.name == foot + "_strike") strike = &key;
+      if (key.name != foot + "_off" || strike == nullptr) continue;
+      ++stances;
+      missed += is_held(strike->time, key.time) ? 0 : 1;
+      strike = nullptr;
+    }
+  }
+  if (missed < kFewMissed || missed < kPartMissed * stances) return {};
+  return {make_warning(
+      "plant-missed",
+      fmt::format("in {} of {} stances no contact was found, so that the foot is not held there",
+                  missed, stances),
+      "jitter or sliding hides them: smooth the motion more (krok-edit --filter butterworth "
+      "--cutoff 4Hz), or give "
+      "--contacts")};
 }
 
 // Everything but the search for contacts, given once.
@@ -126,8 +164,8 @@ class Planter {
     return Error(
         "plant-contacts", "no heel, ball or toe stands at any frame, so nothing can be planted",
         contacts_ ? "the contacts given are not of feet; remove the file to have them found"
-                  : "does the figure walk in place, or float? krok-keys shows and edits "
-                    "contacts");
+                  : "does the figure walk in place, float, or jitter? krok-keys shows and edits "
+                    "contacts, krok-edit --filter smooths");
   }
 
   void move_legs(const std::vector<plant::Footing>& footings, PlantedFeet& planted) const {
@@ -167,6 +205,11 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
     if (planter.drift_in(planted->clip, *shown) <= kStands * body->leg_length) break;
     more.insert(more.end(), shown->stays.begin(), shown->stays.end());
     planted = planter.plant(*found, more);
+  }
+  if (!contacts && planted) {
+    for (Diagnostic& warning : missed_stances(clip, roles, *found, planted->stays)) {
+      planted->warnings.push_back(std::move(warning));
+    }
   }
   return planted;
 }

@@ -70,7 +70,8 @@ struct PlantedFeet {
 //
 // Codes: those of check(Clip); contacts-feet where the roles know no leg from hip to foot;
 // plant-contacts where no foot stands at any frame. Warnings: plant-reach (a leg is too short for
-// its place), and those of find_contacts().
+// its place), plant-missed (two stances of find_gait() or more, and a fifth of all, have no
+// contact), and those of find_contacts().
 Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
                                std::optional<std::span<const Contact>> contacts = {});
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <span>
 
 #include "core/numbers.h"
@@ -83,9 +85,14 @@ Json planting_json(const PlantedFeet& planted, bool contacts_given) {
 
 std::string planting_line(const PlantedFeet& planted) {
   std::string line =
-      fmt::format("feet planted in {}: largest drift {} instead of {}",
+      fmt::format("feet planted in {}: heels and balls drift by up to {} instead of {}",
                   counted(static_cast<long long>(planted.stays.size()), "stay"),
                   millimetres(planted.drift_after), millimetres(planted.drift_before));
+  double tips = 0;  // about which a foot turns
+  for (const FixedStay& stay : planted.stays) {
+    if (stay.point.part == FootPart::tip) tips = std::max(tips, stay.drift_after);
+  }
+  if (tips > 5e-4) line += fmt::format(", toe tips by up to {}", millimetres(tips));
   if (planted.pelvis_lowered > 5e-4) {
     line += fmt::format("; pelvis lowered by up to {}", millimetres(planted.pelvis_lowered));
   }

@@ -51,6 +51,28 @@ TEST(PlantFeet, SlidesAndJitterAreGone) {
   EXPECT_TRUE(check(feet.clip).ok());
 }
 
+// Would fail if steps that jitter hides were left sliding without a word.
+TEST(PlantFeet, StancesWithoutContactsAreTold) {
+  samples::WalkOptions options;
+  options.steps = 8;
+  const auto missed = [](const PlantedFeet& feet) {
+    return std::ranges::any_of(feet.warnings,
+                               [](const Diagnostic& d) { return d.code == "plant-missed"; });
+  };
+  Clip clip = samples::make_walk(options).value().clip;
+  EXPECT_FALSE(missed(planted(clip)));
+  // One foot slides throughout, as in captures at a low rate.
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (int j = 0; j < clip.joint_count(); ++j) {
+      const auto i = static_cast<std::size_t>(j);
+      const std::string& name = clip.skeleton.names[i];
+      if (!name.starts_with("LeftFoot") && !name.starts_with("LeftToe")) continue;
+      clip.frame_positions(f)[i].z() += 0.4f * static_cast<float>(f / clip.rate);
+    }
+  }
+  EXPECT_TRUE(missed(planted(clip)));
+}
+
 // Feet that shake about their ankles: their points jitter, ankles and knees do not. If the ankle
 // took over what the point is held by, knees would shake that were still.
 TEST(PlantFeet, KneesDoNotTakeOverWhatFeetShakeBy) {
