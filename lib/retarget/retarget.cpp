@@ -228,6 +228,8 @@ class Transfer {
   }
 
   void note_joints() {
+    const int hips = target_roles_.joint(Role::hips);
+    const Quat hips_turn = hips < 0 ? Quat::Identity() : turns_[at(hips)];
     std::vector<char> used(source_.skeleton.names.size(), 0);
     for (int k = 0; k < target_.joint_count(); ++k) {
       const JointSource& from = plan_.mapping[at(k)];
@@ -237,8 +239,10 @@ class Transfer {
       }
       used[at(from.first)] = 1;
       if (from.second >= 0) used[at(from.second)] = 1;
-      report_.mapped.push_back(
-          {k, from.first, from.second, from.share, angle_between(Quat::Identity(), turns_[at(k)])});
+      const Vec3 ahead = hips_turn.conjugate() * turns_[at(k)] * Vec3::UnitZ();
+      report_.mapped.push_back({k, from.first, from.second, from.share,
+                                angle_between(Quat::Identity(), turns_[at(k)]),
+                                std::atan2(ahead.x(), ahead.z())});
     }
     for (std::size_t j = 0; j < used.size(); ++j) {
       if (used[j] == 0 && source_.skeleton.end_sites[j] == 0) {

@@ -61,6 +61,7 @@ struct MappedJoint {
   int second_source = -1;  // if interpolated between two joints of a chain, otherwise -1
   double share = 0;        // weight of second_source
   double alignment = 0;    // radians the reference pose was turned by here
+  double heading = 0;      // of those about the vertical, relative to the hips; -pi to pi
 };
 
 struct FootReport {

@@ -230,9 +230,11 @@ class RoleFinder {
       }
       const Role from = above >= 0 ? role(above) : Role::none;
       const Role inherited = beyond(from);
-      const bool metatarsal = (from == Role::left_foot || from == Role::right_foot) &&
-                              joints_.part(j) == Part::unknown && leads_to_toes(j);
-      if (joints_.is_helper(j) || joints_.part(j) == Part::hips || metatarsal) {
+      // Beside or above the toes: a metatarsal, a heel, the joint of a mesh.
+      const bool of_foot = (from == Role::left_foot || from == Role::right_foot) &&
+                           joints_.part(j) == Part::unknown &&
+                           (leads_to_toes(j) || leads_to_toes(above));
+      if (joints_.is_helper(j) || joints_.part(j) == Part::hips || of_foot) {
         role(j) = Role::helper;
       } else if (inherited != Role::none) {
         role(j) = inherited;

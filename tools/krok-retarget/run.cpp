@@ -100,6 +100,9 @@ std::optional<double> believable_floor(const Target& target, const RoleMap& role
   return near ? target.floor : std::nullopt;
 }
 
+// Radians; feet of T-poses point up to 30 degrees outwards.
+constexpr double kTurnedFoot = 40 * kRadiansPerDegree;
+
 void report_choices(const Outcome& outcome, bool pose_is_given, ToolContext& context) {
   const krok::retarget::Report& report = outcome.report;
   const auto note = [&](std::string code, std::string message, std::string hint = {}) {
@@ -125,6 +128,19 @@ void report_choices(const Outcome& outcome, bool pose_is_given, ToolContext& con
   };
   note_frame(report.source_frame, "input");
   note_frame(report.target_frame, "target");
+  for (const krok::retarget::MappedJoint& joint : report.mapped) {
+    const Role role = outcome.target_roles.roles[static_cast<std::size_t>(joint.target)];
+    if ((role != Role::left_foot && role != Role::right_foot) ||
+        std::abs(joint.heading) < kTurnedFoot) {
+      continue;
+    }
+    context.warn("retarget-foot",
+                 fmt::format("{} is turned by {:.0f} deg about the vertical against the input's",
+                             outcome.target.names[static_cast<std::size_t>(joint.target)],
+                             std::abs(joint.heading) / kRadiansPerDegree),
+                 "do the toes have the right roles? krok-info -v shows them, --map and --onto-map "
+                 "set them");
+  }
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
     note("retarget-fingers",
          "the input's fingers never move; the target's fingers keep their reference pose");

@@ -286,6 +286,25 @@ TEST_F(KrokRetarget, AMapTellsWhatTheJointsAre) {
   EXPECT_TRUE(json::parse(info.out)["result"]["files"][0]["humanoid"].get<bool>());
 }
 
+// Would fail if feet that are turned by a wrong role went out without a word.
+TEST_F(KrokRetarget, FeetTurnedByAWrongRoleAreTold) {
+  Clip target;
+  target.skeleton = walk_.skeleton;
+  Transform beside = target.skeleton.reference[at(target.skeleton.find("LeftFoot"))];
+  beside.position.x() += 0.3;
+  target.skeleton.add("Buckle", target.skeleton.find("LeftFoot"), beside);
+  target.skeleton.reference.back().position.z() += 0.05;
+  write("target.anim", target);
+  const auto plain = retarget({"walk.anim", "--onto", "target.anim", "-o", "out.anim"});
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  EXPECT_EQ(plain.err.find("retarget-foot"), std::string::npos) << plain.err;
+  put("map.json", R"({"joints": {"Buckle": "left_toes"}})");
+  const auto turned =
+      retarget({"walk.anim", "--onto", "target.anim", "--onto-map", "map.json", "-o", "out.anim"});
+  EXPECT_THAT(turned.err, HasSubstr("LeftFoot is turned by"));
+  EXPECT_EQ(turned.err.find("RightFoot is turned"), std::string::npos) << turned.err;
+}
+
 TEST_F(KrokRetarget, AFaultyMapIsToldWithItsPlace) {
   put("map.json", "{\"joints\": {\n  \"LeftHandd\": \"left_hand\"\n}}");
   const auto run =

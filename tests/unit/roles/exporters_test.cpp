@@ -175,6 +175,14 @@ const Scheme kSchemes[] = {
      "hips=hip spine=abdomenLower chest=chestUpper neck=neckLower head=head left_collar=lCollar "
      "left_upper_arm=lShldrBend left_lower_arm=lForearmBend left_hand=lHand left_fingers=lCarpal1 "
      "left_upper_leg=lThighBend left_lower_leg=lShin left_foot=lFoot left_toes=lToe"},
+    {"mesh_joints_beside_toes",
+     "Hips .Spine ..Chest ...Neck ....Head ...LeftShoulder ....LeftArm .....LeftForeArm "
+     "......LeftHand ...RightShoulder ....RightArm .....RightForeArm ......RightHand "
+     ".LeftUpLeg ..LeftLeg ...LeftFoot ....LeftToeBase ....L_Talus_Mesh "
+     ".RightUpLeg ..RightLeg ...RightFoot ....R_Talus_Mesh ....RightToeBase",
+     "hips=Hips spine=Spine chest=Chest neck=Neck head=Head left_collar=LeftShoulder "
+     "left_upper_arm=LeftArm left_lower_arm=LeftForeArm left_hand=LeftHand "
+     "left_upper_leg=LeftUpLeg left_lower_leg=LeftLeg left_foot=LeftFoot left_toes=LeftToeBase"},
     {"iclone",
      "RL_BoneRoot .CC_Base_Hip ..CC_Base_Pelvis ...CC_Base_L_Thigh ....CC_Base_L_Calf "
      ".....CC_Base_L_Foot ......CC_Base_L_ToeBaseShareBone ......CC_Base_L_ToeBase "
