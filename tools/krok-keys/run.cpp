@@ -7,6 +7,7 @@
 #include "contacts/gait_keytimes.h"
 #include "contacts/gait_metrics.h"
 #include "contacts/slide_speed.h"
+#include "contacts/step_measures.h"
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
@@ -102,8 +103,31 @@ std::string as_table(const krok::keys::Sidecar& sidecar, const Skeleton& skeleto
   return text;
 }
 
-Json as_json(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton, const GaitMetrics& gait,
-             double slide) {
+// Null for what no step shows.
+Json number(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json as_json(const GaitMetrics& gait, const StepMeasures& steps, double slide) {
+  const auto if_known = [](bool known, double value) { return known ? Json(value) : Json(); };
+  const bool cycles = gait.cycles > 0;
+  return {
+      {"cycles", gait.cycles},
+      {"cycle", if_known(cycles, gait.cycle)},
+      {"cadence", if_known(cycles, gait.cadence)},
+      {"stance",
+       {if_known(gait.stance[0] > 0, gait.stance[0]),
+        if_known(gait.stance[1] > 0, gait.stance[1])}},
+      {"double_support", if_known(gait.stance[0] > 0 && gait.stance[1] > 0, gait.double_support)},
+      {"steps", steps.steps},
+      {"speed", number(steps.speed)},
+      {"stride_length", number(steps.stride_length)},
+      {"step_length", {number(steps.step_length[0]), number(steps.step_length[1])}},
+      {"step_width", number(steps.step_width)},
+      {"slide_speed", slide}};
+}
+
+Json as_json(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton) {
   const auto hand = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
     return i < marks.size() && marks[i] != 0;
   };
@@ -124,20 +148,18 @@ Json as_json(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton, const
   Json json;
   json["keytimes"] = std::move(keytimes);
   json["contacts"] = std::move(contacts);
-  json["gait"] = {{"cycles", gait.cycles},
-                  {"cycle", gait.cycle},
-                  {"cadence", gait.cadence},
-                  {"stance", {gait.stance[0], gait.stance[1]}},
-                  {"double_support", gait.double_support},
-                  {"slide_speed", slide}};
   return json;
 }
 
-std::string gait_text(const GaitMetrics& gait, double slide) {
+std::string gait_text(const GaitMetrics& gait, const StepMeasures& steps, double slide) {
   if (gait.cycles == 0) return {};
   std::string text =
       fmt::format("; {:.0f} steps per minute, stance {:.0f} % and {:.0f} % of a cycle",
                   gait.cadence, 100 * gait.stance[0], 100 * gait.stance[1]);
+  if (steps.speed) {
+    text += fmt::format(", {} m/s, strides of {} m", readable(*steps.speed, 3),
+                        readable(*steps.stride_length, 3));
+  }
   // In a run, flight phases would count as skating.
   if (gait.double_support > 0) text += fmt::format(", foot skate {:.1f} mm/s", 1e3 * slide);
   return text;
@@ -211,7 +233,9 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   const GaitMetrics gait = gait_metrics(sidecar.keys.keytimes);
   const double slide = slide_speed(*clip, *roles);
-  context.report.result = as_json(sidecar, clip->skeleton, gait, slide);
+  const StepMeasures steps = step_measures(*clip, *roles, sidecar.keys.keytimes);
+  context.report.result = as_json(sidecar, clip->skeleton);
+  context.report.result["gait"] = as_json(gait, steps, slide);
   context.report.result["found"] = *finding;
   context.report.result["edited"] = sidecar.has_edits();
   if (context.output.empty() && options.plot.empty()) {
@@ -220,7 +244,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input),
                           counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
                           counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
-                          gait_text(gait, slide)));
+                          gait_text(gait, steps, slide)));
   return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
 }
 

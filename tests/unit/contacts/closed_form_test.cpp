@@ -10,6 +10,7 @@
 
 #include "contacts/gait_metrics.h"
 #include "contacts/slide_speed.h"
+#include "contacts/step_measures.h"
 #include "events.h"
 
 namespace krok {
@@ -122,6 +123,21 @@ TEST(Cycloid, MetricsOfTheGait) {
   EXPECT_NEAR(gait.stance[0], 0.6, 0.02);
   EXPECT_NEAR(gait.stance[1], 0.6, 0.02);
   EXPECT_NEAR(gait.double_support, 0.2, 0.04);
+}
+
+// Would fail if speed or lengths were those of another part of the step, or of the other foot.
+TEST(Cycloid, MeasuresOfTheSteps) {
+  const Clip clip = cycloid_walk(120);
+  const StepMeasures steps =
+      step_measures(clip, find_roles(clip.skeleton), test::keytimes_of(clip));
+  EXPECT_GE(steps.steps, 6);
+  EXPECT_NEAR(steps.speed.value(), 1.2, 0.01);
+  EXPECT_NEAR(steps.stride_length.value(), 1.2, 0.005);
+  EXPECT_NEAR(steps.step_length[0].value(), 0.6, 0.005);
+  EXPECT_NEAR(steps.step_length[1].value(), 0.6, 0.005);
+  EXPECT_NEAR(steps.step_width.value(), 0.2, 0.001);
+  const StepMeasures none = step_measures(clip, find_roles(clip.skeleton), {});
+  EXPECT_FALSE(none.speed || none.step_width || none.step_length[0]);
 }
 
 TEST(Cycloid, PlacesAreTheJoints) {

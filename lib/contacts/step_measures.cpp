@@ -1,0 +1,90 @@
+#include "contacts/step_measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "contacts/series_internal.h"
+#include "contacts/sole_points.h"
+
+namespace krok {
+
+namespace {
+
+constexpr double kLongestStep = 3;  // seconds, from a place to the next
+
+struct FootPlace {
+  std::size_t side = 0;  // FootSide
+  double time = 0;       // seconds, its middle
+  Vec3 place = Vec3::Zero();
+};
+
+Vec3 mean_position(const Clip& clip, int joint, double from, double to) {
+  const int last = clip.frame_count() - 1;
+  const int first = std::clamp(static_cast<int>(std::lround(from * clip.rate)), 0, last);
+  const int end = std::clamp(static_cast<int>(std::lround(to * clip.rate)), first, last);
+  Vec3 sum = Vec3::Zero();
+  for (int f = first; f <= end; ++f) {
+    sum += clip.frame_positions(f)[static_cast<std::size_t>(joint)].cast<double>();
+  }
+  return sum / (end - first + 1);
+}
+
+std::vector<FootPlace> places_of(const Clip& clip, const std::array<int, 2>& ankles,
+                                 const std::vector<Keytime>& keytimes) {
+  std::vector<FootPlace> places;
+  for (const std::size_t side : {0, 1}) {
+    const std::string foot = name_of(static_cast<FootSide>(side));
+    const Keytime* strike = nullptr;
+    for (const Keytime& key : keytimes) {
+      if (key.name == foot + "_strike") strike = &key;
+      if (key.name != foot + "_off" || strike == nullptr) continue;
+      const double third = (key.time - strike->time) / 3;
+      places.push_back({side, 0.5 * (strike->time + key.time),
+                        mean_position(clip, ankles[side], strike->time + third, key.time - third)});
+      strike = nullptr;
+    }
+  }
+  std::ranges::stable_sort(places, {}, &FootPlace::time);
+  return places;
+}
+
+std::optional<double> median(const std::vector<double>& values) {
+  return values.empty() ? std::nullopt : std::optional(contacts::middle(values));
+}
+
+}  // namespace
+
+StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
+                           const std::vector<Keytime>& keytimes) {
+  StepMeasures measures;
+  const std::array<int, 2> ankles = {roles.joint(Role::left_foot), roles.joint(Role::right_foot)};
+  if (ankles[0] < 0 || ankles[1] < 0 || clip.frame_count() == 0) return measures;
+  const std::vector<FootPlace> places = places_of(clip, ankles, keytimes);
+  std::vector<double> speeds, strides, widths;
+  std::array<std::vector<double>, 2> lengths;
+  for (std::size_t i = 0; i + 2 < places.size(); ++i) {
+    const FootPlace &first = places[i], &between = places[i + 1], &next = places[i + 2];
+    if (first.side == between.side || first.side != next.side ||
+        between.time - first.time > kLongestStep || next.time - between.time > kLongestStep) {
+      continue;
+    }
+    const Vec3 stride(next.place.x() - first.place.x(), 0, next.place.z() - first.place.z());
+    const double length = stride.norm();
+    ++measures.steps;
+    strides.push_back(length);
+    speeds.push_back(length / (next.time - first.time));
+    if (!(length > 0)) continue;
+    const Vec3 ahead = stride / length, across = Vec3::UnitY().cross(ahead);  // to the left
+    const Vec3 step = between.place - first.place;
+    lengths[between.side].push_back(step.dot(ahead));
+    widths.push_back(step.dot(across) * (between.side == 0 ? 1 : -1));
+  }
+  measures.speed = median(speeds);
+  measures.stride_length = median(strides);
+  measures.step_length = {median(lengths[0]), median(lengths[1])};
+  measures.step_width = median(widths);
+  return measures;
+}
+
+}  // namespace krok

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "roles/roles.h"
+#include "scene/clip.h"
+#include "scene/motion_keys.h"
+
+namespace krok {
+
+// Spatial gait measures, metres on the ground plane; medians over the clip, empty if there is no
+// such step. Lengths are along the line between two successive places of the other foot, width is
+// across it, as usual in gait analysis (Whittle, "Gait Analysis", 2007), with the ankle as the
+// foot's point.
+struct StepMeasures {
+  int steps = 0;                        // of both feet
+  std::optional<double> speed;          // metres per second, stride length over its time
+  std::optional<double> stride_length;  // between two places of one foot
+  std::array<std::optional<double>, 2> step_length;  // left, right: ahead of the other foot
+  std::optional<double> step_width;                  // negative if the feet cross the middle
+};
+
+// A foot's place is the mean position of its ankle in the middle third of a stance, which is from a
+// strike to the toe-off after it. A step is three places in turn (left, right, left, ..), each
+// within three seconds of the next.
+StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
+                           const std::vector<Keytime>& keytimes);
+
+}  // namespace krok
