@@ -89,10 +89,14 @@ Result<Synthesis> Synthesiser::weights(std::span<const double> parameters,
   }
   const Outside off = outside(bounds_, parameters);
   if (off.distance > 0 && !(options.extrapolate && std::isfinite(off.distance))) {
+    // Without the margin, so that they are still inside when rounded to the digits of a message.
+    Bounds examples = bounds_;
+    examples.margin = 0;
     return Error(
         "parametric-bounds",
         fmt::format("{} is outside the range of the examples", in_words(*library_, parameters)),
-        "the nearest parameters inside are " + in_words(*library_, off.nearest));
+        "the nearest parameters inside are " +
+            in_words(*library_, outside(examples, parameters).nearest));
   }
   Synthesis synthesis;
   synthesis.weights.resize(library_->examples.size());

@@ -119,9 +119,11 @@ Json left_out_json(const std::vector<parametric::HeldOut>& left_out) {
   const parametric::LeftOutMeans means = parametric::means_of(left_out);
   Json result;
   result["inside"] = means.examples;
-  result["weighted"] = means.weighted;
-  result["linear"] = means.linear;
-  result["nearest"] = means.nearest;
+  // Null if no example is inside the bounds of the others.
+  const auto if_any = [&](double mean) { return means.examples > 0 ? Json(mean) : Json(); };
+  result["weighted"] = if_any(means.weighted);
+  result["linear"] = if_any(means.linear);
+  result["nearest"] = if_any(means.nearest);
   result["examples"] = std::move(list);
   return result;
 }

@@ -111,6 +111,13 @@ void add_fit(const steps::StepsFile& steps, Description& out) {
   }
   const auto smoothing = get("smoothing", "/smoothing");
   if (smoothing && *smoothing > 0) out.add("smoothing", readable(*smoothing, 3));
+  // None is measured if no example is inside the bounds of the others.
+  const auto inside = number_in(report, "/leave_one_out/inside");
+  if (inside && *inside == 0) {
+    out.add("left out", "not measured: no example lies between the others");
+    out.json["fit"] = std::move(json);
+    return;
+  }
   const auto weighted = get("left_out", "/leave_one_out/weighted");
   const auto linear = get("left_out_linear", "/leave_one_out/linear");
   const auto nearest = get("left_out_nearest", "/leave_one_out/nearest");

@@ -160,6 +160,28 @@ TEST(Synthesise, OutsideTheExamplesItSaysWhereTheyEnd) {
   EXPECT_EQ(made.weights(std::vector{0.6}).error().code, "parametric-bounds");
 }
 
+// Would fail if the parameters that the message names, rounded as it prints them, were refused
+// again.
+TEST(Synthesise, TheNearestParametersInsideAreInside) {
+  const Synthesiser made = synthesiser(false);
+  int tried = 0;
+  for (int i = 0; i < 40; ++i) {
+    const std::vector<double> far = {0.6 + std::cos(i), 2 * std::sin(i)};
+    const auto refused = made.weights(far);
+    if (refused.ok() || refused.error().code != "parametric-bounds") continue;
+    double length = 0, degrees = 0;
+    ASSERT_EQ(std::sscanf(refused.error().hint.c_str(),
+                          "the nearest parameters inside are step.length %lf m, %*s %lf", &length,
+                          &degrees),
+              2)
+        << refused.error().hint;
+    const std::vector<double> named = {length, degrees * kRadiansPerDegree};
+    EXPECT_EQ(outside(made.bounds(), named).distance, 0) << refused.error().hint;
+    ++tried;
+  }
+  EXPECT_GT(tried, 20);
+}
+
 TEST(Synthesise, RefusesWeightsOfAnotherLibrary) {
   const auto made = Synthesiser::create(fitted(true).library, fitted(false).weights);
   ASSERT_FALSE(made.ok());
