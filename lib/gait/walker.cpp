@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/index.h"
+#include "gait/legs_internal.h"
 #include "gait/mean_step_internal.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
@@ -15,10 +16,10 @@ namespace krok::gait {
 
 namespace {
 
-constexpr int kMeanSamples = 32;       // of a step, for means over it
-constexpr double kRaised = 0.004;      // metres
-constexpr double kEarliestOff = 0.3;   // of the time to the off
-constexpr double kStandingLeg = 0.98;  // of the leg's length
+constexpr int kMeanSamples = 32;        // of a step, for means over it
+constexpr double kRaised = 0.004;       // metres
+constexpr double kEarliestOff = 0.3;    // of the time to the off
+constexpr double kStandingLeg = 0.994;  // of the length: as straight as solve_legs() leaves it
 constexpr double kToeShare = 0.35;  // of the sole, from the ball to the tip, where no end site is
 
 FootGeometry geometry_of(const parametric::FootShape& shape, const Vec3& up) {
@@ -182,8 +183,8 @@ PoseVector captured_stand(const StepLibrary& stands, const Walker& walker) {
   return sum;
 }
 
-// The mean pose over a step of each foot: upright, the arms down. Its root is above the middle of
-// the ankles.
+// The mean pose over a step of each foot, upright on straight legs, the arms down. Its root is
+// above the middle of the ankles.
 PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
   PoseVector sum;
   std::vector<Transform> world(walker.skeleton->names.size());
@@ -196,15 +197,29 @@ PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
     }
   }
   divide_poses(2 * kMeanSamples, sum);
-  // The hips as high as legs that are nearly straight carry them.
+  // The hips as high as legs that are nearly straight carry them, feet flat below.
   position_of(sum, 0) = Vec3::Zero();
   walker.to_world(sum, world);
+  const auto height_of_ankle = [](const Leg& leg) {
+    return (leg.sole.sole.conjugate() * -leg.sole.heel).y();
+  };
   double height = std::numeric_limits<double>::infinity();
   for (const Leg& leg : walker.legs) {
-    const double sole = (leg.sole.sole.conjugate() * -leg.sole.heel).y();  // under the ankle
-    height = std::min(height, sole + kStandingLeg * leg.length - world[at(leg.upper)].position.y());
+    const Vec3& hip = world[at(leg.upper)].position;
+    const double longest = kStandingLeg * leg.length;
+    const double up = std::sqrt(std::max(0.0, longest * longest - hip.z() * hip.z()));
+    height = std::min(height, height_of_ankle(leg) + up - hip.y());
   }
   position_of(sum, 0) = Vec3(0, height, 0);
+  walker.to_world(sum, world);
+  std::array<FootPose, 2> flat;
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Leg& leg = walker.legs[side];
+    flat[side].foot = {Vec3(world[at(leg.upper)].position.x(), height_of_ankle(leg), 0),
+                       leg.sole.sole.conjugate()};
+    flat[side].toes = leg.flat_toes.conjugate();
+  }
+  solve_legs(walker, flat, 0, sum, world);
   return sum;
 }
 
