@@ -114,20 +114,27 @@ Result<Cycle> best_cycle(const Clip& clip, int carrier, std::span<const Keytime>
   std::erase_if(cycles, [&](const Cycle& cycle) {
     return length(cycle) > kOddLength * usual || length(cycle) * kOddLength < usual;
   });
+  // A walk is looped along a straight way where there is one: a stride that turns has legs that
+  // step aside, and its loop walks in a circle.
   std::optional<Cycle> best;
   double least = INFINITY;
+  int straight = 0;
   for (Cycle& cycle : cycles) {
     const auto looped = loop(cut(clip, cycle.first, cycle.last), carrier, {.end = LoopEnd::closed});
     if (!looped) continue;
     const Seam& seam = looped->before;
     const double cost = seam.angle + kWeightOfVelocity * seam.angular_velocity;
-    if (!(cost < least)) continue;
+    const bool turns = looped->turn != 0;
+    straight += turns ? 0 : 1;
+    const bool first_straight = !turns && straight == 1;
+    if ((turns && straight > 0) || (!first_straight && !(cost < least))) continue;
     least = cost;
     cycle.angle = seam.angle;
     best = cycle;
   }
   if (!best) return none("no cycle is long enough to loop");
   best->compared = static_cast<int>(cycles.size());
+  best->straight = straight;
   return *best;
 }
 

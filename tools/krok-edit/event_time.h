@@ -27,10 +27,11 @@ struct Cycle {
   int number = 1;    // of the first of the two
   double angle = 0;  // radians, by which poses differ at most at the seam
   int compared = 1;  // cycles that there were to choose from
+  int straight = 0;  // of these, that turn by at most 10 degrees
 };
 
-// The cycle between frames `first` and `last` whose ends match best in pose and velocity. Cycles
-// far from the usual length, where a strike was missed, do not count. Code edit-cycle if there is
+// The cycle between frames `first` and `last` whose ends match best in pose and velocity, of those
+// that are straight if there are any. Cycles far from the usual length, where a strike was missed, do not count. Code edit-cycle if there is
 // none.
 Result<Cycle> best_cycle(const Clip& clip, int carrier, std::span<const Keytime> keytimes,
                          CycleFoot foot, int first, int last);

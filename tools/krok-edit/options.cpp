@@ -58,11 +58,13 @@ void declare_cut(CommandOptions& command, Arguments& a) {
       "by "
       "krok-keys");
   command.add_option("--to TIME", a.to, "End of the range to keep, inclusive");
-  add_choice(command, "--cycle", a.cycle,
-             {{"auto", CycleFoot::either}, {"left", CycleFoot::left}, {"right", CycleFoot::right}},
-             "Keep one gait cycle, from a strike of a foot to its next, and loop it: the one whose "
-             "ends match best, of either foot or of the left or right one",
-             "FOOT", "");
+  add_choice(
+      command, "--cycle", a.cycle,
+      {{"auto", CycleFoot::either}, {"left", CycleFoot::left}, {"right", CycleFoot::right}},
+      "Keep one gait cycle, from a strike of a foot to its next, and loop it: the one whose "
+      "ends match best, of those that turn by at most 10 degrees if there are any, of either "
+      "foot or of the left or right one",
+      "FOOT", "");
   command.add_option(
       "--sequences IN.json", a.sequences,
       "File that lists sequences of the input (formats/sequences/SPEC.md). Without --sequence each "
@@ -80,7 +82,10 @@ void declare_timing(CommandOptions& command, Arguments& a) {
   add_number(command, "--speed TIMES", a.speed,
              "Playback speed factor; multiplied by the speed of a sequence")
       .default_str("1");
-  add_rate(command, "--resample", a.resample, "Frame rate of the result");
+  add_rate(
+      command, "--resample", a.resample,
+      "Frame rate of the result. Frames are interpolated: for a lower rate, --filter butterworth "
+      "first removes what it cannot hold");
 }
 
 void declare_joining(CommandOptions& command, Arguments& a) {

@@ -195,9 +195,14 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
     metrics["cycle"] = {{"from", fmt::format("{}[{}]", best->name, best->number)},
                         {"to", fmt::format("{}[{}]", best->name, best->number + 1)},
                         {"angle", to_degrees(best->angle)},
-                        {"compared", best->compared}};
+                        {"compared", best->compared},
+                        {"straight", best->straight}};
+    const std::string among =
+        best->straight > 0 && best->straight < best->compared
+            ? fmt::format("{} straight ones of {}", best->straight, best->compared)
+            : std::to_string(best->compared);
     chosen = fmt::format("cycle {}[{}] to [{}], of {} the one that matches best, ", best->name,
-                         best->number, best->number + 1, best->compared);
+                         best->number, best->number + 1, among);
   }
   edit.clip = cut(edit.clip, first, last);
   metrics["first_frame"] = first;
@@ -308,7 +313,11 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
   return {};
 }
 
-Status make_loop(const Options& options, ToolContext&, Edit& edit) {
+// Degrees that poses differ by at the ends of a clip that is hardly one cycle; those of captured
+// cycles from strike to strike differ by 3 to 12.
+constexpr double kPoorSeam = 20;
+
+Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
   if (!edit.loop) {
     if (!options.rounds) return {};
     return Error("usage", "--rounds needs a loop", "add --loop");
@@ -323,6 +332,14 @@ Status make_loop(const Options& options, ToolContext&, Edit& edit) {
   if (!looped) return std::move(looped.error()).in_file(options.input);
   Json metrics = loop_json(*looped, edit);
   std::string line = loop_text(*looped, edit);
+  if (to_degrees(looped->before.angle) > kPoorSeam) {
+    context.warn("edit-seam",
+                 fmt::format("poses at both ends differ by up to {} ({}), which the loop spreads "
+                             "over {} frames on either side",
+                             in_degrees(looped->before.angle),
+                             joint_name(edit, looped->before.angle_joint), looped->blended_frames),
+                 "choose ends at the same moment of a cycle: --cycle auto, or --from and --to");
+  }
   edit.clip = std::move(looped->clip);
   if (options.rounds) {
     auto all = repeated(edit.clip, looped->displacement, *options.rounds);

@@ -76,6 +76,39 @@ TEST_F(EditEvents, ACycleIsCutAndLooped) {
   EXPECT_GE(late["first_frame"].get<int>(), 120);
 }
 
+// Would fail if the loop of a walk with curves were a stride that turns, which matches a little
+// better.
+TEST_F(EditEvents, AStraightCycleIsPreferred) {
+  samples::WalkOptions options;
+  options.cadence = 120;
+  options.steps = 10;
+  options.rate = 60;
+  options.turn = 12 * kRadiansPerDegree;
+  write("curve.anim", samples::make_walk(options).value().clip);
+  options.turn = 0;
+  options.noise_angle = 0.3 * kRadiansPerDegree;
+  write("straight.anim", samples::make_walk(options).value().clip);
+  ASSERT_EQ(run_here("krok-edit", {"curve.anim", "--append", "straight.anim", "-o", "both.anim"})
+                .exit_code,
+            0);
+  const json steps = report_here(
+      "krok-edit", {"both.anim", "--cycle", "auto", "-o", "out.anim"})["result"]["steps"];
+  const json& cycle = steps[0]["cycle"];
+  EXPECT_LT(cycle["straight"].get<int>(), cycle["compared"].get<int>());
+  EXPECT_GT(cycle["angle"].get<double>(), 0.3) << "of the part with noise";
+  EXPECT_EQ(steps[1]["turn"], 0);
+}
+
+// Would fail if a loop of what is no cycle were made without a word.
+TEST_F(EditEvents, EndsThatAreFarApartAreTold) {
+  const ToolRun far = run_here(
+      "krok-edit", {"walk.anim", "--loop", "--from", "1s", "--to", "1.5s", "-o", "out.anim"});
+  EXPECT_EQ(far.exit_code, 0);
+  EXPECT_TRUE(has_code(far.err, "edit-seam")) << far.err;
+  const ToolRun whole = run_here("krok-edit", {"walk.anim", "--cycle", "auto", "-o", "out.anim"});
+  EXPECT_FALSE(has_code(whole.err, "edit-seam")) << whole.err;
+}
+
 TEST_F(EditEvents, KeytimesThatAreNotThereAreNamed) {
   const auto refused = [&](const std::string& from) {
     const ToolRun run = run_here("krok-edit", {"walk.anim", "--from", from, "-o", "x.anim"});
