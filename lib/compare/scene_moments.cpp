@@ -165,8 +165,20 @@ Status choose_moments(SceneComparison& comparison) {
     return {};
   }
   const auto first_names = names_of(first), second_names = names_of(second);
-  ListMatch match = match_lists(first_names, second_names, Matching::automatic);
-  if (first.size() != second.size()) {
+  // Formats without names do not lack them.
+  const bool by_name = comparison.options.matching == Matching::name && all_named(first_names) &&
+                       all_named(second_names);
+  ListMatch match =
+      match_lists(first_names, second_names, by_name ? Matching::name : Matching::automatic);
+  if (by_name) {
+    if (!match.only_first.empty()) {
+      comparison.say("only in the first: " + list_of("animation", first_names, match.only_first));
+    }
+    if (!match.only_second.empty()) {
+      comparison.say("only in the second: " +
+                     list_of("animation", second_names, match.only_second));
+    }
+  } else if (first.size() != second.size()) {
     std::string text =
         fmt::format("{} in the first, {} in the second",
                     counted(static_cast<long long>(first.size()), "animation"), second.size());
@@ -186,6 +198,7 @@ Status choose_moments(SceneComparison& comparison) {
     }
     comparison.say(std::move(text));
   }
+  note_renamed(comparison, "animation", first_names, second_names, match.pairs);
   for (const auto& [i, j] : match.pairs) {
     if (auto added = add_moments(comparison, i, j); !added) return added;
   }

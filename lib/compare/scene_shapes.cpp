@@ -183,6 +183,10 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
     for (std::string& one : differences(a.material_parameters, b.material_parameters, tolerance)) {
       found.push_back(std::move(one));
     }
+    if (comparison.options.matching == Matching::name && a.material->name != b.material->name) {
+      found.push_back(fmt::format("called {} in the first, {} in the second", a.material->name,
+                                  b.material->name));
+    }
     text = fmt::format("{}", fmt::join(found, "; "));
   } else if (a.material != b.material) {
     text = fmt::format("only the {} has one", a.material != nullptr ? "first" : "second");

@@ -235,6 +235,32 @@ TEST_F(KrokDiffMatching, MeshesOfOtherNamesAreMatchedByOrderAndMissingOnesNamed)
   EXPECT_THAT(wrong.err, HasSubstr("'nearby' is not auto, order, name or nearest"));
 }
 
+// Would fail if an engine that looks clips, meshes and materials up by name found none after an
+// export that passed.
+TEST_F(KrokDiffMatching, RenamedClipsMeshesAndMaterialsAreTold) {
+  const auto named_rig = [](const char* clip, const char* material) {
+    test::GlbBuilder builder = test::rig();
+    builder.json["animations"][0]["name"] = clip;
+    builder.json["materials"] = {{{"name", material}}};
+    builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+    return builder;
+  };
+  write("a.glb", named_rig("walk", "skin"));
+  write("clip.glb", named_rig("stroll", "skin"));
+  write("material.glb", named_rig("walk", "hide"));
+  const auto clip = diff({"a.glb", "clip.glb"});
+  EXPECT_EQ(clip.exit_code, 0) << clip.out << clip.err;
+  EXPECT_THAT(clip.out, HasSubstr("animation walk is stroll in the second"));
+  const auto named = diff({"a.glb", "clip.glb", "--match", "name"});
+  EXPECT_EQ(named.exit_code, 1) << named.out << named.err;
+  EXPECT_THAT(named.out, HasSubstr("only in the second: animation stroll"));
+  EXPECT_EQ(diff({"a.glb", "material.glb", "--materials"}).exit_code, 0);
+  const auto material = diff({"a.glb", "material.glb", "--materials", "--match", "name"});
+  EXPECT_EQ(material.exit_code, 1) << material.out << material.err;
+  EXPECT_THAT(material.out, HasSubstr("called skin in the first, hide in the second"));
+  EXPECT_EQ(diff({"a.glb", "a.glb", "--materials", "--match", "name"}).exit_code, 0);
+}
+
 TEST_F(KrokDiffMatching, JointsAndNormalsHaveTolerancesOfTheirOwn) {
   Clip moved = three_joint_clip();
   for (int f = 0; f < 600; ++f) {
