@@ -86,7 +86,7 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) 
              "HOW", "auto");
   command
       .add_option("--tolerance LENGTH", arguments.length,
-                  "Max distance that counts as the same: 0.1mm, 0.2cm; a bare number is metres")
+                  "Max distance that counts as the same: 0.1mm, 0.2cm, with a unit")
       .default_str(arguments.length);
   command
       .add_option("--angle ANGLE", arguments.angle,

@@ -140,8 +140,9 @@ void declare_place(CommandOptions& command, Arguments& a) {
                    "sway and loops");
   command.group("8. Size");
   add_number(command, "--scale TIMES", a.scale, "Scale factor for the skeleton and its motion");
-  command.add_option("--height LENGTH", a.height,
-                     "Scale to this height of the reference pose, lowest to highest joint: 1.8m");
+  command.add_option(
+      "--height LENGTH", a.height,
+      "Scale to this height of the reference pose, lowest to highest joint: 1.8m, with a unit");
   command.group("9. Position");
   command.add_flag("--at-origin", a.at_origin, "Start above the origin");
   command.add_flag("--re-orient", a.re_orient, "Start facing +Z, the same as --heading 0");

@@ -7,6 +7,7 @@
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
+#include "core/tolerance.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/options.h"
@@ -140,7 +141,7 @@ Status understand_place(const Arguments& a, Options& options) {
   }
   options.scale = a.scale;
   if (!a.height.empty()) {
-    auto height = parse_length(a.height);
+    auto height = parse_length_with_unit(a.height, "cm");
     if (!height) return named(std::move(height).error(), "--height");
     if (Status status = over_nought(*height, "--height"); !status) return status;
     options.height = *height;

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/numbers.h"
-#include "core/quantity.h"
+#include "core/tolerance.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-fit/run.h"
 
@@ -83,8 +83,9 @@ void declare(CommandOptions& command, Options& options) {
 
 Status check(const Options& options) {
   if (options.until.empty()) return {};
-  const auto until = parse_length(options.until);
-  if (!until) return until.error();
+  const auto until = parse_length_tolerance(options.until);
+  if (!until)
+    return Error(until.error().code, "--until: " + until.error().message, until.error().hint);
   if (*until > 0) return {};
   return Error("usage", "--until: the error must be greater than 0");
 }

@@ -115,6 +115,7 @@ void add_fit(const steps::StepsFile& steps, Description& out) {
   const auto inside = number_in(report, "/leave_one_out/inside");
   if (inside && *inside == 0) {
     out.add("left out", "not measured: no example lies between the others");
+    for (const char* key : {"left_out", "left_out_linear", "left_out_nearest"}) json[key] = nullptr;
     out.json["fit"] = std::move(json);
     return;
   }

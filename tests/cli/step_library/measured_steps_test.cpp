@@ -80,13 +80,14 @@ TEST_F(StepLibrary, AnInfoTellsHowGoodItIs) {
   const ToolRun text = run_tool("krok-info", {path("out.steps")});
   ASSERT_EQ(text.exit_code, 0) << text.err;
   EXPECT_LT(text.out.find("held-out"), text.out.find("krok-fit"));
-  for (const char* says : {"length: ", "weights from ", "nearest "}) {
+  // The four examples are the corners: none lies between the others.
+  for (const char* says : {"length: ", "weights from ", "left out    not measured"}) {
     EXPECT_THAT(text.out, HasSubstr(says));
   }
   const ToolRun info = run_tool("krok-info", {path("out.steps"), "--json"});
   const json fit = json::parse(info.out)["result"]["files"][0]["fit"];
   const json report = json::parse(InputFile::open(path("r.json"))->text())["result"];
-  EXPECT_EQ(fit["left_out"], report["leave_one_out"]["weighted"]);
+  EXPECT_TRUE(fit["left_out"].is_null() && report["leave_one_out"]["weighted"].is_null());
   EXPECT_LE(fit["errors"]["length"]["mean"], fit["errors"]["length"]["largest"]);
   EXPECT_LT(fit["least_weight"], fit["largest_weight"]);
 }
