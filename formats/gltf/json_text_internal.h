@@ -49,6 +49,10 @@ struct InstancedNode {
   std::map<std::string, int> attributes;  // accessors; -1 where they are not valid
 };
 
+// extras of nodes that Krok adds to name a joint as an eye: {"krok": "eye"}.
+inline constexpr const char* kMark = "krok";
+inline constexpr const char* kEye = "eye";
+
 struct CameraEntry {
   std::string name;
   bool perspective = true;
@@ -66,6 +70,7 @@ struct ParsedJson {
   std::vector<CameraEntry> cameras;
   std::vector<std::vector<std::string>> target_names;  // [meshes], may be empty
   std::vector<bool> lights;  // [nodes], whether they carry a light (KHR_lights_punctual)
+  std::vector<bool> marked;  // [nodes], whether Krok wrote them to name a joint as an eye
   std::vector<bool> hidden;  // [nodes], by themselves (KHR_node_visibility)
   std::vector<InstancedNode> instanced;
   std::vector<std::string> not_shown;  // as nodes::Scene::not_shown

@@ -5,6 +5,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/gltf/document_internal.h"
+#include "formats/gltf/json_text_internal.h"
 
 // Writes materials, textures and eyes.
 
@@ -188,6 +189,9 @@ Status Document::add_eyes(const Skeleton& skeleton, int skin,
     tinygltf::Node node;
     node.name = unique_node_name(eye.name + "_eye");
     if (!place.isZero(0)) node.translation = {place.x(), place.y(), place.z()};
+    // At a joint it only names that, and is no joint of the skeleton when the file is read.
+    if (place.norm() < 1e-6f)
+      node.extras = tinygltf::Value({{kMark, tinygltf::Value(std::string(kEye))}});
     gltf.nodes[static_cast<std::size_t>(first) + joint].children.push_back(
         static_cast<int>(gltf.nodes.size()));
     gltf.nodes.push_back(std::move(node));

@@ -52,7 +52,8 @@ Status take_nodes(const ParsedJson& parsed, Scene& scene) {
     node.skin = source.skin;
     node.camera = source.camera;
     node.weights = source.weights;
-    node.fixture = i < parsed.lights.size() && parsed.lights[i];
+    node.fixture = (i < parsed.lights.size() && parsed.lights[i]) ||
+                   (i < parsed.marked.size() && parsed.marked[i]);
     node.visible = i >= parsed.hidden.size() || !parsed.hidden[i];
     const std::string name = label("node", i, node.name);
     if (node.mesh != -1 && !exists(node.mesh, model.meshes.size())) {

@@ -300,6 +300,17 @@ TEST(GltfEyes, AreNodesUnderTheirJoints) {
   EXPECT_LT((world - place).norm(), 1e-6);
   EXPECT_EQ(glb.json["skins"][0]["joints"].size(), joints);
 
+  // One at its joint only names that: read back, it is no joint of the skeleton.
+  const std::vector<Character::Eye> at_joint = {
+      {"left", "Head", model.skeleton.reference[head].position.cast<float>()}};
+  for (const auto& [list, expected] : {std::pair(at_joint, joints), std::pair(eyes, joints + 1)}) {
+    options.eyes = list;
+    const auto back = read_with_materials(rig(model, options).bytes);
+    ASSERT_TRUE(back.ok());
+    const auto fixtures = std::ranges::count_if(back->nodes, &nodes::Node::fixture);
+    EXPECT_EQ(fixtures, expected == joints ? 1 : 0);
+  }
+
   const std::vector<Character::Eye> lost = {{"left", "Hat", {}}};
   options.eyes = lost;
   EXPECT_EQ(test::error_code([&](OutputFile& file) {
