@@ -77,7 +77,7 @@ SkeletonMatch match_joints(Names first_names, std::span<const int> first_parents
     match.difference = fmt::format("{} in the first, {} in the second", joints(first_names.size()),
                                    second_names.size());
   }
-  if (!match.difference.empty() && matching != Matching::name) return match;
+  if (!match.difference.empty() && !by_name) return match;
 
   std::vector<int> second_of_first(first_names.size(), -1);
   const ListMatch list =
@@ -94,7 +94,7 @@ SkeletonMatch match_joints(Names first_names, std::span<const int> first_parents
         "the parent of {} is {} in the first and {} in the second", name_of_joint(first_names, i),
         name_of_parent(first_names, first_parent), name_of_parent(second_names, second_parent));
   }
-  if (match.difference.empty() || matching == Matching::name) {
+  if (match.difference.empty() || by_name) {
     match.second_of_first = std::move(second_of_first);
   }
   return match;
@@ -110,7 +110,6 @@ SkeletonMatch match_skeletons(const Skeleton& first, const Skeleton& second, Mat
     match.difference = fmt::format("{} is {} in the first and {} in the second", first.names[i],
                                    first.end_sites[i] != 0 ? "an end site" : "a joint",
                                    second.end_sites[j] != 0 ? "an end site" : "a joint");
-    if (matching != Matching::name) match.second_of_first.clear();
   }
   return match;
 }

@@ -15,8 +15,8 @@ struct SkeletonMatch {
   // Readable difference: joints that only one has, a joint with another parent, an end site that is
   // a joint in the other. Empty if there is none; the order of joints is ignored.
   std::string difference;
-  // The second's joint for each joint of the first. Filled if `difference` is empty; for
-  // Matching::name always, with -1 for joints that only the first has.
+  // The second's joint for each joint of the first, -1 for joints that only the first has. Empty if
+  // they are matched by index and there is a difference.
   std::vector<int> second_of_first;
 };
 

@@ -52,6 +52,7 @@ class ClipPair {
     const auto skeletons = compare::match_skeletons(first.skeleton, second.skeleton);
     first_of_second_.assign(second.skeleton.names.size(), -1);
     for (std::size_t j = 0; j < skeletons.second_of_first.size(); ++j) {
+      if (skeletons.second_of_first[j] < 0) continue;
       first_of_second_[static_cast<std::size_t>(skeletons.second_of_first[j])] =
           static_cast<int>(j);
     }
