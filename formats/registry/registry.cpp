@@ -246,6 +246,10 @@ std::string advice(Kind found, Kind wanted) {
   if (found == wanted) return {};
   const bool capture = found == Kind::bvh || found == Kind::asf || found == Kind::amc;
   if (capture || is_read_through_assimp(found)) return "import it with krok-import";
+  if (found == Kind::glb || found == Kind::gltf) {
+    return "krok-import converts it: --character NAME.character writes its mesh and skeleton, -o "
+           "NAME.anim an animation";
+  }
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
   const bool own = found >= Kind::anim && found <= Kind::ragdoll;
   if (own) return "perhaps two arguments are in the wrong order";

@@ -15,33 +15,37 @@ namespace {
 
 constexpr std::size_t kMaxLetters = 64;
 
-// Levenshtein distance, row by row.
+// Levenshtein distance, row by row, in which two letters in the wrong order are one mistake.
 std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+  std::vector<std::size_t> before, last(b.size() + 1), row(b.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
     row[0] = i + 1;
     for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t exchanged = diagonal + (a[i] == b[k] ? 0 : 1);
-      diagonal = row[k + 1];
-      row[k + 1] = std::min({exchanged, row[k] + 1, row[k + 1] + 1});
+      row[k + 1] = std::min({last[k] + (a[i] == b[k] ? 0 : 1), last[k + 1] + 1, row[k] + 1});
+      if (i > 0 && k > 0 && a[i] == b[k - 1] && a[i - 1] == b[k]) {
+        row[k + 1] = std::min(row[k + 1], before[k - 1] + 1);
+      }
     }
+    before = last;
+    last = row;
   }
-  return row.back();
+  return last.back();
 }
 
 }  // namespace
 
 std::string nearest_name(std::string_view word, std::span<const std::string> names) {
   const std::string wanted = ascii_lower(word.substr(0, kMaxLetters));
+  const std::size_t dashes = wanted.starts_with("--") ? 2 : 0;
   std::string best;
   std::size_t least = 0;
   for (const std::string& name : names) {
     const std::string other = ascii_lower(std::string_view(name).substr(0, kMaxLetters));
     const std::size_t found = distance(wanted, other);
-    const std::size_t near = std::max<std::size_t>(2, std::max(wanted.size(), other.size()) / 3);
-    if (found > near || (!best.empty() && found >= least)) continue;
+    const std::size_t longer = std::max(wanted.size(), other.size());
+    const std::size_t near = std::max<std::size_t>(2, longer / 3);
+    if (found > near || 2 * found > longer - dashes || (!best.empty() && found >= least)) continue;
     best = name;
     least = found;
   }

@@ -39,6 +39,7 @@ struct Outcome {
   FileState state = FileState::failed;
   OneOfMany run;  // its held files are those to be renamed to their final names
   Json report;
+  bool warned = false;
   Status journal;
   // Outputs whose names are not known from the list, "hero_{clip}.anim": if two files write the
   // same one, the first in list order gets it.
@@ -152,6 +153,9 @@ class Batch {
       fail(file, Error("internal", error.what()), outcome);
     }
     // Free data that no report needs on the thread that allocated it, which is cheaper.
+    outcome.warned = std::ranges::any_of(outcome.context.report.issues, [](const Diagnostic& one) {
+      return one.severity == Severity::warning;
+    });
     if (!report_.is_wanted()) outcome.context.report.issues = {};
     return outcome;
   }
@@ -278,7 +282,7 @@ class Batch {
     if (!outcome.journal && journal_trouble_) {
       journal_trouble_ = outcome.journal;
     }
-    tally_.add(outcome.state, file.input);
+    tally_.add(outcome.state, file.input, outcome.warned);
     console_->advance(1);
     if (outcome.state == FileState::done) {
       for (const std::string& path : outcome.context.report.outputs) {

@@ -29,7 +29,8 @@ const char* name_of(FileState state) {
   return "failed";
 }
 
-void BatchTally::add(FileState state, const std::string& name) {
+void BatchTally::add(FileState state, const std::string& name, bool warned) {
+  if (state == FileState::done && warned) ++warned_;
   ++counts_[static_cast<std::size_t>(state)];
   if (state == FileState::failed && failed_.size() < kNamed) failed_.push_back(name);
 }
@@ -42,6 +43,7 @@ Json BatchTally::result() const {
   Json json;
   json["files"] = files_;
   json["done"] = count(FileState::done);
+  json["with_warnings"] = warned_;
   json["unchanged"] = count(FileState::unchanged);
   json["failed"] = failed();
   json["left"] = left();
@@ -57,6 +59,7 @@ std::string BatchTally::summary(const std::string& of_what) const {
   add(count(FileState::unchanged), "unchanged");
   add(failed(), "failed");
   add(left(), "left");
+  if (warned_ > 0) text += fmt::format("; {} with warnings", warned_);
   return text;
 }
 

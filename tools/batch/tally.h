@@ -21,12 +21,12 @@ class BatchTally {
  public:
   explicit BatchTally(std::size_t files = 0) : files_(files) {}
 
-  void add(FileState state, const std::string& name);
+  void add(FileState state, const std::string& name, bool warned);
 
   std::size_t failed() const { return count(FileState::failed); }
-  // {"files", "done", "unchanged", "failed", "left"}
+  // {"files", "done", "with_warnings", "unchanged", "failed", "left"}
   Json result() const;
-  // "12 files{of_what}, 10 done, 2 failed"; zero counts are omitted.
+  // "12 files{of_what}, 10 done, 2 failed; 3 with warnings"; zero counts are omitted.
   std::string summary(const std::string& of_what) const;
   // Error that names the first failed files. Without `kept_going`, the first ended the batch.
   Error failure(bool kept_going) const;
@@ -37,6 +37,7 @@ class BatchTally {
 
   std::size_t files_;
   std::array<std::size_t, 3> counts_{};
+  std::size_t warned_ = 0;           // files that are done
   std::vector<std::string> failed_;  // names, the first few
 };
 

@@ -6,6 +6,7 @@
 
 #include "camera/camera_motion.h"
 #include "camera/keyed_camera.h"
+#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/cam/cam.h"
@@ -94,10 +95,14 @@ Result<int> find_joint(const std::string& name, const Skeleton& skeleton, const 
   if (joint >= 0) return joint;
   const auto role = parse_role(name);
   if (role && roles.joint(*role) >= 0) return roles.joint(*role);
+  std::vector<std::string> known = skeleton.names;
+  for (const Role one : roles.roles) known.emplace_back(role_name(one));
+  const std::string near = role ? std::string() : nearest_name(name, known);
   return Error("cam-joint",
                role ? fmt::format("--follow {}: no joint has that role", shown(name))
                     : fmt::format("--follow {}: the motion has no joint of that name", shown(name)),
-               "krok-info -v lists the joints and their roles; --map assigns roles");
+               near.empty() ? "krok-info -v lists the joints and their roles; --map assigns roles"
+                            : fmt::format("did you mean '{}'?", near));
 }
 
 void warn(ToolContext& context, const std::string& path, const char* code, std::string message,
@@ -279,7 +284,7 @@ void report(const Shot& shot, ToolContext& context) {
                              {"largest", to_degrees(motion.most_field_of_view)}};
   context.report.result = std::move(result);
   context.log(fmt::format("{}: {}, {} s{}{}; max {} m/s and {} degrees/s", context.output,
-                          counted(track.frame_count(), "frame"), readable(duration, 3),
+                          counted(track.frame_count(), "frame"), readable(duration, 4),
                           shot.words.empty() ? "" : "; ", shot.words,
                           readable(motion.largest_speed, 3),
                           readable(motion.largest_turning / kRadiansPerDegree, 3)));

@@ -173,11 +173,12 @@ Status write_table(ExportFormat format, const Clip& clip, const Options& options
     return write_output(context, context.output,
                         [&](OutputFile& file) { return csv::write(clip, file); });
   }
+  const bool is_angle = what == What::angles || what == What::local;
   const auto table = series_of(what, format, options, clip, context);
   if (!table) return table.error();
   context.report.result["columns"] = table->items;
   return write_output(context, context.output, [&](OutputFile& file) {
-    if (opensim) return opensim::write(*table, clip_name_of(options.input), true, file);
+    if (opensim) return opensim::write(*table, clip_name_of(options.input), is_angle, file);
     return layout == Layout::wide ? csv::write_wide(*table, file) : csv::write_long(*table, file);
   });
 }
@@ -237,7 +238,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!columns.is_null()) context.report.result["columns"] = std::move(columns);
   context.log(fmt::format("{}: {}, {}, {} s{}", context.output,
                           counted(motion->skeleton.joint_count(), "joint"),
-                          counted(motion->frame_count, "frame"), readable(motion->duration, 3),
+                          counted(motion->frame_count, "frame"), readable(motion->duration, 4),
                           reduction ? words_for(*reduction) : ""));
   return kExitDone;
 }

@@ -90,7 +90,7 @@ std::string line_about(const std::string& input, const FrameSource& motion, cons
   const double size = stature ? stature->metres : reference_extent(motion.skeleton);
   return fmt::format("{}: {}, {} at {} fps ({} s), {} {} m", name,
                      counted(motion.joint_count(), "joint"), counted(motion.frame_count, "frame"),
-                     readable(motion.rate), readable(motion.duration(), 2),
+                     readable(motion.rate), readable(motion.duration(), 4),
                      stature ? "stature" : "size", readable(size, 3));
 }
 

@@ -55,7 +55,7 @@ void add_conventions(const Conventions& conventions, Description& out) {
 void add_timing(int frames, double rate, Description& out) {
   const double duration = frames < 2 ? 0.0 : (frames - 1) / rate;
   out.add("frames", fmt::format("{} at {} frames/s", grouped(frames), readable(rate)));
-  out.add("duration", readable(duration, 5) + " s");
+  out.add("duration", readable(duration, 4) + " s");
   out.json["frames"] = frames;
   out.json["rate"] = rate;
   out.json["duration"] = duration;

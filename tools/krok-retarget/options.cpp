@@ -73,8 +73,8 @@ void declare(CommandOptions& command, Options& options) {
                   "Motion, or a capture read as by krok-import (- is standard input)")
       .required();
   command
-      .add_option("--onto IN.model|IN.anim", options.onto,
-                  "Target skeleton: a model, or any motion or capture of it")
+      .add_option("--onto IN.model|IN.character|IN.anim", options.onto,
+                  "Target skeleton: a model or character, or any motion or capture of it")
       .required();
   command.group("Joints");
   add_map_option(command, options.map, "--map",
@@ -142,7 +142,7 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-retarget", options, declare, check, run);
   spec.summary = "Retargets a motion to another skeleton";
-  spec.inputs = "--onto IN.model|IN.anim IN.anim";
+  spec.inputs = "--onto IN.model|IN.character|IN.anim IN.anim";
   spec.needs_output = false;  // --save-alignment alone is enough
   spec.examples = {{"krok-retarget --onto hero.model walk.anim -o hero_walk.anim -v",
                     "joints are mapped by role; -v prints the mapping"},

@@ -7,6 +7,7 @@
 #include "core/numbers.h"
 #include "formats/alignment/alignment_format.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_terrain.h"
@@ -33,6 +34,14 @@ struct Target {
   std::optional<double> floor;
 };
 
+void take_model(Model model, Target& target) {
+  for (const Vec3f& position : model.positions) {
+    const double height = position.y();
+    target.floor = std::min(target.floor.value_or(height), height);
+  }
+  target.clip.skeleton = std::move(model.skeleton);
+}
+
 Result<Target> read_target(const std::string& path, ToolContext& context) {
   const auto file = context.open_input(path);
   if (!file) return file.error();
@@ -41,11 +50,13 @@ Result<Target> read_target(const std::string& path, ToolContext& context) {
   if (kind == registry::Kind::model) {
     auto model = model::read(file->bytes());
     if (!model) return std::move(model).error().in_file(path);
-    for (const Vec3f& position : model->positions) {
-      const double height = position.y();
-      target.floor = std::min(target.floor.value_or(height), height);
-    }
-    target.clip.skeleton = std::move(model->skeleton);
+    take_model(std::move(*model), target);
+    return target;
+  }
+  if (kind == registry::Kind::character) {
+    auto loaded = io::open_character(*file, context);
+    if (!loaded) return loaded.error();
+    take_model(std::move(loaded->model), target);
     return target;
   }
   auto clip = io::open_motion(*file, context);

@@ -133,6 +133,11 @@ int main(int argc, char** argv) {
   }
   if (verb == "completion") return complete(argc > 2 ? argv[2] : "");
   if (!is_verb(verb)) {
+    if (verb == "convert") {
+      return fail("unknown verb 'convert'",
+                  "krok import reads captures and characters, krok export writes motions as BVH, "
+                  "glTF or tables, krok skin characters as glTF");
+    }
     const std::string near = verb.empty() ? "" : krok::nearest_name(verb, verb_names());
     return fail(verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb),
                 near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near));

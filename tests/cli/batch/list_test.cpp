@@ -24,7 +24,7 @@ TEST_F(BatchList, APatternKeepsTheFoldersBelowItsFixedPart) {
   put("takes/notes.txt", "no capture");
   const ToolRun run = import({"takes/**/*.bvh", "--out-dir", "new/out"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, EndsWith("\nkrok-import: 3 files, 3 done\n"));
+  EXPECT_THAT(run.err, EndsWith("\nkrok-import: 3 files, 3 done; 3 with warnings\n"));
   EXPECT_EQ(files_below("new/out"), (Names{"a/x.anim", "b/c/x.anim", "y.anim"}));
 }
 
@@ -69,7 +69,7 @@ TEST_F(BatchList, AFileGivenTwiceIsDoneOnce) {
   put_capture("takes/x.bvh");
   const ToolRun run =
       import({"takes/x.bvh", "takes/*.bvh", "./takes/../takes/x.bvh", "--out-dir", "out"});
-  EXPECT_THAT(run.err, EndsWith("\nkrok-import: 1 file, 1 done\n"));
+  EXPECT_THAT(run.err, EndsWith("\nkrok-import: 1 file, 1 done; 1 with warnings\n"));
 }
 
 TEST_F(BatchList, WhatIsMissingOrDoesNotFitIsSaid) {

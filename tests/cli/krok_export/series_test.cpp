@@ -130,6 +130,12 @@ TEST_F(ExportSeries, AnglesAreThoseThatKrokPlotDraws) {
   EXPECT_EQ(compared, 10);
 }
 
+TEST_F(ExportSeries, OpenSimsFilesOfLengthsAreNotInDegrees) {
+  ASSERT_EQ(run_here("krok-export", {"walk.anim", "--what", "positions", "-o", "p.sto"}).exit_code,
+            0);
+  EXPECT_EQ(rows("p.sto", '\t')[4][0], "inDegrees=no");
+}
+
 TEST_F(ExportSeries, OpenSimsFilesHaveTheAnglesUnderItsCoordinates) {
   ASSERT_EQ(run_here("krok-export", {"walk.anim", "-o", "walk.mot"}).exit_code, 0);
   const Rows lines = rows("walk.mot", '\t');
