@@ -91,7 +91,7 @@ class Skeleton:
             raise KeyError(name) from None
 
 
-@dataclass
+@dataclass(repr=False)
 class Motion:
     """A motion (.anim): frame i is at i / `rate` seconds.
 
@@ -153,6 +153,22 @@ class Motion:
         """Keytimes of the sidecar; empty without one."""
         return [Keytime(k["name"], k["time"]) for k in self._keys.get("keytimes", [])]
 
+    @cached_property
+    def roles(self) -> dict[str, Any]:
+        """Which joint is what, as `krok-info` finds it: {"hips": "Hips", "spine": ["Spine", "Spine1"], ...}."""
+        with tempfile.TemporaryDirectory() as folder:
+            pose = os.path.join(folder, "pose.anim")
+            first = slice(0, 1)
+            write(Motion(self.skeleton, self.rate, self.positions[first], self.orientations[first]), pose)
+            return dict(run("info", pose)["result"]["files"][0].get("roles", {}))
+
+    def _summary(self) -> str:
+        return f"{len(self.positions)} frames, {len(self.names)} joints, {self.rate:g} fps, {self.duration:.2f} s"
+
+    def __repr__(self) -> str:
+        name = f" {os.path.basename(self.path)}" if self.path else ""
+        return f"<Motion{name}: {self._summary()}>"
+
     def to_frame(self) -> Any:
         """A pandas.DataFrame of positions in metres: index `time`, columns (joint, axis). Needs pandas."""
         import pandas
@@ -162,7 +178,7 @@ class Motion:
 
     def _repr_html_(self) -> str:
         """The motion as a strip of images, by `krok-plot`; plain text where that is not installed."""
-        text = f"{len(self.positions)} frames, {len(self.names)} joints, {self.rate:g} fps, {self.duration:.2f} s"
+        text = self._summary()
         with tempfile.TemporaryDirectory() as folder:
             clip, strip = os.path.join(folder, "motion.anim"), os.path.join(folder, "strip.png")
             try:
@@ -428,7 +444,9 @@ def write(data: Motion | Model | Camera, path: Path) -> None:
             if any(part.mesh for part in data.parts):
                 sections.append(("MESHNAME", _texts(part.mesh for part in data.parts)))
     if data.provenance:
-        sections.append(("META", json.dumps(data.provenance, ensure_ascii=False).encode()))
+        # The source stays that of the data; the tool is what wrote the file.
+        made = {**data.provenance, "tool": "krok (Python)"}
+        sections.append(("META", json.dumps(made, ensure_ascii=False).encode()))
     table, body, end = b"", [], 64 + 32 * len(sections)
     for name, content in sections:
         body += [b"\0" * (-end % 64), content]

@@ -6,6 +6,7 @@ FormatError, or read a file's content before it is used. Captures of ../shared/c
 """
 
 import csv
+import dataclasses
 import os
 import pathlib
 import random
@@ -167,6 +168,18 @@ class Files(unittest.TestCase):
         self.assertLess(memory("RssAnon") - own, 4)
         self.assertGreater(large.stat().st_size, 40 << 20)
         np.testing.assert_array_equal(column, np.tile(motion.positions[:40], (times, 1, 1))[::1000, 0, 1])
+
+    def test_a_motion_in_one_line_its_roles_and_who_made_a_changed_one(self):
+        motion = krok.read(self.walk())
+        self.assertEqual(repr(motion), "<Motion walk.anim: 264 frames, 29 joints, 60 fps, 4.38 s>")
+        self.assertEqual(motion.roles["hips"], "Hips")
+        self.assertEqual(motion.roles["chest"], "Spine2")
+        lifted = dataclasses.replace(motion, positions=motion.positions + [0, 0.1, 0], path=None)
+        self.assertEqual(repr(lifted), "<Motion: 264 frames, 29 joints, 60 fps, 4.38 s>")
+        krok.write(lifted, self.folder / "lifted.anim")
+        again = krok.read(self.folder / "lifted.anim")
+        self.assertEqual(again.provenance["tool"], "krok (Python)")
+        np.testing.assert_allclose(again.positions, motion.positions + [0, 0.1, 0], atol=1e-6)
 
     def test_pandas_and_notebooks(self):
         motion = krok.read(self.walk())
