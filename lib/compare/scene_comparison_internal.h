@@ -46,14 +46,10 @@ struct SceneComparison {
 // "mesh Body", or "mesh 3" if it has no name.
 std::string label(const char* kind, const std::string& name, int index);
 
-// "mesh Hat, mesh Scarf and 3 more"
-std::string list_of(const char* kind, const std::vector<std::string>& names,
-                    const std::vector<int>& items);
-
-// Notes items that have another name in the second: "animation walk is stroll in the second".
-void note_renamed(SceneComparison& comparison, const char* kind,
-                  const std::vector<std::string>& first, const std::vector<std::string>& second,
-                  const Pairs& pairs);
+// Reports that a pair has two names, by which engines look things up: a difference if it `counts`,
+// else a note. A file without names is not compared by them.
+void report_name(SceneComparison& comparison, const char* kind, const std::string& first,
+                 const std::string& second, bool counts);
 
 template <typename Item>
 std::vector<std::string> names_of(const std::vector<Item>& items) {

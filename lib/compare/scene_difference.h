@@ -79,8 +79,8 @@ struct SceneDifference {
   bool same() const;
 };
 
-// Compares each pair of animations (by name if all names of both are unique and the same set, or
-// with Matching::name, otherwise by index) at the key times of both, for as long as both last;
+// Compares each pair of animations (by name, those without a namesake in their order; by index if
+// one has no name or with Matching::order) at the key times of both, for as long as both last;
 // times within the tolerance are merged. Between key times, also at the ends of the parts of
 // KeyGap, and just before steps. Without animations, compares the static pose. A skinned scene can
 // be compared with one without joints; joints are then skipped. Normals or texture coordinates that
@@ -88,9 +88,10 @@ struct SceneDifference {
 // texture, and further texture coordinates if a texture uses them, otherwise they are a note.
 // Different numbers of morph targets are a note if one mesh is a bake of the other's motion. Two
 // meshes with the same triangles differ if one shows their backs. Deterministic for any number of
-// jobs. Names are compared with Matching::name: of meshes, animations and, where both are told,
-// materials; otherwise other names of meshes and animations are a note. Codes: compare-value if a
-// scene has values that are not finite, compare-too-long for more than a million moments.
+// jobs. Another name of an animation (not of a bake) or (with `materials`) a material is a
+// difference except with Matching::order; of a mesh it is a note, a difference by Matching::name.
+// Codes: compare-value if a scene has values that are not finite, compare-too-long for more than a
+// million moments.
 //
 // With Matching::nearest, all meshes of a scene are one surface if they cannot be matched by name.
 // Nearest points are found at the first time compared; after that each moves with its triangle. If

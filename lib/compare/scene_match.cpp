@@ -13,6 +13,18 @@ namespace {
 
 constexpr std::size_t kShown = 5;
 
+// "Hat, Scarf and 3 more"
+std::string list_of(const char* kind, const std::vector<std::string>& names,
+                    const std::vector<int>& items) {
+  std::string list;
+  for (std::size_t i = 0; i < std::min(items.size(), kShown); ++i) {
+    list += i == 0 ? "" : ", ";
+    list += label(kind, names[static_cast<std::size_t>(items[i])], items[i]);
+  }
+  if (items.size() > kShown) list += fmt::format(" and {} more", items.size() - kShown);
+  return list;
+}
+
 void say_partners_missing(SceneComparison& comparison, const ListMatch& match,
                           const std::vector<std::string>& first,
                           const std::vector<std::string>& second) {
@@ -130,33 +142,15 @@ std::string label(const char* kind, const std::string& name, int index) {
   return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {}", kind, name);
 }
 
-std::string list_of(const char* kind, const std::vector<std::string>& names,
-                    const std::vector<int>& items) {
-  std::string list;
-  for (std::size_t i = 0; i < std::min(items.size(), kShown); ++i) {
-    list += i == 0 ? "" : ", ";
-    list += label(kind, names[static_cast<std::size_t>(items[i])], items[i]);
+void report_name(SceneComparison& comparison, const char* kind, const std::string& first,
+                 const std::string& second, bool counts) {
+  if (first == second || first.empty() || second.empty()) return;
+  std::string text = fmt::format("{} {} is named {} in the second", kind, first, second);
+  if (counts) {
+    comparison.say(std::move(text));
+  } else {
+    comparison.note(std::move(text));
   }
-  if (items.size() > kShown) list += fmt::format(" and {} more", items.size() - kShown);
-  return list;
-}
-
-void note_renamed(SceneComparison& comparison, const char* kind,
-                  const std::vector<std::string>& first, const std::vector<std::string>& second,
-                  const Pairs& pairs) {
-  std::vector<std::string> texts;
-  for (const auto& [i, j] : pairs) {
-    const std::string &a = first[static_cast<std::size_t>(i)],
-                      &b = second[static_cast<std::size_t>(j)];
-    if (a != b && !a.empty() && !b.empty()) {
-      texts.push_back(fmt::format("{} is {} in the second", label(kind, a, i), b));
-    }
-  }
-  if (texts.empty()) return;
-  const std::size_t more = texts.size() - std::min(texts.size(), kShown);
-  texts.resize(texts.size() - more);
-  comparison.note(fmt::format("{}{}; --match name counts names", fmt::join(texts, ", "),
-                              more > 0 ? fmt::format(" and {} more", more) : ""));
 }
 
 void match_scene_joints(SceneComparison& comparison) {
@@ -203,8 +197,11 @@ void match_scene_meshes(SceneComparison& comparison) {
   }
   const ListMatch match = match_lists(first, second, comparison.options.matching);
   say_partners_missing(comparison, match, first, second);
-  note_renamed(comparison, "mesh", first, second, match.pairs);
   for (const auto& [i, j] : match.pairs) {
+    if (first.size() == second.size()) {
+      report_name(comparison, "mesh", first[static_cast<std::size_t>(i)],
+                  second[static_cast<std::size_t>(j)], false);
+    }
     const std::size_t a = comparison.first.meshes[static_cast<std::size_t>(i)].vertex_count;
     const std::size_t b = comparison.second.meshes[static_cast<std::size_t>(j)].vertex_count;
     if (a != b) {

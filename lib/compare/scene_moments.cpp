@@ -152,6 +152,19 @@ bool all_named(const std::vector<std::string>& names) {
   return std::ranges::none_of(names, [](const std::string& name) { return name.empty(); });
 }
 
+// As many animations in both, of which some have names of their own: those in their order.
+ListMatch with_renamed(const std::vector<std::string>& first,
+                       const std::vector<std::string>& second) {
+  ListMatch match = match_lists(first, second, Matching::name);
+  for (std::size_t k = 0; k < match.only_first.size(); ++k) {
+    match.pairs.emplace_back(match.only_first[k], match.only_second[k]);
+  }
+  std::ranges::sort(match.pairs);
+  match.only_first.clear();
+  match.only_second.clear();
+  return match;
+}
+
 }  // namespace
 
 Status choose_moments(SceneComparison& comparison) {
@@ -165,20 +178,8 @@ Status choose_moments(SceneComparison& comparison) {
     return {};
   }
   const auto first_names = names_of(first), second_names = names_of(second);
-  // Formats without names do not lack them.
-  const bool by_name = comparison.options.matching == Matching::name && all_named(first_names) &&
-                       all_named(second_names);
-  ListMatch match =
-      match_lists(first_names, second_names, by_name ? Matching::name : Matching::automatic);
-  if (by_name) {
-    if (!match.only_first.empty()) {
-      comparison.say("only in the first: " + list_of("animation", first_names, match.only_first));
-    }
-    if (!match.only_second.empty()) {
-      comparison.say("only in the second: " +
-                     list_of("animation", second_names, match.only_second));
-    }
-  } else if (first.size() != second.size()) {
+  ListMatch match = match_lists(first_names, second_names, Matching::automatic);
+  if (first.size() != second.size()) {
     std::string text =
         fmt::format("{} in the first, {} in the second",
                     counted(static_cast<long long>(first.size()), "animation"), second.size());
@@ -197,8 +198,21 @@ Status choose_moments(SceneComparison& comparison) {
           in_first ? "first" : "second");
     }
     comparison.say(std::move(text));
+  } else {
+    if (comparison.options.matching == Matching::order) {
+      match = match_lists(first_names, second_names, Matching::order);
+    } else if (all_named(first_names) && all_named(second_names)) {
+      match = with_renamed(first_names, second_names);
+    }
+    // A bake is another file of the same motion.
+    const bool baked =
+        comparison.first.joint_names.empty() != comparison.second.joint_names.empty();
+    const bool counts = !baked && comparison.options.matching != Matching::order;
+    for (const auto& [i, j] : match.pairs) {
+      report_name(comparison, "animation", first_names[static_cast<std::size_t>(i)],
+                  second_names[static_cast<std::size_t>(j)], counts);
+    }
   }
-  note_renamed(comparison, "animation", first_names, second_names, match.pairs);
   for (const auto& [i, j] : match.pairs) {
     if (auto added = add_moments(comparison, i, j); !added) return added;
   }

@@ -183,9 +183,10 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
     for (std::string& one : differences(a.material_parameters, b.material_parameters, tolerance)) {
       found.push_back(std::move(one));
     }
-    if (comparison.options.matching == Matching::name && a.material->name != b.material->name) {
-      found.push_back(fmt::format("called {} in the first, {} in the second", a.material->name,
-                                  b.material->name));
+    const std::string &one = a.material->name, &other = b.material->name;
+    const bool renamed = one != other && !one.empty() && !other.empty();
+    if (renamed && comparison.options.matching != Matching::order) {
+      found.push_back(fmt::format("named {} and {}", one, other));
     }
     text = fmt::format("{}", fmt::join(found, "; "));
   } else if (a.material != b.material) {

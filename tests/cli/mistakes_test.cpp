@@ -65,6 +65,18 @@ TEST_F(Mistakes, WordsOfOtherProgramsLeadOn) {
               HasSubstr("180cm"));
 }
 
+TEST_F(Mistakes, ScriptsGetAReportOfUnknownVerbs) {
+  const ToolRun run = run_here("krok", {"nope", "--json"});
+  EXPECT_EQ(run.exit_code, 2);
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["schema"], "krok.report/1");
+  EXPECT_EQ(report["issues"][0]["message"], "unknown verb 'nope'");
+}
+
+TEST_F(Mistakes, ABodyIsMadeForACaptureAsItIs) {
+  EXPECT_EQ(run_here("krok-body", {"in.bvh", "-o", "a.model"}).exit_code, 0);
+}
+
 TEST_F(Mistakes, ArgumentsTooManyAreListedInTheirOrder) {
   const std::string text = refused("krok-import", {"in.bvh", "b.bvh", "c.bvh", "-o", "a.anim"});
   EXPECT_THAT(text, AllOf(HasSubstr("'b.bvh' 'c.bvh'"), HasSubstr("--out-dir")));

@@ -63,7 +63,7 @@ ToolSpec make_spec() {
   spec.summary =
       "Generates a smooth closed body mesh around any skeleton, skinned to its joints, so that a "
       "capture can be viewed as a character";
-  spec.inputs = "IN.anim|IN.model";
+  spec.inputs = "IN.anim|IN.bvh|IN.amc|IN.model";
   spec.examples = {{"krok-body walk.anim -o walker.model",
                     "a body for the actor of a capture, about 10,000 vertices"},
                    {"krok-body dog.anim --detail high -o dog.model",

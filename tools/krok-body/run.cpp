@@ -4,6 +4,7 @@
 
 #include "core/numbers.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
 #include "tools/cli/output_kind.h"
@@ -14,7 +15,7 @@ namespace krok::cli::body {
 namespace {
 
 // A clip with the file's skeleton, and its motion if any.
-Result<Clip> read_skeleton(const InputFile& input) {
+Result<Clip> read_skeleton(const InputFile& input, ToolContext& context) {
   switch (registry::kind_of_content(input.bytes())) {
     case registry::Kind::anim: {
       Stretches stretches;  // a body is made for the reference pose
@@ -33,8 +34,11 @@ Result<Clip> read_skeleton(const InputFile& input) {
       break;
   }
   const registry::Kind kind = registry::identify(input.path(), input.bytes());
+  if (kind == registry::Kind::bvh || kind == registry::Kind::amc) {
+    return io::open_motion(input, context);
+  }
   return Error("body-input",
-               fmt::format("expected a .anim or .model file, but this is {}",
+               fmt::format("expected a motion (.anim, .bvh, .amc) or a .model file, but this is {}",
                            registry::describe_content(input.bytes())),
                registry::advice(kind, registry::Kind::anim))
       .in_file(input.path());
@@ -66,7 +70,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_output_kind(context.output, "-o", registry::Kind::model); !status) {
     return status.error();
   }
-  auto clip = read_skeleton(*input);
+  auto clip = read_skeleton(*input, context);
   if (!clip) return clip.error();
   auto body = make_body(*clip, *how);
   if (!body) return std::move(body).error().in_file(input->path());

@@ -77,9 +77,9 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) 
     words.emplace_back(word_of(matching), matching);
   }
   add_choice(command, "--match", arguments.matching, std::move(words),
-             "How to match meshes and joints: order, by their index in the file; name, by name, "
-             "with animations (and materials, with --materials), reporting those that only one "
-             "has; auto, by name if all names are unique and the "
+             "How to match meshes and joints: order, by their index in the file, and a renamed "
+             "animation or material is then no difference; name, by name, "
+             "reporting those that only one has; auto, by name if all names are unique and the "
              "same, else by index; nearest, each vertex with the nearest point of the other "
              "surface, for meshes with different vertices, triangles or parts; skin weights and "
              "morph targets are then compared by their effect only",

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "core/nearest_name.h"
+#include "tools/cli/report.h"
 #include "tools/cli/tool.h"
 #include "tools/krok/completion.h"
 
@@ -87,6 +89,33 @@ int fail(const std::string& message, const std::string& hint) {
   return krok::cli::kExitTrouble;
 }
 
+std::string hint_for(const std::string& verb) {
+  // A usual word for what two verbs do.
+  if (verb == "convert" || verb == "conv") {
+    return "krok import reads captures and characters, krok export writes BVH, glTF and tables";
+  }
+  const std::string near = verb.empty() ? "" : krok::nearest_name(verb, verb_names());
+  return near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near);
+}
+
+// With --json on standard output, a script gets a report from here, too.
+int refuse_verb(const std::string& verb, int argc, char** argv) {
+  const std::string message =
+      verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb);
+  const std::string hint = hint_for(verb);
+  const auto wants_report = [](std::string_view one) {
+    return one == "--json" || one == "--json=-";
+  };
+  if (std::any_of(argv + 1, argv + argc, wants_report)) {
+    krok::cli::Report report;
+    report.tool = "krok";
+    report.version = krok::cli::version();
+    report.issues.push_back(krok::Error("usage", message, hint));
+    fmt::print("{}\n", report.to_json().dump(2));
+  }
+  return fail(message, hint);
+}
+
 // What a program prints on standard output; empty if it fails.
 std::string output_of(const std::string& program, const char* argument) {
   std::string command = "'";
@@ -133,14 +162,7 @@ int main(int argc, char** argv) {
   }
   if (verb == "completion") return complete(argc > 2 ? argv[2] : "");
   if (!is_verb(verb)) {
-    if (verb == "convert") {
-      return fail("unknown verb 'convert'",
-                  "krok import reads captures and characters, krok export writes motions as BVH, "
-                  "glTF or tables, krok skin characters as glTF");
-    }
-    const std::string near = verb.empty() ? "" : krok::nearest_name(verb, verb_names());
-    return fail(verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb),
-                near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near));
+    return refuse_verb(verb, argc, argv);
   }
   const std::string program = "krok-" + verb;
   const std::string folder = own_folder();

@@ -61,13 +61,10 @@ TEST_F(KrokBody, AMissingFile) {
   EXPECT_THAT(listing(), IsEmpty());
 }
 
-TEST_F(KrokBody, ACaptureIsToBeImportedFirst) {
+TEST_F(KrokBody, ACaptureIsReadAsItIs) {
   const ToolRun run = build({put("walk.bvh", capture(3))});
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("walk.bvh: error: expected a .anim or .model file, but this is a "
-                                 "BVH text file [body-input]"));
-  EXPECT_THAT(run.err, HasSubstr("hint: import it with krok-import"));
-  EXPECT_THAT(listing(), ElementsAre("walk.bvh"));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(listing(), ElementsAre("body.model", "walk.bvh"));
 }
 
 TEST_F(KrokBody, FilesThatAreNoSkeletonOrDamaged) {

@@ -353,5 +353,53 @@ TEST(SceneDifference, AMaterialOfManyMeshesIsToldOnce) {
   EXPECT_EQ(compare_scenes(two(&grey), two(&red)).notes.size(), 1u);
 }
 
+// Engines look clips, meshes and materials up by name.
+TEST(SceneDifference, AnotherNameIsADifferenceThatNamesBoth) {
+  Material skin, cloth;
+  skin.name = "skin";
+  cloth.name = "cloth";
+  SceneOptions by_order, by_name, strict;
+  by_order.matching = Matching::order;
+  strict.materials = true;
+  Progress progress;
+  const Scene first = scene_with(&skin);
+
+  Scene other = scene_with(&skin);
+  other.animations[0].name = "Run";
+  const SceneDifference clip = compare_scenes(first, other);
+  EXPECT_FALSE(clip.same());
+  EXPECT_EQ(clip.structure, std::vector<std::string>{"animation Walk is named Run in the second"});
+  EXPECT_EQ(clip.compared_times, 11) << "the motions are compared all the same";
+  EXPECT_TRUE(difference(first, other, by_order, 1, progress)->same());
+  other.animations[0].name = "";
+  EXPECT_TRUE(compare_scenes(first, other).same()) << "a file without names";
+
+  other = scene_with(&skin);
+  other.meshes[0].name = "Torso";
+  const SceneDifference mesh = compare_scenes(first, other);
+  EXPECT_TRUE(mesh.same()) << "parts of other names are matched by their order";
+  EXPECT_EQ(mesh.notes, std::vector<std::string>{"mesh Body is named Torso in the second"});
+  by_name.matching = Matching::name;
+  EXPECT_FALSE(difference(first, other, by_name, 1, progress)->same());
+
+  other = scene_with(&cloth);
+  const std::string named = "mesh Body, material: named skin and cloth";
+  EXPECT_EQ(compare_scenes(first, other).notes, std::vector<std::string>{named});
+  EXPECT_EQ(difference(first, other, strict, 1, progress)->structure,
+            std::vector<std::string>{named});
+}
+
+TEST(SceneDifference, OneRenamedClipOfSeveralInAnotherOrderIsFound) {
+  const auto with = [](const std::vector<std::string>& names) {
+    Scene scene = moving_triangle();
+    scene.animations.resize(names.size(), scene.animations[0]);
+    for (std::size_t i = 0; i < names.size(); ++i) scene.animations[i].name = names[i];
+    return scene;
+  };
+  EXPECT_EQ(
+      compare_scenes(with({"Walk", "Run", "Idle"}), with({"Idle", "Walk", "Sprint"})).structure,
+      std::vector<std::string>{"animation Run is named Sprint in the second"});
+}
+
 }  // namespace
 }  // namespace krok::compare
