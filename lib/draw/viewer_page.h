@@ -93,7 +93,7 @@ struct ViewedGlb {
 struct ViewerPage {
   std::string title;
   bool apart = false;       // characters side by side instead of at their own positions
-  bool difference = false;  // colour the first character by its distance from the second
+  bool difference = false;  // colour the second character by its distance from the first
   std::vector<ViewedMotion> motions;
   std::vector<ViewedGlb> files;
   std::vector<ViewedCamera> cameras;

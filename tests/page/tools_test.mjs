@@ -84,6 +84,38 @@ async function differenceIsColoured() {
   await same.close();
 }
 
+// Two glTF files that differ by 100 mm: the second's mesh is dark red, with names as in the file.
+async function differenceOfGlbsIsColoured() {
+  run('krok-body', WALK, '-o', made('walker.model'));
+  run('krok-skin', made('walker.model'), WALK, '-o', made('before.glb'));
+  run('krok-skin', made('walker.model'), made('moved.bvh'), '-o', made('after.glb'));
+  run('krok-view', made('before.glb'), made('after.glb'), '--difference', '-o', made('glbs.html'));
+  const page = await open('glbs.html');
+  const { scale, distances } = await page.evaluate(() => krokView.difference());
+  expect(Math.abs(scale - 0.1) < 1e-6, `the ramp of the files ends at ${scale} m`);
+  expect(distances.length > 1000 && distances.every((distance) => Math.abs(distance - 0.1) < 1e-4),
+    'a vertex is not 100 mm from its partner');
+  const coloured = (await pixels(page, 'difference of files')).filter((pixel) => saturation(pixel) > 60);
+  const red = coloured.filter((pixel) => near(hue(pixel), 342, 14));
+  expect(coloured.length > 4000 && red.length > 0.97 * coloured.length, `${red.length} of ${coloured.length} pixels are dark red`);
+  await drawn(page, () => press(page, 'd'));
+  const without = (await pixels(page, 'files')).filter((pixel) => near(hue(pixel), 342, 14) && saturation(pixel) > 60);
+  expect(without.length === 0, `without the difference ${without.length} pixels are dark red`);
+  await page.close();
+}
+
+// Joints of a glTF file have the file's names, colons and all, which krok-ik wants.
+async function namesOfGlbsAreTheFiles() {
+  const walk = readFileSync(WALK, 'utf8').replace(/(ROOT|JOINT) /g, '$1 hero:');
+  writeFileSync(made('named.bvh'), walk);
+  run('krok-export', made('named.bvh'), '-o', made('named.glb'));
+  run('krok-view', made('named.glb'), '-o', made('named.html'));
+  const page = await open('named.html');
+  const names = await page.evaluate(() => krokView.joints().map(({ name }) => name));
+  expect(names.length > 10 && names.every((name) => name.startsWith('hero:')), `joints are called ${names.slice(0, 3)}`);
+  await page.close();
+}
+
 // Fractions of the canvas that the joints of all files are at: {left, right, top, bottom}.
 const extent = (page, files) => page.evaluate((count) => {
   const canvas = document.getElementById('view');
@@ -452,6 +484,8 @@ async function tabReachesAll(page) {
 
 await check(90, async () => {
   await differenceIsColoured();
+  await differenceOfGlbsIsColoured();
+  await namesOfGlbsAreTheFiles();
   await framesWhatIsShown();
   await rootIsNoBone();
   const page = await timelineWorks();

@@ -29,8 +29,8 @@ void declare(CommandOptions& command, Options& options) {
       .default_str("auto");
   command.add_flag(
       "--difference", options.difference,
-      "Show the first two characters together: the first coloured by its distance from "
-      "the second, with a legend, the second as a ghost");
+      "Show the first two characters together: the second coloured by its distance from "
+      "the first, with a legend, the first as a ghost");
   add_body_option(
       command, options.body,
       "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "

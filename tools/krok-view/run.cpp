@@ -103,8 +103,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto files = read_files(options, context);
   if (!files) return files.error();
   const std::size_t actors = files->motions.size() + files->glbs.size();
-  if (options.difference && files->motions.size() < 2) {
-    return Error("usage", "--difference needs two motions");
+  if (options.difference && files->motions.size() < 2 && files->glbs.size() < 2) {
+    return Error("usage", "--difference needs two motions, or two glTF files");
   }
   if (Status status = check_layout(options, *files); !status) return status.error();
   Layout layout = options.layout;

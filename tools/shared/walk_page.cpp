@@ -10,8 +10,8 @@ namespace krok::cli {
 
 std::string facts_of(const Clip& clip) {
   if (clip.frame_count() == 0) return fmt::format("{} joints, no motion", clip.joint_count());
-  return fmt::format("{} joints, {} frames, {} fps, {} s", clip.joint_count(), clip.frame_count(),
-                     readable(clip.rate), fmt::format("{:.2f}", clip.duration()));
+  return fmt::format("{} s, {} fps, {} frames, {} joints", readable(clip.duration(), 3),
+                     readable(clip.rate), clip.frame_count(), clip.joint_count());
 }
 
 Result<std::string> walk_page(const std::string& name, const Clip& clip, const MotionKeys& keys,

@@ -151,11 +151,7 @@ export class BodyView {
       this.other.computeBoneTexture();
       this.uniforms.krokOther.value = this.other.boneTexture;
     }
-    // Farther than a body at the same place, which then hides it.
-    this.ghost ??= new MeshStandardMaterial({
-      color: '#8a94a0', roughness: 0.9, transparent: true, opacity: 0.3, depthWrite: false,
-      polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4,
-    });
+    this.ghost ??= ghostMaterial();
     const shown = { own: this.own, difference: this.difference, ghost: this.ghost }[mode];
     // A body of several parts has as many materials.
     this.mesh.material = Array.isArray(this.own) && !Array.isArray(shown) ? this.own.map(() => shown) : shown;
@@ -200,6 +196,12 @@ export class BodyView {
     this.uniforms.krokScale.value = scale;
   }
 }
+
+// Farther than a body at the same place, which then hides it.
+export const ghostMaterial = () => new MeshStandardMaterial({
+  color: '#8a94a0', roughness: 0.9, transparent: true, opacity: 0.3, depthWrite: false,
+  polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 4,
+});
 
 function makeBone() {
   const bone = new Bone();

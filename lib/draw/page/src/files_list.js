@@ -5,10 +5,23 @@ const ROW = 40; // pixels
 const FILTERED = 8; // files from which on there is a filter
 const BEYOND = 4; // rows made above and below those in view
 
+const SHORT = 24; // letters that have place
+
+// How many letters all names begin with, up to the end of a word.
+function commonStart(names) {
+  const [first = '', ...others] = names;
+  let count = 0;
+  while (count < first.length && others.every((name) => name[count] === first[count])) ++count;
+  while (count > 0 && /[a-z0-9]/i.test(first[count - 1])) --count;
+  return others.length > 0 ? count : 0;
+}
+
 // A long name in two, of which the front is cut where there is no place: takes of a session differ at
 // their ends.
-function parted(name) {
-  if (name.length < 24) return [name];
+function parted(full, common) {
+  // What all names begin with does not tell them apart.
+  const name = full.length > SHORT && common > 3 ? `…${full.slice(common)}` : full;
+  if (name.length <= SHORT) return [name];
   return [name.slice(0, -12), name.slice(-12)].map((part) => {
     const span = document.createElement('span');
     span.textContent = part;
@@ -27,6 +40,7 @@ export class FilesList {
     this.filter = root.querySelector('#filter');
     this.count = root.querySelector('#file-count');
     this.rows = new Map();
+    this.common = commonStart(player.items.map(({ name }) => name));
     this.filter.hidden = player.items.length <= FILTERED;
     this.filter.addEventListener('input', () => this.refresh());
     this.box.addEventListener('scroll', () => this.fill());
@@ -43,6 +57,9 @@ export class FilesList {
     const { items } = this.player;
     this.shownFiles = this.found;
     this.list.style.height = `${this.shownFiles.length * ROW}px`;
+    // Three rows stay in view, however much is below.
+    const least = Math.min(items.length, 3) * ROW;
+    this.box.parentElement.style.minHeight = `${least + 30 + (this.filter.hidden ? 0 : 40)}px`;
     const visible = items.filter((made) => made.visible).length;
     this.count.textContent = items.length > 1
       ? `${visible} of ${items.length} shown${this.filter.value ? `, ${this.shownFiles.length} found` : ''}` : '';
@@ -92,7 +109,7 @@ export class FilesList {
     name.className = 'name';
     name.title = `${made.name}: show only this file; again: as before`;
     const words = document.createElement('span');
-    words.append(...parted(made.name));
+    words.append(...parted(made.name, this.common));
     const facts = document.createElement('span');
     facts.className = 'facts';
     facts.textContent = made.item.facts ?? '';

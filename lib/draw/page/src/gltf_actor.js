@@ -30,7 +30,8 @@ export class GltfActor extends ShownActor {
       if (node.isBone) this.bonesOf.push(node);
     });
     this.rest = this.bonesOf.map((bone) => bone.quaternion.clone().invert());
-    this.names = this.bonesOf.map((bone) => bone.name);
+    // GLTFLoader leaves out of names what its animations cannot have, such as colons.
+    this.names = this.bonesOf.map((bone) => bone.userData.name ?? bone.name);
     this.rootJoint = 0;
     this.mixer = new AnimationMixer(file.scene);
     this.clips = file.animations;

@@ -25,7 +25,8 @@ export class Interface {
     this.timeline = new Timeline(find('time'), player);
     this.legend = new DifferenceLegend(player);
     this.recorder = new Recorder(stage, player, data.title, () => this.showRecording());
-    find('title').textContent = data.title;
+    // Names of files may break after what separates their words.
+    for (const part of data.title.split(/(?<=[_.-])/)) find('title').append(part, document.createElement('wbr'));
     document.title = `${data.title} – Krok`;
     this.joint = new JointCard(player, stage, {
       changed: () => this.setTimeline(),
@@ -192,7 +193,7 @@ export class Interface {
       ['wireframe', 'Wireframe (w)', hasBody],
       // Not beside a ground, on which they would stand elsewhere than they do.
       ['apart', 'Side by side (a)', items.length > 1 && !stage.terrain && !player.prints],
-      ['difference', 'Difference (d)', items.filter(({ kind }) => kind === 'motion').length > 1],
+      ['difference', 'Difference (d)', ['motion', 'gltf'].some((wanted) => items.filter(({ kind }) => kind === wanted).length > 1)],
       ['goals', 'Goals (o)', items.some(({ goals }) => goals)],
       ['prints', 'Footprints (p)', Boolean(player.prints)],
       ['follow', 'Follow (f)', items.length > 0],

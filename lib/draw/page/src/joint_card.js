@@ -49,6 +49,7 @@ export class JointCard {
     this.select.value = picked ? `${picked.made.index}:${picked.joint}` : '';
     this.changed();
     this.refresh();
+    if (picked) find('joint-card').scrollIntoView({ block: 'nearest' });
     this.stage.redraw();
   }
 

@@ -48,7 +48,7 @@ export class DifferenceLegend {
     if (!shown.difference) return;
     find('difference').textContent = difference
       ? difference.largest?.name ? `now max ${lengthText(difference.largest.distance)} at ${difference.largest.name}` : 'now none'
-      : 'No joints with the same name in two visible motions.';
+      : 'Nothing to compare: two visible motions with joints of the same name, or two glTF files with as many vertices.';
   }
 }
 

@@ -3,6 +3,7 @@
 
 import { Box3 } from 'three';
 import { Difference } from './difference.js';
+import { GltfDifference } from './gltf_difference.js';
 
 export class Player {
   constructor(stage, items, prints) {
@@ -106,16 +107,20 @@ export class Player {
     this.setTime(this.time);
   }
 
-  // Compares the first two motions that are shown.
+  // Compares the first two motions that are shown, or the first two glTF files: the second is coloured
+  // by its distance from the first, as in the films of krok-render.
   compare() {
-    const [one, other] = this.actors().map(({ actor }) => actor).filter(({ motion }) => motion);
+    const actors = this.actors().map(({ actor }) => actor);
+    const motions = actors.filter(({ motion }) => motion);
+    const glbs = actors.filter(({ meshes }) => meshes);
+    const [other, one] = motions.length > 1 ? motions : glbs;
     const wanted = this.shown.difference && one && other;
     if (this.difference && !(wanted && this.difference.one === one && this.difference.other === other)) {
       this.difference.release();
       this.difference = null;
     }
     if (!wanted || this.difference) return;
-    const difference = new Difference(one, other);
+    const difference = one.motion ? new Difference(one, other) : new GltfDifference(one, other);
     if (difference.shared > 0) this.difference = difference;
     else difference.release();
     for (const actor of [one, other]) actor.show(this.shown);

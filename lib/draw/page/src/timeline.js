@@ -7,6 +7,7 @@ const LANE = 15;
 const CURVE = 46;
 const NAMES = 118; // width of the names' column; less on narrow screens
 const EDGE = 10; // right margin
+const LEAST_NAME = 22; // room for a flag's name
 const GRAB = 6; // from an end of the range
 const LEAST = 4; // frames that the whole width shows at least
 
@@ -39,8 +40,19 @@ export class Timeline {
     this.draw();
   }
 
+  // The flags are above the curves, and these above the lanes: of many the last are scrolled to.
+  get top() {
+    return this.marks.length > 0 ? FLAGS : 0;
+  }
+
+  // What is at a height: the curve or lane.
+  at(y) {
+    const curve = this.curves[Math.floor((y - this.top) / CURVE)];
+    return { curve, lane: curve ? undefined : this.lanes[Math.floor((y - this.top - this.curves.length * CURVE) / LANE)] };
+  }
+
   rows() {
-    return (this.marks.length > 0 ? FLAGS : 0) + this.lanes.length * LANE + this.curves.length * CURVE;
+    return this.top + this.lanes.length * LANE + this.curves.length * CURVE;
   }
 
   get left() {
@@ -186,7 +198,11 @@ export class Timeline {
     pen.globalAlpha = 0.6;
     for (const time of this.ticks().times) pen.fillRect(this.placeOf(time) - 0.5, 0, 1, height);
     pen.globalAlpha = 1;
-    let top = this.marks.length > 0 ? FLAGS : 0;
+    let { top } = this;
+    for (const curve of this.curves) {
+      this.drawCurve(pen, curve, top);
+      top += CURVE;
+    }
     for (const { colour, bars } of this.lanes) {
       pen.fillStyle = colour;
       for (const [start, end] of bars) {
@@ -194,10 +210,6 @@ export class Timeline {
         pen.fillRect(x, top + 2, Math.max(this.placeOf(end) - x, 1), LANE - 4);
       }
       top += LANE;
-    }
-    for (const curve of this.curves) {
-      this.drawCurve(pen, curve, top);
-      top += CURVE;
     }
     this.drawFlags(pen, height);
     this.shadeOutside(pen, height);
@@ -237,8 +249,9 @@ export class Timeline {
       pen.lineTo(x + 8, 5.5);
       pen.lineTo(x, 9);
       pen.fill();
-      // The name, where it fits before the next flag.
-      if (x + 14 + pen.measureText(name).width < next) pen.fillText(name, x + 10, 7);
+      // As much of the name as fits before the next flag.
+      const room = Math.min(next, this.width) - x - 14;
+      if (room > LEAST_NAME) pen.fillText(shortened(pen, name, room), x + 10, 7);
     });
   }
 
@@ -259,17 +272,17 @@ export class Timeline {
       pen.fillStyle = colour;
       pen.fillText(shortened(pen, text, wide), 2, y);
     };
-    let top = this.marks.length > 0 ? FLAGS : 0;
+    let { top } = this;
     if (top > 0 && this.left > EDGE) put('Events', top / 2, soft);
-    for (const { name } of this.lanes) {
-      put(name, top + LANE / 2 + 0.5, ink);
-      top += LANE;
-    }
     for (const { name, unit, values, floor } of this.curves) {
       const [low, high] = rangeOf(values, floor);
       put(name, top + 11, ink);
       put(`${text(low)} to ${text(high)} ${unit}`, top + 27, soft);
       top += CURVE;
+    }
+    for (const { name } of this.lanes) {
+      put(name, top + LANE / 2 + 0.5, ink);
+      top += LANE;
     }
   }
 
@@ -336,23 +349,19 @@ export class Timeline {
     const { tip } = this;
     let words = '';
     const near = this.marks.find(({ time }) => Math.abs(this.placeOf(time) - x) < 6);
-    const flags = this.marks.length > 0 ? FLAGS : 0;
+    const { curve, lane } = this.at(y);
     if (event.target === this.canvas && x >= this.left) {
-      const lane = this.lanes[Math.floor((y - flags) / LANE)];
       const time = this.timeAt(x);
-      if (near && y < flags) words = `${near.name}, ${near.time.toFixed(3)} s`;
-      const bar = y >= flags && lane?.bars.find(([start, end]) => time >= start && time <= end);
+      if (near && y < this.top) words = `${near.name}, ${near.time.toFixed(3)} s`;
+      const bar = lane?.bars.find(([start, end]) => time >= start && time <= end);
       if (bar) words = `${lane.name}: ${bar[0].toFixed(3)} to ${bar[1].toFixed(3)} s`;
-      const curve = this.curves[Math.floor((y - flags - this.lanes.length * LANE) / CURVE)];
-      if (!lane && curve && y >= flags + this.lanes.length * LANE) {
+      if (curve && y >= this.top) {
         const value = curve.values[Math.min(Math.round(time * curve.rate), curve.values.length - 1)];
         words = `${curve.name}: ${text(value)} ${curve.unit} at ${time.toFixed(3)} s`;
       }
     }
     if (event.target === this.canvas && x < this.left) {
-      const lane = this.lanes[Math.floor((y - flags) / LANE)];
-      const curve = this.curves[Math.floor((y - flags - this.lanes.length * LANE) / CURVE)];
-      words = y < flags ? '' : (lane ?? curve)?.name ?? '';
+      words = y < this.top ? '' : (lane ?? curve)?.name ?? '';
     }
     tip.hidden = words === '';
     tip.textContent = words;
