@@ -402,6 +402,28 @@ async function clipsAreChosen() {
   await up.close();
 }
 
+// Takes of a session that differ in the middle of long names are told apart; what belongs to a joint
+// stays in view at 1280 x 720, however many contacts are under it.
+async function namesAndValuesStayInView() {
+  const names = ['knock_down', 'knock_back', 'slide'].map((middle) => `capture_session_2026_hero_${middle}_front_01.bvh`);
+  for (const name of names) copyFileSync(WALK, made(name));
+  run('krok-view', ...names.map(made), '--keys', 'find', '-o', made('session.html'));
+  const page = await open('session.html', { viewport: { width: 1280, height: 720 } });
+  const shown = await page.locator('#items .name').evaluateAll((buttons) => buttons.map(({ firstChild }) => {
+    const cut = [...firstChild.children].some((part) => part.scrollWidth > part.clientWidth);
+    return cut ? 'cut' : firstChild.textContent;
+  }));
+  expect(new Set(shown).size === 3 && !shown.includes('cut'), `the names shown are ${shown}`);
+  await drawn(page, () => page.locator('#joint').selectOption({ index: 3 }));
+  const panel = await page.locator('#panel').boundingBox();
+  const speed = await page.locator('#joint-speed').boundingBox();
+  expect(speed.y >= panel.y && speed.y + speed.height <= panel.y + panel.height, 'the values of a joint are out of view');
+  const scrolled = await page.locator('#time').evaluate((time) => time.scrollTop);
+  expect(scrolled === 0 && await page.evaluate(() => krokView.curvesEnd) <= await page.locator('#time').evaluate((time) => time.clientHeight),
+    'the curves of a joint are out of view');
+  await page.close();
+}
+
 async function longListsStayQuick() {
   mkdirSync(made('takes'));
   run('krok-edit', made('walk.anim'), '--to', '0.3s', '-o', made('short.anim'));
@@ -485,6 +507,7 @@ async function tabReachesAll(page) {
 await check(90, async () => {
   await differenceIsColoured();
   await differenceOfGlbsIsColoured();
+  await namesAndValuesStayInView();
   await namesOfGlbsAreTheFiles();
   await framesWhatIsShown();
   await rootIsNoBone();

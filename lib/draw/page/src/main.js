@@ -54,6 +54,7 @@ function publish({ player, stage, items, prints, controls, drawn }) {
     get range() { return player.range; },
     get drawn() { return drawn(); },
     get selected() { return controls.joint.values(); },
+    get curvesEnd() { return controls.timeline.curvesEnd; },
     get timeView() { return controls.timeline.view; },
     setTime: (time) => player.setTime(time),
     setRange: (from, to) => player.setRange(from, to),

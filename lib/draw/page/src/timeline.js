@@ -45,6 +45,11 @@ export class Timeline {
     return this.marks.length > 0 ? FLAGS : 0;
   }
 
+  // Pixels below the top of the time line.
+  get curvesEnd() {
+    return RULER + this.top + this.curves.length * CURVE;
+  }
+
   // What is at a height: the curve or lane.
   at(y) {
     const curve = this.curves[Math.floor((y - this.top) / CURVE)];
