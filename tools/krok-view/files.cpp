@@ -182,13 +182,21 @@ Status build_bodies(const Options& options, ToolContext& context, Files& files) 
   if (choice == BodyChoice::automatic) {
     choice = actors.size() <= 2 ? BodyChoice::medium : BodyChoice::low;
   }
-  const BodyOptions how = body_options(choice, context);
+  BodyOptions how = body_options(choice, context);
+  const bool many = actors.size() > 2;
+  // Of many the number is shown, not the steps of each.
+  if (many) {
+    how.progress = nullptr;
+    context.progress->begin("making bodies", actors.size());
+  }
   for (const auto& actor : actors) {
     auto body = make_body(actor.front()->clip, how);
     if (!body) return std::move(body).error().in_file(actor.front()->path);
+    if (many) context.progress->advance(1);
     files.bodies.push_back(std::move(body->model));
     for (Files::Motion* motion : actor) motion->body = &files.bodies.back();
   }
+  if (many) context.progress->end();
   return {};
 }
 
