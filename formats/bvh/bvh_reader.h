@@ -54,9 +54,9 @@ struct Capture : krok::Capture {
 // bvh-channel-count, bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel.
 // Of warnings and notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset,
 // bvh-text-after, bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame,
-// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-exporter, bvh-angles, bvh-text-before,
-// bvh-far-rotation and bvh-far-position (capture/far_values.h: implausibly large values; the first
-// of each is reported, as an error if strict).
+// bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-end-site, bvh-exporter, bvh-angles,
+// bvh-text-before, bvh-far-rotation and bvh-far-position (capture/far_values.h: implausibly large
+// values; the first of each is reported, as an error if strict).
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options = {});
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <utility>
+#include <vector>
 
+#include "core/numbers.h"
 #include "formats/bvh/names.h"
 
 namespace krok::bvh {
@@ -78,6 +81,35 @@ void report_zero_bones(const Hierarchy& hierarchy, const std::string& file_name,
                  fmt::format("{} joint{} at the position of {} parent (the first: {})", zero,
                              zero == 1 ? " is" : "s are", zero == 1 ? "its" : "their", first),
                  file_name, diagnostics);
+}
+
+void report_long_ends(const Hierarchy& hierarchy, const std::string& file_name,
+                      Diagnostics& diagnostics) {
+  constexpr int kWholeBody = 15;    // joints
+  constexpr double kTooLong = 0.5;  // of the skeleton's extent without its end sites
+  Eigen::AlignedBox3d box;
+  std::vector<Vec3> places;
+  int joints = 0;
+  for (const auto& joint : hierarchy.joints) {
+    const Vec3 above =
+        joint.parent < 0 ? Vec3(Vec3::Zero()) : places[static_cast<std::size_t>(joint.parent)];
+    // The root's offset only places the body.
+    places.push_back(joint.parent < 0 ? Vec3(Vec3::Zero()) : Vec3(above + joint.offset));
+    if (joint.end_site) continue;
+    box.extend(places.back());
+    ++joints;
+  }
+  if (joints < kWholeBody) return;
+  for (const auto& joint : hierarchy.joints) {
+    const double length = joint.offset.norm();
+    if (!joint.end_site || !(length > kTooLong * box.sizes().maxCoeff())) continue;
+    report_in_file(Severity::warning, "bvh-end-site",
+                   fmt::format("the End Site of {} is {} away, more than half of the character's "
+                               "size of {}",
+                               hierarchy.joints[static_cast<std::size_t>(joint.parent)].name,
+                               readable(length, 4), readable(box.sizes().maxCoeff(), 4)),
+                   file_name, diagnostics);
+  }
 }
 
 }  // namespace krok::bvh

@@ -30,6 +30,11 @@ void name_joints(Hierarchy& hierarchy, std::span<const std::size_t> name_places,
 void report_zero_bones(const Hierarchy& hierarchy, const std::string& file_name,
                        Diagnostics& diagnostics);
 
+// Warns (bvh-end-site) of end sites further from their joint than half of the size of a body of 15
+// joints or more: bodies and pictures then have a hand that long, or none.
+void report_long_ends(const Hierarchy& hierarchy, const std::string& file_name,
+                      Diagnostics& diagnostics);
+
 // A diagnostic about the whole file.
 void report_in_file(Severity severity, std::string code, std::string message,
                     const std::string& file_name, Diagnostics& diagnostics);

@@ -70,6 +70,7 @@ class HierarchyParser {
       return error;
     }
     report_zero_bones(result_, file_name_, diagnostics_);
+    report_long_ends(result_, file_name_, diagnostics_);
     return std::move(result_);
   }
 

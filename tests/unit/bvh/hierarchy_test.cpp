@@ -18,6 +18,27 @@ TEST(Hierarchy, JointsEndSitesAndReferencePose) {
   EXPECT_EQ(skeleton.reference[2].orientation.coeffs(), Quat::Identity().coeffs());
 }
 
+// Would fail if a hand that ends 1.6 m from its wrist went in without a word, as in public
+// captures.
+TEST(Hierarchy, EndSitesFarAwayAreTold) {
+  const auto chain = [](int joints, const std::string& end) {
+    std::string text = "HIERARCHY\nROOT j0\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n", close = "}\n";
+    for (int j = 1; j < joints; ++j) {
+      text += "JOINT j" + std::to_string(j) + "\n{\nOFFSET 0 10 0\nCHANNELS 0\n";
+      close += "}\n";
+    }
+    return text + "End Site\n{\nOFFSET 0 " + end + " 0\n}\n" + close + motion(1, "1\n");
+  };
+  const Capture far = read_ok(chain(16, "160"));
+  const Diagnostic* warning = find(far.diagnostics, "bvh-end-site");
+  ASSERT_NE(warning, nullptr);
+  EXPECT_EQ(warning->message,
+            "the End Site of j15 is 160 away, more than half of the character's size of 150");
+  EXPECT_EQ(find(read_ok(chain(16, "70")).diagnostics, "bvh-end-site"), nullptr);
+  // Of a few joints nothing is known.
+  EXPECT_EQ(find(read_ok(chain(3, "160")).diagnostics, "bvh-end-site"), nullptr);
+}
+
 TEST(Hierarchy, NamesAreTakenAsTheyAre) {
   for (const std::string name : {"Left Arm", "mixamorig:Hips", "a.b#1", "\"quoted\"",
                                  "\xC3\xA9paule", "LeftEnd", "Joint{1", "MOTION", "End", "-"}) {
