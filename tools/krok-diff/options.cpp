@@ -74,14 +74,16 @@ void declare(CommandOptions& command, Arguments& arguments) {
                      "max distance over all times; for glTF and models");
   command.add_option("--summary OUT.html", arguments.summary,
                      "A page of the files that are not the same, the worst first, with pictures "
-                     "of both and of their difference; Markdown without pictures if called .md");
+                     "of both and of their difference; Markdown without pictures if called .md; "
+                     "for CI servers a test case for each file "
+                     "(JUnit) if called .xml");
   declare_folder_options(command, arguments.folders);
 }
 
 }  // namespace
 
 bool Options::has_page() const {
-  return !summary.empty() && extension(summary) != ".md";
+  return !summary.empty() && extension(summary) != ".md" && extension(summary) != ".xml";
 }
 
 ToolSpec make_spec() {

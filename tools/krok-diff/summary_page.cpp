@@ -286,23 +286,57 @@ std::string html(const FolderOutcome& outcome, const std::vector<PageRow>& rows,
   return text + "</body></html>\n";
 }
 
+// A test case for each file, in the form of JUnit that CI servers read (Jenkins, GitLab, GitHub's
+// reporters).
+std::string junit(const FolderOutcome& outcome, const Options& options) {
+  const auto element_of = [](FileStatus status) {
+    return status == FileStatus::same           ? ""
+           : status == FileStatus::unreadable   ? "error"
+           : status == FileStatus::not_compared ? "skipped"
+                                                : "failure";
+  };
+  const auto count_of = [&](std::string_view element) {
+    return std::ranges::count_if(
+        outcome.files, [&](const FileResult& file) { return element_of(file.status) == element; });
+  };
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n<testsuite name=\"{}\" "
+      "tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n",
+      escaped(title_of(options)), outcome.files.size(), count_of("failure"), count_of("error"),
+      count_of("skipped"));
+  for (const FileResult& file : outcome.files) {
+    text += fmt::format("<testcase classname=\"krok-diff\" name=\"{}\"", escaped(file.path));
+    const std::string_view element = element_of(file.status);
+    if (element.empty()) {
+      text += "/>\n";
+      continue;
+    }
+    text += fmt::format("><{} message=\"{}{}{}\"/></testcase>\n", element,
+                        escaped(status_words(file.status, options)), file.what.empty() ? "" : ": ",
+                        escaped(file.what));
+  }
+  return text + "</testsuite>\n</testsuites>\n";
+}
+
 }  // namespace
 
 Status check_summary_name(const std::string& path) {
   const std::string ending = extension(path);
-  if (path.empty() || path == "-" || ending == ".html" || ending == ".htm" || ending == ".md") {
+  if (path.empty() || path == "-" || ending == ".html" || ending == ".htm" || ending == ".md" ||
+      ending == ".xml") {
     return {};
   }
-  return Error("usage", fmt::format("--summary {}: the output is HTML or Markdown", path),
-               "use the extension .html or .md");
+  return Error("usage", fmt::format("--summary {}: the output is HTML, Markdown or JUnit", path),
+               "use the extension .html, .md or .xml");
 }
 
 Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
                      const Options& options, ToolContext& context) {
   if (options.summary.empty()) return {};
   const auto rows = page_rows(outcome, update, options);
-  const std::string text =
-      options.has_page() ? html(outcome, rows, options) : markdown(outcome, rows, options);
+  const std::string text = extension(options.summary) == ".xml" ? junit(outcome, options)
+                           : options.has_page()                 ? html(outcome, rows, options)
+                                                                : markdown(outcome, rows, options);
   return write_output(context, options.summary, [&](OutputFile& file) { return file.write(text); });
 }
 

@@ -14,7 +14,8 @@ namespace krok::cli::diff {
 Status check_summary_name(const std::string& path);
 
 // Writes the page: HTML with pictures and charts inside, which needs no other file, or, by
-// extension, Markdown. Links to the files compared are relative to the page.
+// extension, Markdown, or a test case for each file (JUnit) for CI servers. Links to the files
+// compared are relative to the page.
 Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
                      const Options& options, ToolContext& context);
 

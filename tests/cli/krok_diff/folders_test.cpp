@@ -323,6 +323,26 @@ TEST_F(KrokDiffFolders, ThePageHasARowForEachFileThatIsNotTheSame) {
   EXPECT_THAT(get(path("page.md")), HasSubstr("| <code>walk.anim</code> | differs | positions"));
 }
 
+// Would fail if a CI server counted a file that differs as passed.
+TEST_F(KrokDiffFolders, JUnitHasATestCaseForEachFile) {
+  put_motion("a/same.anim");
+  put_motion("b/same.anim");
+  put_motion("a/walk.anim");
+  put_motion("b/walk.anim", 1e-2F);
+  put_below("b/<b>&.txt", "x");
+  put_below("a/broken.anim", "x");
+  put_below("b/broken.anim", "y");
+  ASSERT_EQ(diff({"a", "b", "--keep-going", "--summary", "out.xml"}).exit_code, 3);
+  const std::string xml = get(path("out.xml"));
+  EXPECT_THAT(xml, HasSubstr("<testsuite name=\"a against b\" tests=\"4\" failures=\"2\" "
+                             "errors=\"1\" skipped=\"0\">"));
+  EXPECT_THAT(xml, HasSubstr("name=\"same.anim\"/>"));
+  EXPECT_THAT(xml, HasSubstr("name=\"walk.anim\"><failure message=\"differs: positions 10 mm"));
+  EXPECT_THAT(xml, HasSubstr("name=\"broken.anim\"><error message=\"cannot be read: "));
+  EXPECT_THAT(xml, HasSubstr("name=\"&lt;b&gt;&amp;.txt\"><failure message=\"only in b\"/>"));
+  EXPECT_EQ(diff({"a", "b", "--summary", "out.pdf"}).exit_code, 2);
+}
+
 TEST_F(KrokDiffFolders, ThePageBeginsWithTheWorst) {
   const std::vector<std::pair<const char*, float>> files = {
       {"a_little.anim", 1e-3F}, {"b_most.anim", 1e-1F}, {"c_some.anim", 1e-2F}};
