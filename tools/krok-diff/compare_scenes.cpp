@@ -171,7 +171,7 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
       options, context, found->same() || flat,
       [&] {
         return sheet_of(a.scene, b.scene, bare ? found->joint_positions : found->positions,
-                        options.matching);
+                        options.matching, options.materials);
       },
       outcome.pictures);
   if (!status) return status.error();

@@ -133,8 +133,13 @@ render::Surface surface_of(const Model& model) {
 // A scene's meshes, or its joints if it has no triangles.
 class ScenePart {
  public:
-  explicit ScenePart(const compare::Scene& scene) : scene_(scene) {
+  // `dressed`: in the base colours of its materials, without textures.
+  ScenePart(const compare::Scene& scene, bool dressed) : scene_(scene) {
     for (const compare::SceneMesh& mesh : scene.meshes) {
+      colours_.push_back(kBodyColour);
+      if (dressed && mesh.material != nullptr) {
+        colours_.back() = render::to_colour(mesh.material->base_color.head<3>());
+      }
       triangles_.push_back(
           std::make_shared<render::Triangles>(mesh.triangles.begin(), mesh.triangles.end()));
     }
@@ -161,7 +166,7 @@ class ScenePart {
       for (const Vec3& point : state.positions[i]) surface.positions.push_back(point.cast<float>());
       for (const Vec3& normal : state.normals[i]) surface.normals.push_back(normal.cast<float>());
       surface.triangles = triangles_[i];
-      surface.colours = {kBodyColour};
+      surface.colours = {colours_[i]};
       actor.surfaces.push_back(std::move(surface));
     }
     return actor;
@@ -192,13 +197,17 @@ class ScenePart {
  private:
   const compare::Scene& scene_;
   std::vector<std::shared_ptr<const render::Triangles>> triangles_;
+  std::vector<render::Colour> colours_;  // [meshes]
   BoneStyle style_;
 };
 
 class ScenePair {
  public:
-  ScenePair(const compare::Scene& first, const compare::Scene& second, compare::Matching matching)
-      : first_(first), second_(second), first_of_second_(second.meshes.size(), 0) {
+  ScenePair(const compare::Scene& first, const compare::Scene& second, compare::Matching matching,
+            bool dressed)
+      : first_(first, dressed),
+        second_(second, dressed),
+        first_of_second_(second.meshes.size(), 0) {
     const auto match = compare::match_lists(mesh_names(first), mesh_names(second), matching);
     corresponds_ = matching != compare::Matching::nearest && match.only_first.empty() &&
                    match.only_second.empty();
@@ -234,6 +243,7 @@ class ScenePair {
     result.first = first_.actor(a);
     result.second = second_.actor(b);
     result.coloured = result.second;
+    for (render::Surface& surface : result.coloured.surfaces) surface.colours = {kBodyColour};
     if (corresponds_ && second_.has_surface()) {
       for (std::size_t i = 0; i < result.coloured.surfaces.size(); ++i) {
         auto colours =
@@ -311,8 +321,8 @@ DifferenceSheet sheet_of(const Model& first, const Model& second, const compare:
 }
 
 DifferenceSheet sheet_of(const compare::Scene& first, const compare::Scene& second,
-                         const compare::Measure& found, compare::Matching matching) {
-  const auto pair = std::make_shared<const ScenePair>(first, second, matching);
+                         const compare::Measure& found, compare::Matching matching, bool dressed) {
+  const auto pair = std::make_shared<const ScenePair>(first, second, matching, dressed);
   DifferenceSheet sheet;
   sheet.measured = pair->corresponds();
   sheet.largest = found.largest;

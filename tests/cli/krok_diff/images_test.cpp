@@ -8,6 +8,7 @@
 #include "cli/kept_files.h"
 #include "formats/anim/anim.h"
 #include "math/quaternion.h"
+#include "support/glb_builder.h"
 #include "support/image.h"
 
 namespace krok::test {
@@ -98,6 +99,26 @@ TEST_F(KrokDiffImages, DrawsGlbFiles) {
   const ToolRun run = diff({path("a.glb"), path("a.glb"), "--size", "100", "--moments", "2"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_GT(image().height, 300);
+}
+
+// Would fail if a page about other materials showed two characters that look alike.
+TEST_F(KrokDiffImages, WithMaterialsBothAreInTheirColours) {
+  const auto coloured = [&](const char* name, const std::vector<double>& colour) {
+    GlbBuilder builder = square();
+    builder.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorFactor", colour}}}}};
+    builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+    const auto bytes = builder.glb();
+    put(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    return path(name);
+  };
+  const std::string grey = coloured("grey.glb", {0.5, 0.5, 0.5, 1});
+  const std::string red = coloured("red.glb", {0.8, 0.02, 0.02, 1});
+  EXPECT_EQ(diff({grey, red, "--sides", "front", "--size", "200"}).exit_code, 0);
+  const auto plain = image();
+  EXPECT_EQ(red_pixels(plain, 0, plain.width, 0, plain.height - 70), 0);
+  EXPECT_EQ(diff({grey, red, "--materials", "--sides", "front", "--size", "200"}).exit_code, 1);
+  const auto dressed = image();
+  EXPECT_GT(red_pixels(dressed, 0, dressed.width, 0, dressed.height - 70), 1000);
 }
 
 TEST_F(KrokDiffImages, SkeletonsThatDifferAreDrawnWithoutDistances) {
