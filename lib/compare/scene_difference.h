@@ -89,9 +89,9 @@ struct SceneDifference {
 // Different numbers of morph targets are a note if one mesh is a bake of the other's motion. Two
 // meshes with the same triangles differ if one shows their backs. Deterministic for any number of
 // jobs. Another name of an animation (not of a bake) or (with `materials`) a material is a
-// difference except with Matching::order; of a mesh it is a note, a difference by Matching::name.
-// Codes: compare-value if a scene has values that are not finite, compare-too-long for more than a
-// million moments.
+// difference except with Matching::order (an animation's also with Matching::nearest); of a mesh it
+// is a note, a difference by Matching::name. Codes: compare-value if a scene has values that are
+// not finite, compare-too-long for more than a million moments.
 //
 // With Matching::nearest, all meshes of a scene are one surface if they cannot be matched by name.
 // Nearest points are found at the first time compared; after that each moves with its triangle. If

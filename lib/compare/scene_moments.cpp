@@ -207,7 +207,8 @@ Status choose_moments(SceneComparison& comparison) {
     // A bake is another file of the same motion.
     const bool baked =
         comparison.first.joint_names.empty() != comparison.second.joint_names.empty();
-    const bool counts = !baked && comparison.options.matching != Matching::order;
+    const Matching matching = comparison.options.matching;
+    const bool counts = !baked && matching != Matching::order && matching != Matching::nearest;
     for (const auto& [i, j] : match.pairs) {
       report_name(comparison, "animation", first_names[static_cast<std::size_t>(i)],
                   second_names[static_cast<std::size_t>(j)], counts);

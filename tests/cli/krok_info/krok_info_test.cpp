@@ -69,7 +69,7 @@ TEST_F(KrokInfo, TellsWhatIsInAMotion) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err, "");
   for (const char* text :
-       {"a motion (.anim)", "2 at 29.97 frames/s", "0.033367 s", "3, 1 of them end sites",
+       {"a motion (.anim)", "2 at 29.97 frames/s", "0.03337 s", "3, 1 of them end sites",
         "0.125 x 1 x 0.3125 m (X, Y, Z; joints in the reference pose)",
         "x, y, z; w is reconstructed", "krok-import 0.1.0",
         "walk \"1\".bvh (xxh3 0123456789abcdef)", "--unit cm", "--repair", "up: z to y",
