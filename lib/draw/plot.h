@@ -87,6 +87,7 @@ struct LegendEntry {
   int colour = 0;  // as in Series, but never -1 in the chart's legend
   int dash = -1;
   SeriesStyle style = SeriesStyle::line;
+  bool faint = false;
 };
 
 struct Chart {

@@ -17,7 +17,7 @@ constexpr double kAfterText = 14;
 std::string sample_of(const LegendEntry& entry, double left, double middle) {
   const auto place = static_cast<std::size_t>(entry.colour);
   const std::string& colour = palette_colour(place);
-  std::string sample;
+  std::string sample = entry.faint ? "<g opacity=\"0.4\">" : "";
   if (entry.style != SeriesStyle::points) {
     const std::string dash = dash_pattern(entry.dash, place);
     sample += fmt::format("<path class=\"line\" stroke=\"{}\"{} d=\"M{} {}h{}\"/>", colour,
@@ -28,7 +28,7 @@ std::string sample_of(const LegendEntry& entry, double left, double middle) {
     sample += fmt::format("<circle fill=\"{}\" cx=\"{}\" cy=\"{}\" r=\"2.4\"/>", colour,
                           number(left + kSample / 2), number(middle));
   }
-  return sample;
+  return entry.faint ? sample + "</g>" : sample;
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ std::vector<LegendEntry> legend_of(const Panel& panel) {
     const Series& series = panel.series[i];
     if (series.name.empty()) continue;
     entries.push_back({series.name, series.colour >= 0 ? series.colour : static_cast<int>(i),
-                       series.dash, series.style});
+                       series.dash, series.style, series.faint});
   }
   return entries;
 }

@@ -114,6 +114,23 @@ TEST(Plot, AUnitIsAsLongOnBothAxesOfAMap) {
   EXPECT_NEAR(per_x / per_y, 1, 0.002);
 }
 
+// Would fail if a legend showed another colour than the line it names.
+TEST(Plot, ALegendIsAsFaintAsItsLine) {
+  Panel panel = line_panel();
+  const auto faint_marks = [&] {
+    const std::string svg = svg_of(panel);
+    int count = 0;
+    for (auto at = svg.find("opacity=\"0.4\""); at != std::string::npos;
+         at = svg.find("opacity=\"0.4\"", at + 1)) {
+      ++count;
+    }
+    return count;
+  };
+  EXPECT_EQ(faint_marks(), 0);
+  panel.series[0].faint = true;
+  EXPECT_EQ(faint_marks(), 2) << "the line and its sample";
+}
+
 TEST(Plot, TextIsTextAndSafe) {
   Panel panel = line_panel();
   panel.title = "a < b & \"c\"\x01";
