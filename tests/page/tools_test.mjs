@@ -104,6 +104,27 @@ async function differenceOfGlbsIsColoured() {
   await page.close();
 }
 
+// One vertex of 10,000 that is 50 mm off: the scale ends there, and the rest has no colour.
+async function oneVertexIsFound() {
+  const bytes = readFileSync(made('before.glb'));
+  const length = bytes.readUInt32LE(12);
+  const { meshes, accessors, bufferViews } = JSON.parse(bytes.subarray(20, 20 + length));
+  const accessor = accessors[meshes[0].primitives[0].attributes.POSITION];
+  const view = bufferViews[accessor.bufferView];
+  const vertex = 4321;
+  const at = 20 + length + 8 + (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0) + vertex * (view.byteStride ?? 12);
+  expect(accessor.count > 2 * vertex, `the body has only ${accessor.count} vertices`);
+  bytes.writeFloatLE(bytes.readFloatLE(at) + 0.05, at);
+  writeFileSync(made('vertex.glb'), bytes);
+  run('krok-view', made('before.glb'), made('vertex.glb'), '--difference', '-o', made('vertex.html'));
+  const page = await open('vertex.html');
+  const { scale, distances } = await page.evaluate(() => krokView.difference());
+  expect(Math.abs(scale - 0.05) < 0.0051, `the ramp ends at ${scale} m for a vertex 50 mm off`);
+  expect(distances.filter((distance) => distance > 0.001).length === 1, 'not one vertex differs');
+  expect((await page.locator('#difference').textContent()).includes(`vertex ${vertex}`), 'the vertex is not named');
+  await page.close();
+}
+
 // Joints of a glTF file have the file's names, colons and all, which krok-ik wants.
 async function namesOfGlbsAreTheFiles() {
   const walk = readFileSync(WALK, 'utf8').replace(/(ROOT|JOINT) /g, '$1 hero:');
@@ -402,7 +423,7 @@ async function clipsAreChosen() {
   await up.close();
 }
 
-// Takes of a session that differ in the middle of long names are told apart; what belongs to a joint
+// Takes of a session that differ in the middle of long names can be distinguished; what belongs to a joint
 // stays in view at 1280 x 720, however many contacts are under it.
 async function namesAndValuesStayInView() {
   const names = ['knock_down', 'knock_back', 'slide'].map((middle) => `capture_session_2026_hero_${middle}_front_01.bvh`);
@@ -508,6 +529,7 @@ await check(90, async () => {
   await differenceIsColoured();
   await differenceOfGlbsIsColoured();
   await namesAndValuesStayInView();
+  await oneVertexIsFound();
   await namesOfGlbsAreTheFiles();
   await framesWhatIsShown();
   await rootIsNoBone();

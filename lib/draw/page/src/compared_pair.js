@@ -15,7 +15,7 @@ export class ComparedPair {
     this.other = other;
   }
 
-  // `most()` tells the largest distance at the time that both were updated to; at up to `samples` times.
+  // `most()` returns the largest distance at the time that both were updated to; at up to `samples` times.
   measure(samples, most) {
     const { one, other } = this;
     const duration = Math.min(one.duration, other.duration);
@@ -29,6 +29,18 @@ export class ComparedPair {
     this.worstDistance = Math.max(...this.values);
     this.worst = this.values.indexOf(this.worstDistance) / this.rate;
     this.scale = this.ownScale = roundUp(Math.max(this.worstDistance, 1e-6));
+  }
+
+  // Between the times that were sampled a distance may be larger: the scale then grows. `largest` is
+  // {distance, name}, at the time shown.
+  note(largest, time) {
+    this.largest = largest;
+    if (largest.distance <= this.worstDistance) return;
+    const own = this.scale === this.ownScale;
+    this.worstDistance = largest.distance;
+    this.worst = time;
+    this.ownScale = roundUp(largest.distance);
+    if (own) this.scale = this.ownScale;
   }
 
   pose(time) {

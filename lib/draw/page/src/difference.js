@@ -59,13 +59,14 @@ export class Difference extends ComparedPair {
   }
 
   // After both were updated to the same time.
-  update() {
+  update(time) {
     const { one, other } = this;
     const distances = this.distances();
-    this.largest = { distance: 0, name: '' };
+    let largest = { distance: 0, name: '' };
     distances.forEach((distance, joint) => {
-      if (distance > this.largest.distance) this.largest = { distance, name: one.names[joint] };
+      if (distance > largest.distance) largest = { distance, name: one.names[joint] };
     });
+    this.note(largest, time);
     one.skeleton.paint((joint) => (distances[joint] === null ? null : distances[joint] / this.scale));
     if (!one.body?.mesh.visible) return;
     const back = new Matrix4();

@@ -19,7 +19,7 @@ function commonStart(names) {
 // A long name in two, of which the front is cut where there is no place: takes of a session differ at
 // their ends.
 function parted(full, common) {
-  // What all names begin with does not tell them apart.
+  // What all names begin with does not distinguish them.
   const name = full.length > SHORT && common > 3 ? `…${full.slice(common)}` : full;
   if (name.length <= SHORT) return [name];
   return [name.slice(0, -12), name.slice(-12)].map((part) => {

@@ -6,8 +6,10 @@ import { ghostMaterial } from './body_view.js';
 import { ComparedPair } from './compared_pair.js';
 import { ramp } from './ramp.js';
 
-const SAMPLES = 60; // of the animations, for the largest distance
-const LOOKED_AT = 3000; // vertices at each of these
+// Times of the animations for the largest distance: as many as this number of vertices allows.
+const MOST_SAMPLES = 60;
+const FEWEST_SAMPLES = 5;
+const VERTICES = 600000;
 
 const countOf = (mesh) => mesh.geometry.attributes.position.count;
 
@@ -17,6 +19,17 @@ function meshesOf(actor) {
   return meshes;
 }
 
+// [{mesh, partner}]; no mesh is the partner of two.
+function pairsOf(meshes, others) {
+  const free = new Set(others);
+  return meshes.map((mesh, i) => {
+    const fits = (other) => free.has(other) && countOf(other) === countOf(mesh);
+    const partner = others.find((other) => other.name === mesh.name && fits(other)) ?? (fits(others[i]) ? others[i] : null);
+    free.delete(partner);
+    return partner && { mesh, partner };
+  }).filter(Boolean);
+}
+
 export class GltfDifference extends ComparedPair {
   constructor(one, other) {
     super(one, other);
@@ -24,10 +37,7 @@ export class GltfDifference extends ComparedPair {
     this.own = new Map([...others, ...meshesOf(one)].map((mesh) => [mesh, {
       material: mesh.material, castShadow: mesh.castShadow, colour: mesh.geometry.attributes.color,
     }]));
-    this.pairs = meshesOf(one).map((mesh, i) => {
-      const partner = others.find(({ name }) => name === mesh.name) ?? others[i];
-      return partner && countOf(partner) === countOf(mesh) ? { mesh, partner } : null;
-    }).filter(Boolean);
+    this.pairs = pairsOf(meshesOf(one), others);
     this.shared = this.pairs.length;
     if (this.shared === 0) return;
     const ghost = ghostMaterial();
@@ -40,11 +50,9 @@ export class GltfDifference extends ComparedPair {
       mesh.material = painted;
       mesh.geometry.setAttribute('color', new BufferAttribute(new Float32Array(3 * countOf(mesh)), 3));
     }
-    this.measure(SAMPLES, () => this.most(Math.ceil(this.vertices / LOOKED_AT)));
-  }
-
-  get vertices() {
-    return this.pairs.reduce((sum, { mesh }) => sum + countOf(mesh), 0);
+    const vertices = this.pairs.reduce((sum, { mesh }) => sum + countOf(mesh), 0);
+    const samples = Math.min(Math.max(Math.floor(VERTICES / vertices), FEWEST_SAMPLES), MOST_SAMPLES);
+    this.measure(samples, () => this.distances().reduce((most, metres) => Math.max(most, metres), 0));
   }
 
   release() {
@@ -55,39 +63,40 @@ export class GltfDifference extends ComparedPair {
     }
   }
 
-  // Calls take(mesh, vertex, metres) for each `step`th vertex.
-  each(step, take) {
+  // Of all vertices, mesh by mesh, metres.
+  distances() {
     const here = new Vector3();
     const there = new Vector3();
+    const all = [];
     for (const { mesh, partner } of this.pairs) {
-      for (let i = 0; i < countOf(mesh); i += step) {
+      for (let i = 0; i < countOf(mesh); ++i) {
         mesh.getVertexPosition(i, here).applyMatrix4(mesh.matrixWorld).sub(this.one.group.position);
         partner.getVertexPosition(i, there).applyMatrix4(partner.matrixWorld).sub(this.other.group.position);
-        take(mesh, i, here.distanceTo(there));
+        all.push(here.distanceTo(there));
       }
     }
-  }
-
-  most(step) {
-    let most = 0;
-    this.each(step, (mesh, vertex, metres) => { most = Math.max(most, metres); });
-    return most;
-  }
-
-  distances() {
-    const all = [];
-    this.each(1, (mesh, vertex, metres) => all.push(metres));
     return all;
   }
 
   // After both were updated to the same time.
-  update() {
+  update(time) {
+    const distances = this.distances();
+    const largest = { distance: 0, name: '' };
+    let next = 0;
+    for (const { mesh } of this.pairs) {
+      for (let i = 0; i < countOf(mesh); ++i, ++next) {
+        if (distances[next] <= largest.distance) continue;
+        largest.distance = distances[next];
+        largest.name = `vertex ${i} of ${mesh.userData.name ?? mesh.name}`;
+      }
+    }
+    this.note(largest, time);
     const colour = new Color();
-    this.largest = { distance: 0, name: '' };
-    this.each(1, (mesh, vertex, distance) => {
-      if (distance > this.largest.distance) this.largest = { distance, name: `vertex ${vertex} of ${mesh.userData.name ?? mesh.name}` };
-      ramp(distance / this.scale, colour).toArray(mesh.geometry.attributes.color.array, 3 * vertex);
-    });
-    for (const { mesh } of this.pairs) mesh.geometry.attributes.color.needsUpdate = true;
+    next = 0;
+    for (const { mesh } of this.pairs) {
+      const { color } = mesh.geometry.attributes;
+      for (let i = 0; i < countOf(mesh); ++i) ramp(distances[next++] / this.scale, colour).toArray(color.array, 3 * i);
+      color.needsUpdate = true;
+    }
   }
 }

@@ -34,6 +34,7 @@ export class DifferenceLegend {
     const { difference, shown } = this.player;
     find('difference-section').hidden = !shown.difference;
     find('difference-legend').hidden = !difference;
+    this.worstDistance = difference?.worstDistance;
     if (difference) {
       this.field.value = String(Number((difference.scale * 1000).toPrecision(6)));
       const marks = find('ramp-marks').children;
@@ -46,6 +47,7 @@ export class DifferenceLegend {
   update() {
     const { difference, shown } = this.player;
     if (!shown.difference) return;
+    if (difference && difference.worstDistance !== this.worstDistance) return this.refresh(); // it grew
     find('difference').textContent = difference
       ? difference.largest?.name ? `now max ${lengthText(difference.largest.distance)} at ${difference.largest.name}` : 'now none'
       : 'Nothing to compare: two visible motions with joints of the same name, or two glTF files with as many vertices.';

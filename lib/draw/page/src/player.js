@@ -139,7 +139,7 @@ export class Player {
       }
     }
     this.prints?.update(this.time, this.actors().map(({ item }) => item.printContacts ?? []));
-    this.difference?.update();
+    this.difference?.update(this.time);
     this.followActors();
     this.stage.redraw();
     this.changed();

@@ -7,7 +7,7 @@ const LANE = 15;
 const CURVE = 46;
 const NAMES = 118; // width of the names' column; less on narrow screens
 const EDGE = 10; // right margin
-const LEAST_NAME = 22; // room for a flag's name
+const LEAST_NAME = 22; // pixels, for a flag's name
 const GRAB = 6; // from an end of the range
 const LEAST = 4; // frames that the whole width shows at least
 
@@ -255,8 +255,8 @@ export class Timeline {
       pen.lineTo(x, 9);
       pen.fill();
       // As much of the name as fits before the next flag.
-      const room = Math.min(next, this.width) - x - 14;
-      if (room > LEAST_NAME) pen.fillText(shortened(pen, name, room), x + 10, 7);
+      const wide = Math.min(next, this.width) - x - 14;
+      if (wide > LEAST_NAME) pen.fillText(shortened(pen, name, wide), x + 10, 7);
     });
   }
 
