@@ -146,11 +146,9 @@ void report_name(SceneComparison& comparison, const char* kind, const std::strin
                  const std::string& second, bool counts) {
   if (first == second || first.empty() || second.empty()) return;
   std::string text = fmt::format("{} {} is named {} in the second", kind, first, second);
-  if (counts) {
-    comparison.say(std::move(text));
-  } else {
-    comparison.note(std::move(text));
-  }
+  // Once for all parts of a mesh.
+  std::vector<std::string>& texts = counts ? comparison.result.structure : comparison.result.notes;
+  if (std::ranges::find(texts, text) == texts.end()) texts.push_back(std::move(text));
 }
 
 void match_scene_joints(SceneComparison& comparison) {
@@ -199,8 +197,14 @@ void match_scene_meshes(SceneComparison& comparison) {
   say_partners_missing(comparison, match, first, second);
   for (const auto& [i, j] : match.pairs) {
     if (first.size() == second.size()) {
-      report_name(comparison, "mesh", first[static_cast<std::size_t>(i)],
-                  second[static_cast<std::size_t>(j)], false);
+      const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(i)];
+      const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(j)];
+      if (a.name != b.name) {
+        report_name(comparison, "mesh", a.name, b.name, false);
+      } else {  // the nodes' names, by which they match
+        report_name(comparison, "mesh", a.mesh_name, b.mesh_name,
+                    comparison.options.matching == Matching::name);
+      }
     }
     const std::size_t a = comparison.first.meshes[static_cast<std::size_t>(i)].vertex_count;
     const std::size_t b = comparison.second.meshes[static_cast<std::size_t>(j)].vertex_count;

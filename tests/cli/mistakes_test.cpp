@@ -71,6 +71,11 @@ TEST_F(Mistakes, ScriptsGetAReportOfUnknownVerbs) {
   const json report = json::parse(run.out);
   EXPECT_EQ(report["schema"], "krok.report/1");
   EXPECT_EQ(report["issues"][0]["message"], "unknown verb 'nope'");
+  EXPECT_EQ(run_here("krok", {"nope", "--json=report.json"}).exit_code, 2);
+  EXPECT_EQ(json::parse(get(path("report.json"))), report);
+  put("notes.txt", "mine");
+  EXPECT_EQ(run_here("krok", {"nope", "--json=notes.txt"}).exit_code, 2);
+  EXPECT_EQ(get(path("notes.txt")), "mine");
 }
 
 TEST_F(Mistakes, ABodyIsMadeForACaptureAsItIs) {

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/file.h"
 #include "core/nearest_name.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
@@ -98,20 +98,41 @@ std::string hint_for(const std::string& verb) {
   return near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near);
 }
 
-// With --json on standard output, a script gets a report from here, too.
+// Where --json asks for a report: a path, "-", or empty.
+std::string report_path(int argc, char** argv) {
+  constexpr std::string_view kOption = "--json";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view one = argv[i];
+    if (one == kOption) return "-";
+    if (one.starts_with("--json=")) return std::string(one.substr(kOption.size() + 1));
+  }
+  return {};
+}
+
+krok::Status write_report(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    fmt::print("{}", text);
+    return {};
+  }
+  if (!krok::cli::only_a_report_stands_at(path)) return {};
+  auto file = krok::OutputFile::create(path);
+  if (!file) return file.error();
+  if (krok::Status status = file->write(text); !status) return status;
+  return file->commit();
+}
+
+// A script that asked for a report gets it from here, too.
 int refuse_verb(const std::string& verb, int argc, char** argv) {
   const std::string message =
       verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb);
   const std::string hint = hint_for(verb);
-  const auto wants_report = [](std::string_view one) {
-    return one == "--json" || one == "--json=-";
-  };
-  if (std::any_of(argv + 1, argv + argc, wants_report)) {
+  if (const std::string path = report_path(argc, argv); !path.empty()) {
     krok::cli::Report report;
     report.tool = "krok";
     report.version = krok::cli::version();
     report.issues.push_back(krok::Error("usage", message, hint));
-    fmt::print("{}\n", report.to_json().dump(2));
+    const krok::Status status = write_report(path, report.to_json().dump(2) + "\n");
+    if (!status) fail(status.error().message, status.error().hint);
   }
   return fail(message, hint);
 }

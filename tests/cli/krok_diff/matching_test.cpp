@@ -257,6 +257,13 @@ TEST_F(KrokDiffMatching, RenamedClipsMeshesAndMaterialsAreTold) {
   EXPECT_EQ(material.exit_code, 1) << material.out << material.err;
   EXPECT_THAT(material.out, HasSubstr("named skin and hide"));
   EXPECT_EQ(diff({"a.glb", "a.glb", "--materials", "--match", "name"}).exit_code, 0);
+  test::GlbBuilder other_mesh = named_rig("walk", "skin");
+  other_mesh.json["meshes"][0]["name"] = "Leib";
+  write("mesh.glb", other_mesh);
+  const auto mesh = diff({"a.glb", "mesh.glb"});
+  EXPECT_EQ(mesh.exit_code, 0) << mesh.out;
+  EXPECT_THAT(mesh.out, HasSubstr("is named Leib in the second"));
+  EXPECT_EQ(diff({"a.glb", "mesh.glb", "--match", "name"}).exit_code, 1);
 }
 
 TEST_F(KrokDiffMatching, JointsAndNormalsHaveTolerancesOfTheirOwn) {
