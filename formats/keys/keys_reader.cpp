@@ -23,19 +23,20 @@ constexpr double kBeyond = 1e-3;        // seconds: written times are rounded
 constexpr double kMinReadGap = 1.5e-6;  // seconds, between keytimes
 constexpr double kFurthest = 1e6;       // metres
 constexpr std::size_t kLongestName = 200;
-constexpr std::string_view kMakeAnew =
+constexpr std::string_view kRebuild =
     "is this the file of another motion, or was the motion changed? krok-keys --discard-edits "
-    "makes "
-    "it anew";
+    "rebuilds it";
 
 class Reader {
  public:
-  Reader(std::string_view text, const Skeleton& skeleton, double duration)
+  // `ordered`: whether contacts that start at one time are in the order of the skeleton's joints,
+  // else in that of the file.
+  Reader(std::string_view text, const Skeleton& skeleton, double duration, bool ordered)
       : text_(text),
         in_(text, "keys"),
         skeleton_(skeleton),
         duration_(duration),
-        joints_are_ordered_(std::isfinite(duration)) {
+        ordered_(ordered) {
     for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
       joints_.emplace(skeleton.names[j], static_cast<int>(j));
     }
@@ -94,7 +95,7 @@ class Reader {
       return json::error_at(text_, object.find(key)->offset, "keys-time",
                             fmt::format("\"{}\" of {} is {} s, outside the motion's 0 to {} s", key,
                                         what, readable(*time, 9), readable(duration_, 9)),
-                            std::string(kMakeAnew));
+                            std::string(kRebuild));
     }
     return time;
   }
@@ -118,7 +119,7 @@ class Reader {
     if (found == joints_.end()) {
       return json::error_at(text_, (*name)->offset, "keys-joint",
                             fmt::format("the motion has no joint '{}'", shown((*name)->text)),
-                            std::string(kMakeAnew));
+                            std::string(kRebuild));
     }
     return found->second;
   }
@@ -178,9 +179,8 @@ class Reader {
       if (!contact) return contact.error();
       contacts.push_back(*contact);
     }
-    sort(contacts, sidecar_.contacts_by_hand, [this](const Contact& c) {
-      return std::tuple(c.start, joints_are_ordered_ ? c.joint : 0);
-    });
+    sort(contacts, sidecar_.contacts_by_hand,
+         [this](const Contact& c) { return std::tuple(c.start, ordered_ ? c.joint : 0); });
     sidecar_.keys.contacts = std::move(contacts);
     return {};
   }
@@ -254,7 +254,7 @@ class Reader {
   double duration_;
   std::unordered_map<std::string, int> joints_;
   std::string checksum_;
-  const bool joints_are_ordered_;
+  bool ordered_;
   Sidecar sidecar_;
 };
 
@@ -267,7 +267,7 @@ bool Sidecar::has_edits() const {
 
 Result<Sidecar> read_sidecar(std::string_view text, const std::string& path,
                              const Skeleton& skeleton, double duration) {
-  auto sidecar = Reader(text, skeleton, duration).read();
+  auto sidecar = Reader(text, skeleton, duration, true).read();
   if (!sidecar) return std::move(sidecar).error().in_file(path);
   if (Status status = check(sidecar->keys, skeleton, duration); !status) {
     return std::move(status).error().in_file(path);
@@ -278,8 +278,7 @@ Result<Sidecar> read_sidecar(std::string_view text, const std::string& path,
 bool has_edits(std::string_view text) {
   const auto root = json::parse(text);
   if (!root) return true;
-  // A skeleton of the joints that it names; their order is not known, and contacts that start at
-  // one time stay in the file's.
+  // A skeleton of the joints that it names, whose order in the motion is not known.
   Skeleton named;
   if (const Value* contacts = root->find("contacts")) {
     for (const Value& contact : contacts->items) {
@@ -288,7 +287,7 @@ bool has_edits(std::string_view text) {
       named.add(joint->text, named.joint_count() - 1, {});
     }
   }
-  const auto sidecar = Reader(text, named, HUGE_VAL).read();
+  const auto sidecar = Reader(text, named, HUGE_VAL, false).read();
   return !sidecar || sidecar->has_edits();
 }
 

@@ -31,6 +31,19 @@ std::vector<Cycle> cycles_of(const std::vector<Keytime>& keytimes, const std::st
 
 }  // namespace
 
+std::vector<StanceTimes> stance_times(const std::vector<Keytime>& keytimes, FootSide side) {
+  const std::string foot = name_of(side);
+  std::vector<StanceTimes> stances;
+  const Keytime* strike = nullptr;
+  for (const Keytime& key : keytimes) {
+    if (key.name == foot + "_strike") strike = &key;
+    if (key.name != foot + "_off" || strike == nullptr) continue;
+    stances.push_back({strike->time, key.time});
+    strike = nullptr;
+  }
+  return stances;
+}
+
 GaitMetrics gait_metrics(const std::vector<Keytime>& keytimes) {
   GaitMetrics metrics;
   const std::array<std::vector<Cycle>, 2> cycles = {cycles_of(keytimes, "left"),

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "contacts/sole_points.h"
 #include "scene/motion_keys.h"
 
 namespace krok {
@@ -17,5 +18,12 @@ struct GaitMetrics {
   double double_support = 0;       // fraction of the cycle both feet are down
 };
 GaitMetrics gait_metrics(const std::vector<Keytime>& keytimes);
+
+// From a strike of a foot to the toe-off after it, seconds.
+struct StanceTimes {
+  double strike = 0, off = 0;
+};
+// The whole stances of a foot, ascending: strikes without a toe-off before the next are left out.
+std::vector<StanceTimes> stance_times(const std::vector<Keytime>& keytimes, FootSide side);
 
 }  // namespace krok

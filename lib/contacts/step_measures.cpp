@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
+#include "contacts/gait_metrics.h"
 #include "contacts/series_internal.h"
-#include "contacts/sole_points.h"
 
 namespace krok {
 
@@ -34,15 +33,11 @@ std::vector<FootPlace> places_of(const Clip& clip, const std::array<int, 2>& ank
                                  const std::vector<Keytime>& keytimes) {
   std::vector<FootPlace> places;
   for (const std::size_t side : {0, 1}) {
-    const std::string foot = name_of(static_cast<FootSide>(side));
-    const Keytime* strike = nullptr;
-    for (const Keytime& key : keytimes) {
-      if (key.name == foot + "_strike") strike = &key;
-      if (key.name != foot + "_off" || strike == nullptr) continue;
-      const double third = (key.time - strike->time) / 3;
-      places.push_back({side, 0.5 * (strike->time + key.time),
-                        mean_position(clip, ankles[side], strike->time + third, key.time - third)});
-      strike = nullptr;
+    for (const StanceTimes& stance : stance_times(keytimes, static_cast<FootSide>(side))) {
+      const double third = (stance.off - stance.strike) / 3;
+      places.push_back(
+          {side, 0.5 * (stance.strike + stance.off),
+           mean_position(clip, ankles[side], stance.strike + third, stance.off - third)});
     }
   }
   std::ranges::stable_sort(places, {}, &FootPlace::time);

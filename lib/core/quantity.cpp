@@ -67,6 +67,17 @@ Result<double> parse_length(std::string_view text) {
   return parse_with(text, kLengths, 1.0);
 }
 
+Result<double> parse_length_with_unit(std::string_view text, std::string_view usual) {
+  const auto bare = parse_finite(text);
+  if (bare && *bare != 0) {
+    return Error("quantity-no-unit", fmt::format("'{}' has no unit", text),
+                 usual == "m"
+                     ? fmt::format("write {}m", text)
+                     : fmt::format("write {}{}, or {}m if metres are meant", text, usual, text));
+  }
+  return parse_length(text);
+}
+
 Result<double> parse_angle(std::string_view text) {
   return parse_with(text, kAngles, std::numbers::pi / 180.0);
 }

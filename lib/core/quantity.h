@@ -12,6 +12,11 @@ namespace krok {
 // Metres from "0.1mm", "5 cm", "1.7m", "3in", "1ft"; without a unit, metres.
 Result<double> parse_length(std::string_view text);
 
+// Metres for what needs a unit, such as a tolerance or a person's height: a bare number would be
+// metres, and hardly anybody means those. 0 needs none. `usual` is the unit that the message
+// suggests. Code also: quantity-no-unit.
+Result<double> parse_length_with_unit(std::string_view text, std::string_view usual = "mm");
+
 // Radians from "15deg", "15°", "0.26rad"; without a unit, degrees.
 Result<double> parse_angle(std::string_view text);
 

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "contacts/contacts.h"
 #include "contacts/gait_keytimes.h"
+#include "contacts/gait_metrics.h"
 #include "plant/foot_paths_internal.h"
 #include "plant/leg_pose_internal.h"
 #include "plant/legs_internal.h"
@@ -70,20 +70,13 @@ Diagnostics missed_stances(const Clip& clip, const RoleMap& roles, const FoundCo
   const std::vector<Keytime> keytimes = find_gait(clip, roles, found).keytimes;
   int stances = 0, missed = 0;
   for (const FootSide side : {FootSide::left, FootSide::right}) {
-    const std::string foot = name_of(side);
-    const auto is_held = [&](double from, double to) {
-      return std::ranges::any_of(stays, [&](const FixedStay& stay) {
-        return stay.point.side == side && stay.point.part != FootPart::tip &&
-               stay.first < to * clip.rate && stay.last > from * clip.rate;
-      });
-    };
-    const Keytime* strike = nullptr;
-    for (const Keytime& key : keytimes) {
-      if (key.name == foot + "_strike") strike = &key;
-      if (key.name != foot + "_off" || strike == nullptr) continue;
+    for (const StanceTimes& stance : stance_times(keytimes, side)) {
       ++stances;
-      missed += is_held(strike->time, key.time) ? 0 : 1;
-      strike = nullptr;
+      const bool held = std::ranges::any_of(stays, [&](const FixedStay& stay) {
+        return stay.point.side == side && stay.point.part != FootPart::tip &&
+               stay.first < stance.off * clip.rate && stay.last > stance.strike * clip.rate;
+      });
+      missed += held ? 0 : 1;
     }
   }
   if (missed < kFewMissed || missed < kPartMissed * stances) return {};
@@ -164,7 +157,7 @@ class Planter {
     return Error(
         "plant-contacts", "no heel, ball or toe stands at any frame, so nothing can be planted",
         contacts_ ? "the contacts given are not of feet; remove the file to have them found"
-                  : "does the figure walk in place, float, or jitter? krok-keys shows and edits "
+                  : "does the character walk in place, float, or jitter? krok-keys shows and edits "
                     "contacts, krok-edit --filter smooths");
   }
 

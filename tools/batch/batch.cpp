@@ -152,10 +152,10 @@ class Batch {
     } catch (const std::exception& error) {
       fail(file, Error("internal", error.what()), outcome);
     }
-    // Free data that no report needs on the thread that allocated it, which is cheaper.
     outcome.warned = std::ranges::any_of(outcome.context.report.issues, [](const Diagnostic& one) {
       return one.severity == Severity::warning;
     });
+    // Free data that no report needs on the thread that allocated it, which is cheaper.
     if (!report_.is_wanted()) outcome.context.report.issues = {};
     return outcome;
   }

@@ -4,7 +4,6 @@
 
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "core/tolerance.h"
 #include "tools/cli/option_kinds.h"
 
 namespace krok::cli::diff {
@@ -44,7 +43,7 @@ Result<double> parse_seconds(const std::string& text) {
 // LENGTH, or LENGTH,ANGLE.
 Status parse_joints(const std::string& text, compare::Tolerance& tolerance) {
   const std::size_t comma = text.find(',');
-  const auto length = not_negative(parse_length_tolerance(text.substr(0, comma)), "--joints", text);
+  const auto length = not_negative(parse_length_with_unit(text.substr(0, comma)), "--joints", text);
   if (!length) return length.error();
   tolerance.joint_positions = *length;
   if (comma == std::string::npos) return {};
@@ -118,7 +117,7 @@ void declare_tolerances(CommandOptions& command, ToleranceArguments& arguments) 
 Result<compare::Tolerance> parse_tolerances(const ToleranceArguments& arguments) {
   compare::Tolerance tolerance;
   const auto length =
-      not_negative(parse_length_tolerance(arguments.length), "--tolerance", arguments.length);
+      not_negative(parse_length_with_unit(arguments.length), "--tolerance", arguments.length);
   if (!length) return length.error();
   const auto angle = not_negative(parse_angle(arguments.angle), "--angle", arguments.angle);
   if (!angle) return angle.error();

@@ -7,7 +7,6 @@
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
-#include "core/tolerance.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/options.h"
@@ -15,6 +14,8 @@
 namespace krok::cli::edit {
 
 namespace {
+
+constexpr double kTallest = 10;  // metres; bare heights above are centimetres
 
 Error named(Error error, const char* option) {
   error.message = fmt::format("{}: {}", option, error.message);
@@ -141,7 +142,8 @@ Status understand_place(const Arguments& a, Options& options) {
   }
   options.scale = a.scale;
   if (!a.height.empty()) {
-    auto height = parse_length_with_unit(a.height, "cm");
+    const auto bare = parse_finite(a.height);
+    auto height = parse_length_with_unit(a.height, bare && *bare < kTallest ? "m" : "cm");
     if (!height) return named(std::move(height).error(), "--height");
     if (Status status = over_nought(*height, "--height"); !status) return status;
     options.height = *height;

@@ -6,7 +6,6 @@
 
 #include "capture/conventions.h"
 #include "core/quantity.h"
-#include "core/tolerance.h"
 #include "formats/bvh/bvh_writer.h"
 #include "formats/io/formats.h"
 #include "tools/cli/one_of.h"
@@ -57,7 +56,7 @@ Result<double> unit_of(const Options& options, ExportFormat format) {
 }
 
 Result<double> reduce_tolerance(const Options& options) {
-  const auto tolerance = parse_length_tolerance(options.reduce);
+  const auto tolerance = parse_length_with_unit(options.reduce);
   if (!tolerance)
     return Error("usage", "--reduce: " + tolerance.error().message, tolerance.error().hint);
   if (!(*tolerance > 0)) {

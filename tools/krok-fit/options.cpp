@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "core/numbers.h"
-#include "core/tolerance.h"
+#include "core/quantity.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-fit/run.h"
 
@@ -83,7 +83,7 @@ void declare(CommandOptions& command, Options& options) {
 
 Status check(const Options& options) {
   if (options.until.empty()) return {};
-  const auto until = parse_length_tolerance(options.until);
+  const auto until = parse_length_with_unit(options.until);
   if (!until)
     return Error(until.error().code, "--until: " + until.error().message, until.error().hint);
   if (*until > 0) return {};

@@ -10,7 +10,6 @@
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
-#include "core/tolerance.h"
 #include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/usage.h"
@@ -209,7 +208,7 @@ Result<Options> understand(const Arguments& a) {
   options.fade = fade->value;
   const auto margin = value_of("--margin", parse_angle(a.margin));
   if (!margin) return margin.error();
-  const auto distance = value_of("--tolerance", parse_length_tolerance(a.tolerance));
+  const auto distance = value_of("--tolerance", parse_length_with_unit(a.tolerance));
   if (!distance) return distance.error();
   const auto angle = value_of("--angle-tolerance", parse_angle(a.angle_tolerance));
   if (!angle) return angle.error();

@@ -7,7 +7,6 @@
 
 #include "core/numbers.h"
 #include "core/quantity.h"
-#include "core/tolerance.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/krok-skin/run.h"
 #include "tools/shared/skin_method_option.h"
@@ -112,7 +111,7 @@ void declare(CommandOptions& command, Options& options) {
 }
 
 Result<double> reduce_tolerance(const Options& options) {
-  const auto tolerance = parse_length_tolerance(options.reduce);
+  const auto tolerance = parse_length_with_unit(options.reduce);
   if (!tolerance) return at_option("--reduce", tolerance.error());
   if (*tolerance > 0) return *tolerance;
   return Error("usage", fmt::format("--reduce {} is not more than 0", options.reduce));

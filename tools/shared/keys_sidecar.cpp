@@ -18,7 +18,7 @@ std::string keys_sidecar_path(const std::string& motion_path) {
 
 namespace {
 
-constexpr double kFar = 0.05;  // metres; feet slide by less while they stand
+constexpr double kFar = 0.05;  // metres; feet in contact slide by less
 
 // The median distance, in metres, of the contacts' places from where the motion has their joints;
 // 0 without contacts.
@@ -85,7 +85,7 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
   if (!replaceable) return std::move(sidecar).error();
   Diagnostic ignored_file =
       make_warning("keys-stale", fmt::format("not used, since {}", sidecar.error().message),
-                   "it was not edited by hand; krok-keys makes it anew");
+                   "it was not edited by hand; krok-keys rebuilds it");
   ignored_file.where.file = path;
   context.diagnose(std::move(ignored_file));
   return std::optional<krok::keys::Sidecar>();

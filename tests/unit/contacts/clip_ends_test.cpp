@@ -17,6 +17,20 @@ namespace {
 
 constexpr double kRate = 60;
 
+std::vector<samples::Walk> walks_of(int steps) {
+  std::vector<samples::Walk> walks;
+  for (const double length : {0.45, 0.6, 0.75}) {
+    samples::WalkOptions options;
+    options.steps = steps;
+    options.step_length = length;
+    options.rate = kRate;
+    auto walk = samples::make_walk(options);
+    EXPECT_TRUE(walk.ok());
+    walks.push_back(std::move(*walk));
+  }
+  return walks;
+}
+
 // How high, in metres above its place, the heel of a print is found to stand in a part of the walk
 // that begins or ends beside its stance.
 double highest_stand(const samples::Walk& walk, const samples::Footprint& print, int first,
@@ -45,23 +59,17 @@ double highest_stand(const samples::Walk& walk, const samples::Footprint& print,
 TEST(ContactsAtClipEnds, HeelsInTheAirDoNotStand) {
   int tested = 0;
   double worst = 0;
-  for (const double length : {0.45, 0.6, 0.75}) {
-    samples::WalkOptions options;
-    options.steps = 8;
-    options.step_length = length;
-    options.rate = kRate;
-    const auto walk = samples::make_walk(options);
-    ASSERT_TRUE(walk.ok());
-    for (const samples::Footprint& print : walk->prints) {
+  for (const samples::Walk& walk : walks_of(8)) {
+    for (const samples::Footprint& print : walk.prints) {
       const int rise = static_cast<int>(std::ceil(print.heel_rise * kRate)),
                 strike = static_cast<int>(std::floor(print.strike * kRate));
       for (int frames = 4; frames <= 12; ++frames) {
         const int last = rise + frames, first = strike - frames;
         for (const auto& [from, to] :
              {std::pair(std::max(0, last - 90), last),
-              std::pair(first, std::min(first + 90, walk->clip.frame_count() - 1))}) {
-          if (from < 0 || to >= walk->clip.frame_count() || to - from < 60) continue;
-          const double metres = highest_stand(*walk, print, from, to);
+              std::pair(first, std::min(first + 90, walk.clip.frame_count() - 1))}) {
+          if (from < 0 || to >= walk.clip.frame_count() || to - from < 60) continue;
+          const double metres = highest_stand(walk, print, from, to);
           tested += metres >= 0 ? 1 : 0;
           worst = std::max(worst, metres);
         }
@@ -90,14 +98,8 @@ Clip with_misplaced_ankles(const Clip& clip, double metres) {
 
 TEST(GaitAtClipEnds, StrikesBeforeTheStartAreNotPlacedAfterIt) {
   int tested = 0, invented = 0, missed = 0;
-  for (const double length : {0.45, 0.6, 0.75}) {
-    samples::WalkOptions options;
-    options.steps = 10;
-    options.step_length = length;
-    options.rate = kRate;
-    const auto walk = samples::make_walk(options);
-    ASSERT_TRUE(walk.ok());
-    const Clip clip = with_misplaced_ankles(walk->clip, 0.05);
+  for (const samples::Walk& walk : walks_of(10)) {
+    const Clip clip = with_misplaced_ankles(walk.clip, 0.05);
     for (int first = 60; first < 140; first += 3) {
       const Clip part = cut(clip, first, clip.frame_count() - 1);
       const auto keytimes = test::keytimes_of(part);
@@ -108,9 +110,9 @@ TEST(GaitAtClipEnds, StrikesBeforeTheStartAreNotPlacedAfterIt) {
         };
         for (const double time : found) {
           ++tested;
-          invented += near(walk->feet[side].strikes, time + first / kRate) ? 0 : 1;
+          invented += near(walk.feet[side].strikes, time + first / kRate) ? 0 : 1;
         }
-        for (const double strike : walk->feet[side].strikes) {
+        for (const double strike : walk.feet[side].strikes) {
           const double time = strike - first / kRate;
           missed += time > 0.02 && !near(found, time) ? 1 : 0;
         }
