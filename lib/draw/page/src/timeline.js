@@ -256,7 +256,9 @@ export class Timeline {
       pen.fill();
       // As much of the name as fits before the next flag.
       const wide = Math.min(next, this.width) - x - 14;
-      if (wide > LEAST_NAME) pen.fillText(shortened(pen, name, wide), x + 10, 7);
+      const fits = pen.measureText(name).width <= wide;
+      const short = fits ? name : name.replace(/^left_/, 'L ').replace(/^right_/, 'R ');
+      if (wide > LEAST_NAME) pen.fillText(shortened(pen, short, wide), x + 10, 7);
     });
   }
 
