@@ -7,6 +7,7 @@
 #include "formats/model/model_format.h"
 #include "imported.h"
 #include "support/glb_builder.h"
+#include "support/this_build.h"
 #include "unit/assimp/sample_md5.h"
 
 namespace krok::test {
@@ -175,7 +176,7 @@ TEST_F(SceneImportTest, OptionsForCapturesAreRefused) {
 
 // A capture with a rest pose put before it, by way of a character's file.
 TEST_F(SceneImportTest, ARestFrameBeforeTheMotionIsTold) {
-  std::string text = get(KROK_SOURCE_DIR "/samples/captures/walk.bvh");
+  std::string text = get(test::source_folder() + "/samples/captures/walk.bvh");
   const std::size_t line = text.find('\n', text.find("Frame Time:")) + 1;
   std::size_t channels = 0;
   for (std::size_t at = text.find("CHANNELS "); at != std::string::npos;

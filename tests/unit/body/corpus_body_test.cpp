@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
+#include "support/this_build.h"
 #include "unit/body/mesh_checks.h"
 
 namespace krok {
@@ -37,7 +38,7 @@ constexpr std::size_t kEvery = 1;
 #endif
 
 TEST(CorpusBody, EverySkeletonGetsAValidBody) {
-  const fs::path root = fs::path(KROK_CORPUS_DIR) / "bvh";
+  const fs::path root = fs::path(test::corpus_folder()) / "bvh";
   if (!fs::exists(root)) GTEST_SKIP() << "skipped: no corpus at " << root;
   std::set<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(root)) {
