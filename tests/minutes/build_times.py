@@ -27,7 +27,8 @@ def build_seconds(folder):
     newest = {}
     for line in (folder / ".ninja_log").read_text().splitlines()[1:]:
         start, end, _, output, _ = line.split("\t")
-        newest[output] = (int(end) - int(start)) / 1000
+        if (folder / output).exists():  # not what an earlier layout of units left
+            newest[output] = (int(end) - int(start)) / 1000
     seconds = Counter()
     for output, time in newest.items():
         seconds[group_of(output)] += time
