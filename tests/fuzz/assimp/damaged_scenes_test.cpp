@@ -22,11 +22,7 @@ namespace {
 
 using namespace test;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kRounds = 8;
-#else
-constexpr std::size_t kRounds = 28;
-#endif
+const std::size_t kRounds = sanitized() ? 8 : 28;
 
 class DamagedScenes : public testing::Test {
  protected:

@@ -31,11 +31,7 @@ std::string joint_names(std::string_view text) {
 }
 
 // A body takes ten times as long under a sanitizer, so there every fifth skeleton has to do.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kEvery = 5;
-#else
-constexpr std::size_t kEvery = 1;
-#endif
+const std::size_t kEvery = test::sanitized() ? 5 : 1;
 
 TEST(CorpusBody, EverySkeletonGetsAValidBody) {
   const fs::path root = fs::path(test::corpus_folder()) / "bvh";
