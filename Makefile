@@ -141,9 +141,9 @@ coverage: test-deps
 	ctest --preset coverage -j $(JOBS)
 	python3 tests/sanitizers/line_coverage.py . build-coverage
 
-# Which tests those are, by the times of `make sanitize ALL=1`.
+# Which tests those are, by their times in `make test`.
 sanitize-list:
-	python3 tests/sanitizers/slow_tests.py build-asan/test_results > tests/sanitizers/slow_tests.tmp
+	python3 tests/sanitizers/slow_tests.py $(BUILD)/test_results > tests/sanitizers/slow_tests.tmp
 	mv tests/sanitizers/slow_tests.tmp tests/sanitizers/slow_tests.txt
 
 tsan: test-deps
