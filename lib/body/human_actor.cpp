@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "roles/joint_names.h"
+
 namespace krok::body {
 
 namespace {
@@ -31,10 +33,11 @@ std::vector<int> longest_chain(const Skeleton& skeleton,
 }
 
 // All finger chains below the wrist. Skips a joint between wrist and knuckles that several fingers
-// share (a palm).
+// share (a palm), and joints of props.
 void find_fingers(const Skeleton& skeleton, const std::vector<std::vector<int>>& children,
                   int joint, int depth, std::vector<std::vector<int>>& fingers) {
   for (const int child : children[static_cast<std::size_t>(joint)]) {
+    if (names_no_shape(skeleton.names[static_cast<std::size_t>(child)])) continue;
     std::size_t deep = 0;
     for (const int grandchild : children[static_cast<std::size_t>(child)]) {
       if (!skeleton.end_sites[static_cast<std::size_t>(grandchild)]) ++deep;
