@@ -1,6 +1,7 @@
 #include "body/human_actor.h"
 
 #include <algorithm>
+#include <array>
 
 #include "roles/joint_names.h"
 
@@ -78,6 +79,22 @@ std::vector<double> stature_estimates(std::span<const Transform> pose, const Hum
   return statures;
 }
 
+// Whether a level trunk stands on hanging legs and arms, as an animal's whose joints have a
+// person's names.
+bool is_on_four_legs(std::span<const Transform> pose, const HumanActor& actor, const Vec3& trunk) {
+  if (std::abs(trunk.y()) > 0.5 * trunk.norm()) return false;
+  const auto hangs = [&](int from, int to) {
+    const Vec3 limb =
+        pose[static_cast<std::size_t>(to)].position - pose[static_cast<std::size_t>(from)].position;
+    return limb.y() < -0.7 * limb.norm();
+  };
+  return std::ranges::all_of(std::array{0, 1}, [&](int side) {
+    const auto& arm = actor.arms[static_cast<std::size_t>(side)];
+    const auto& leg = actor.legs[static_cast<std::size_t>(side)];
+    return hangs(arm.shoulder, arm.wrist) && hangs(leg.hip, leg.ankle);
+  });
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -138,6 +155,7 @@ std::optional<HumanActor> find_human(const Skeleton& skeleton, const RoleMap& ro
   const Vec3 shoulder_middle =
       0.5 * (pose[static_cast<std::size_t>(actor.arms[0].shoulder)].position +
              pose[static_cast<std::size_t>(actor.arms[1].shoulder)].position);
+  if (is_on_four_legs(pose, actor, shoulder_middle - hip_middle)) return std::nullopt;
   const double trunk = (shoulder_middle - hip_middle).norm();
   if (trunk < 0.1 * actor.stature || trunk > 0.7 * actor.stature) return std::nullopt;
 
