@@ -41,7 +41,15 @@ class ConventionChooser {
     }
     if (Status status = detect(samples, positions.positions); !status) return status.error();
     if (file_.options.positions == Positions::automatic && samples.count() > 0) {
-      positions = choose_positions(hierarchy_, samples, capture_.conventions.up);
+      const Positions before = positions.positions;
+      const Conventions& found = capture_.conventions;
+      const bool clear = found.up_confidence != Confidence::guess;
+      positions =
+          choose_positions(hierarchy_, samples, clear ? std::optional(found.up) : std::nullopt);
+      // The ground is evidence of up.
+      if (positions.positions != before) {
+        if (Status status = detect(samples, positions.positions); !status) return status.error();
+      }
     }
     chosen_.positions = positions.positions;
     capture_.positions = positions.choice;
