@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "capture/exporter.h"
+#include "capture/far_values.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/bvh/angle_unit_internal.h"
@@ -30,17 +31,19 @@ class ConventionChooser {
     report_exporter(samples);
     choose_angles(samples);
     PositionChoice positions;
-    if (file_.options.positions == Positions::automatic) {
+    const bool detected = file_.options.positions == Positions::automatic && !mark();
+    if (detected) {
       positions = choose_positions(hierarchy_, samples, file_.options.up);
     } else {
-      positions.positions = file_.options.positions;
+      const bool given = file_.options.positions != Positions::automatic;
+      if (given) positions.positions = file_.options.positions;
       positions.choice.choice =
-          file_.options.positions == Positions::absolute ? "absolute" : "additive";
-      positions.choice.reason = "as given";
+          positions.positions == Positions::absolute ? "absolute" : "additive";
+      positions.choice.reason = given ? "as given" : "as krok-export writes them";
       positions.choice.confidence = Confidence::certain;
     }
     if (Status status = detect(samples, positions.positions); !status) return status.error();
-    if (file_.options.positions == Positions::automatic && samples.count() > 0) {
+    if (detected && samples.count() > 0) {
       const Positions before = positions.positions;
       const Conventions& found = capture_.conventions;
       const bool clear = found.up_confidence != Confidence::guess;
@@ -53,7 +56,7 @@ class ConventionChooser {
     }
     chosen_.positions = positions.positions;
     capture_.positions = positions.choice;
-    if (file_.options.positions == Positions::automatic && positions.has_evidence) {
+    if (detected && positions.has_evidence) {
       const bool guess = positions.choice.confidence == Confidence::guess;
       report(guess ? Severity::warning : Severity::note, "bvh-positions",
              fmt::format("position channels are {} ({}): {}", positions.choice.choice,
@@ -82,6 +85,10 @@ class ConventionChooser {
     if (file_.options.rate) {
       rate = *file_.options.rate;
       capture_.rate = {readable(rate), "as given", Confidence::certain};
+      return {};
+    }
+    if (hierarchy_.no_motion) {
+      capture_.rate = {readable(rate), "there is no motion", Confidence::guess};
       return {};
     }
     PrintedRate printed = rate_of_frame_time(file_.header.frame_time_text, file_.header.frame_time);
@@ -186,18 +193,20 @@ class ConventionChooser {
     auto roles = roles_of(skeleton, file_.options);
     if (!roles) return std::move(roles).error();
     capture_.roles = *std::move(roles);
+    std::vector<Vec3> sample_positions;
+    std::vector<Transform> pose(in_file.joint_count());
+    for (std::size_t i = 0; i < samples.count(); ++i) {
+      in_file.pose(samples.row(i), pose);
+      for (const Transform& joint : pose) sample_positions.push_back(joint.position);
+    }
     if (!file_.options.complete()) {
-      std::vector<Vec3> sample_positions;
-      std::vector<Transform> pose(in_file.joint_count());
-      for (std::size_t i = 0; i < samples.count(); ++i) {
-        in_file.pose(samples.row(i), pose);
-        for (const Transform& joint : pose) sample_positions.push_back(joint.position);
-      }
       conventions = detect_conventions(skeleton, capture_.roles, sample_positions);
       if (exporter_) apply_exporter(*exporter_, conventions);
       take_mark(conventions);
     }
     apply_given(file_.options, conventions);
+    chosen_.usual_distance =
+        usual_distance(sample_positions, pose.size()) * conventions.unit.metres;
     return {};
   }
 
