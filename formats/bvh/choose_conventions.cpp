@@ -46,7 +46,8 @@ class ConventionChooser {
     if (detected && samples.count() > 0) {
       const Positions before = positions.positions;
       const Conventions& found = capture_.conventions;
-      const bool clear = found.up_confidence != Confidence::guess;
+      // A person's doubtful up axis is no evidence; without a person, +y is as good as any.
+      const bool clear = found.up_confidence != Confidence::guess || !capture_.roles.humanoid;
       positions =
           choose_positions(hierarchy_, samples, clear ? std::optional(found.up) : std::nullopt);
       // The ground is evidence of up.
