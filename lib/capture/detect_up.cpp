@@ -109,7 +109,8 @@ class UpScores {
   // Weights. Ground outweighs a body that is upright elsewhere, since it may lie; a character that
   // travels along an axis outweighs both; a reference pose alone does not.
   static constexpr double kUpright = 1.5, kReference = 1, kGround = 1.6, kReferenceOnGround = 0.4;
-  static constexpr double kTravel = 2.5, kSide = 0.8, kUsual = 0.2;
+  static constexpr double kTravel = 2.5, kSide = 0.8;
+  static constexpr double kUsual = 0.2, kUsualAlone = 1.6;  // with a reference pose, without
 
   static Vec3 mean_side(const Evidence& evidence) {
     Vec3 sum = Vec3::Zero();
@@ -129,7 +130,7 @@ class UpScores {
   double score(Direction d) const {
     const bool agrees = reference_ == d;
     double sum = kUpright * votes_.share(d) + (agrees ? kReference : 0);
-    if (is_usual(d)) sum += kUsual;
+    if (is_usual(d)) sum += reference_ ? kUsual : kUsualAlone;
     if (!heights_) return sum;
     if (on_the_ground(d)) sum += kGround + (agrees ? kReferenceOnGround : 0);
     constexpr double kSteady = 0.02, kTravels = 0.42;  // in body heights
@@ -147,12 +148,22 @@ int percent_of(double share) {
   return static_cast<int>(std::lround(100 * share));
 }
 
+// Whether the character travels along another axis than `up`, while its support keeps its height.
+bool travels_level(const UpScores& scores, Direction up, std::optional<Direction> along) {
+  constexpr double kSteady = 0.1, kLevel = 0.25;  // in body heights
+  if (!scores.heights_known() || scores.spread(up) >= kSteady) return false;
+  for (const Direction d : {Direction::plus_x, Direction::plus_y, Direction::plus_z}) {
+    if (on_one_axis(d, up) || (along && !on_one_axis(d, *along))) continue;
+    if (scores.spread(d) > kLevel) return true;
+  }
+  return false;
+}
+
 // Certain only where reference pose and motion agree, or where the motion shows besides that the
 // reference pose's axis is level.
 Confidence confidence_of(const Evidence& evidence, const UpVotes& votes, const UpScores& scores) {
   constexpr double kAtTimes = 0.2, kMostly = 0.5, kThroughout = 0.95;
-  constexpr double kClear = 0.5;                  // of scores
-  constexpr double kSteady = 0.1, kLevel = 0.25;  // in body heights
+  constexpr double kClear = 0.5;  // of scores
   const Direction up = scores.best();
   const double share = votes.share(up);
   const auto& reference = evidence.reference_stands;
@@ -162,11 +173,16 @@ Confidence confidence_of(const Evidence& evidence, const UpVotes& votes, const U
     return share >= kAtTimes || !elsewhere ? Confidence::likely : Confidence::guess;
   }
   if (share < kMostly) return Confidence::guess;
-  if (!reference) return scores.margin() > kClear ? Confidence::likely : Confidence::guess;
+  if (!reference) {
+    const auto trunk = body_axis(evidence.reference, evidence.marks);  // all there is without feet
+    const bool agrees =
+        !evidence.marks.feet_known() && trunk && nearest_axis(*trunk).direction == up;
+    const bool shown = agrees || scores.on_the_ground(up) || travels_level(scores, up, {});
+    return shown && scores.margin() > kClear ? Confidence::likely : Confidence::guess;
+  }
   const Direction other = reference->direction;
   const bool grounded = scores.on_the_ground(up) && !scores.on_the_ground(other);
-  const bool level = scores.heights_known() && !on_one_axis(up, other) &&
-                     scores.spread(up) < kSteady && scores.spread(other) > kLevel;
+  const bool level = travels_level(scores, up, other);
   if (!grounded && !level) {
     // Files with up along x are rare: such a reference pose lies.
     return is_usual(up) && !is_usual(other) ? Confidence::likely : Confidence::guess;
