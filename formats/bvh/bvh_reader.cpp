@@ -77,7 +77,7 @@ class Reader {
 
   std::optional<OpenedCapture> open(std::function<void(std::size_t)> release) {
     const auto one_row_a_line = begin(release);
-    if (!one_row_a_line || !*one_row_a_line) return std::nullopt;
+    if (!one_row_a_line || !*one_row_a_line || hierarchy_.no_motion) return std::nullopt;
     if (!choose() || !check_size()) return std::nullopt;
     make_frames();
     // The first frames are enough to detect a rest frame.

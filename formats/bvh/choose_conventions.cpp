@@ -44,16 +44,9 @@ class ConventionChooser {
     }
     if (Status status = detect(samples, positions.positions); !status) return status.error();
     if (detected && samples.count() > 0) {
-      const Positions before = positions.positions;
-      const Conventions& found = capture_.conventions;
-      // A person's doubtful up axis is no evidence; without a person, +y is as good as any.
-      const bool clear = found.up_confidence != Confidence::guess || !capture_.roles.humanoid;
-      positions =
-          choose_positions(hierarchy_, samples, clear ? std::optional(found.up) : std::nullopt);
-      // The ground is evidence of up.
-      if (positions.positions != before) {
-        if (Status status = detect(samples, positions.positions); !status) return status.error();
-      }
+      auto again = choose_detected(samples, positions);
+      if (!again) return again.error();
+      positions = *std::move(again);
     }
     chosen_.positions = positions.positions;
     capture_.positions = positions.choice;
@@ -209,6 +202,27 @@ class ConventionChooser {
     chosen_.usual_distance =
         usual_distance(sample_positions, pose.size()) * conventions.unit.metres;
     return {};
+  }
+
+  // The final choice, after a detection of the axes with the first one.
+  Result<PositionChoice> choose_detected(const SampleRows& samples, const PositionChoice& first) {
+    Positions assumed = first.positions;
+    const Conventions& found = capture_.conventions;
+    // A person's doubtful up axis is no evidence; without a person, +y is as good as any.
+    const auto clear = [&] {
+      return found.up_confidence != Confidence::guess || !capture_.roles.humanoid;
+    };
+    if (!clear() && first.has_evidence) {
+      // The ground is evidence of up, which only the right positions show.
+      if (Status status = detect(samples, Positions::additive); !status) return status.error();
+      assumed = Positions::additive;
+    }
+    auto choice =
+        choose_positions(hierarchy_, samples, clear() ? std::optional(found.up) : std::nullopt);
+    if (choice.positions != assumed) {
+      if (Status status = detect(samples, choice.positions); !status) return status.error();
+    }
+    return choice;
   }
 
   Status make_conversion() {

@@ -150,11 +150,12 @@ int percent_of(double share) {
 
 // Whether the character travels along another axis than `up`, while its support keeps its height.
 bool travels_level(const UpScores& scores, Direction up, std::optional<Direction> along) {
-  constexpr double kSteady = 0.1, kLevel = 0.25;  // in body heights
-  if (!scores.heights_known() || scores.spread(up) >= kSteady) return false;
+  constexpr double kLevel = 0.25;  // in body heights
+  constexpr double kSteadier = 0.5;
+  if (!scores.heights_known()) return false;
   for (const Direction d : {Direction::plus_x, Direction::plus_y, Direction::plus_z}) {
     if (on_one_axis(d, up) || (along && !on_one_axis(d, *along))) continue;
-    if (scores.spread(d) > kLevel) return true;
+    if (scores.spread(d) > kLevel && scores.spread(up) < kSteadier * scores.spread(d)) return true;
   }
   return false;
 }
