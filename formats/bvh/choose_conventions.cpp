@@ -43,7 +43,7 @@ class ConventionChooser {
       positions.choice.confidence = Confidence::certain;
     }
     if (Status status = detect(samples, positions.positions); !status) return status.error();
-    if (detected && samples.count() > 0) {
+    if (positions.depends_on_up) {
       auto again = choose_detected(samples, positions);
       if (!again) return again.error();
       positions = *std::move(again);
@@ -212,7 +212,7 @@ class ConventionChooser {
     const auto clear = [&] {
       return found.up_confidence != Confidence::guess || !capture_.roles.humanoid;
     };
-    if (!clear() && first.has_evidence) {
+    if (!clear()) {
       // The ground is evidence of up, which only the right positions show.
       if (Status status = detect(samples, Positions::additive); !status) return status.error();
       assumed = Positions::additive;

@@ -175,6 +175,7 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
   }
   const int asked = absolute + additive;
   result.has_evidence = asked > 0 || root_place;
+  result.depends_on_up = asked == 0 && root_place;
   bool is_additive = false;
   if (asked > 0) {
     is_additive = additive > absolute;

@@ -21,7 +21,8 @@ struct SampleRows {
 struct PositionChoice {
   Positions positions = Positions::absolute;
   Choice choice;
-  bool has_evidence = false;  // false: no joint decides, and both modes give the same result
+  bool depends_on_up = false;  // the root decides
+  bool has_evidence = false;   // false: no joint decides, and both modes give the same result
 };
 
 // Whether position channels replace OFFSETs or are added to them. Each joint with position channels

@@ -22,9 +22,9 @@ class Takes {
 
   struct Axes {
     Direction up, forward, reference_up, reference_forward;
-    Confidence confidence;          // at most likely
-    std::string reason;             // a sentence without a full stop
-    std::vector<std::string> from;  // the takes that were asked
+    Confidence confidence, forward_confidence;  // at most likely
+    std::string reason;                         // a sentence without a full stop
+    std::vector<std::string> from;              // the takes that were asked
   };
 
   // What most takes with the hierarchy of `text` show, each weighted by its confidence. At most 8
