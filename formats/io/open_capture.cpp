@@ -156,6 +156,7 @@ Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& inputs, const Capt
   // A take that clearly shows other axes remains doubtful.
   const bool contrary = axes->up != alone.up && alone.up_confidence == Confidence::likely;
   agreed.axes_confidence = contrary ? Confidence::guess : axes->confidence;
+  agreed.forward_confidence = std::min(agreed.axes_confidence, axes->forward_confidence);
   agreed.axes_reason =
       axes->reason + (axes->up == alone.up ? "" : "; by itself: " + alone.up_reason);
   return open_bvh_with(file, agreed, stream);

@@ -64,6 +64,7 @@ std::optional<Takes::Axes> vote(const std::vector<std::string>& paths) {
       found.reference_up,
       found.reference_forward,
       std::min(found.up_confidence, Confidence::likely),
+      std::min(found.forward_confidence, Confidence::likely),
       fmt::format("{} of {} takes of this skeleton in the batch have up {}, forward "
                   "{}",
                   most.count, asked, direction_name(found.up), direction_name(found.forward)),

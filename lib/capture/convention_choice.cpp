@@ -36,7 +36,7 @@ void apply_given(const GivenConventions& given, Conventions& conventions) {
   }
   if (given.forward) {
     conventions.forward = conventions.reference_forward = *given.forward;
-    conventions.forward_confidence = given.axes_confidence;
+    conventions.forward_confidence = given.forward_confidence;
     conventions.forward_reason = axes_reason;
   }
   if (given.reference_up) conventions.reference_up = *given.reference_up;
