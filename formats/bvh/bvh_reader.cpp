@@ -36,6 +36,7 @@ class Reader {
     auto hierarchy = parse_hierarchy(text_, file_name_, options_, capture_.diagnostics);
     if (!hierarchy) return std::move(hierarchy).error();
     hierarchy_ = std::move(*hierarchy);
+    if (hierarchy_.no_motion) return true;
     auto header =
         parse_motion_header(text_, hierarchy_.end, file_name_, options_, capture_.diagnostics);
     if (!header) return std::move(header).error();
@@ -76,7 +77,7 @@ class Reader {
 
   std::optional<OpenedCapture> open(std::function<void(std::size_t)> release) {
     const auto one_row_a_line = begin(release);
-    if (!one_row_a_line || !*one_row_a_line) return std::nullopt;
+    if (!one_row_a_line || !*one_row_a_line || hierarchy_.no_motion) return std::nullopt;
     if (!choose() || !check_size()) return std::nullopt;
     make_frames();
     // The first frames are enough to detect a rest frame.
@@ -114,6 +115,7 @@ class Reader {
     if (!chosen) return std::move(chosen).error();
     positions_ = chosen->positions;
     conversion_ = chosen->conversion;
+    usual_distance_ = chosen->usual_distance;
     return {};
   }
 
@@ -145,6 +147,7 @@ class Reader {
   // Makes the skeleton and the converter from rows to frames.
   void make_frames() {
     Kinematics kinematics(hierarchy_, positions_, conversion_);
+    kinematics.expect_within(usual_distance_);
     capture_.clip.skeleton = skeleton_of(hierarchy_, kinematics);
     frames_ = std::make_shared<const RowFrames>(text_, std::move(rows_), hierarchy_.channels.size(),
                                                 std::move(kinematics), careful_);
@@ -270,6 +273,7 @@ class Reader {
   std::atomic<bool> row_is_faulty_ = false;
   Positions positions_ = Positions::absolute;
   Conversion conversion_;
+  double usual_distance_ = 0;
   std::shared_ptr<const RowFrames> frames_;
   FarValues far_;
   Capture capture_;
