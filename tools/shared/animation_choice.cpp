@@ -72,9 +72,9 @@ ChosenAnimation best_animation(
   const std::string most = counted(static_cast<long long>(best.count), what);
   best.why = scene.animations.size() == 1 ? "the only one"
              : best.moving == 0           ? fmt::format("the first, since none moves a {}", what)
-             : best.moving == 1 ? fmt::format("the only one that moves a {}: {}", what, most)
-                                : fmt::format("the one that moves most of {} that move a {}: {}",
-                                              best.moving, what, most);
+             : best.moving == 1
+                 ? fmt::format("the only one that moves a {}: {}", what, most)
+                 : fmt::format("it moves {}, none of {} others more", most, best.moving - 1);
   return best;
 }
 
