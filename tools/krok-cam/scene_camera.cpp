@@ -26,7 +26,7 @@ void report_all(Diagnostics& found, const std::string& path, ToolContext& contex
 // The animation that moves the camera most; -1 if none does.
 int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
   const ChosenAnimation best =
-      best_animation(scene, "channel of the camera", [&](const nodes::Animation& animation) {
+      best_animation(scene, "camera channel", [&](const nodes::Animation& animation) {
         return nodes::camera_count(scene, animation, camera);
       });
   if (best.count == 0) return -1;

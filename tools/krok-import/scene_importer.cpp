@@ -84,7 +84,7 @@ Status SceneImporter::choose() {
 Status SceneImporter::choose_animations() {
   ChosenAnimation best, of_camera;
   if (wants_camera()) {
-    of_camera = best_animation(scene_, "channel of the camera", [&](const auto& animation) {
+    of_camera = best_animation(scene_, "camera channel", [&](const auto& animation) {
       return nodes::camera_count(scene_, animation, camera_);
     });
   }

@@ -74,7 +74,7 @@ ChosenAnimation best_animation(
              : best.moving == 0           ? fmt::format("the first, since none moves a {}", what)
              : best.moving == 1
                  ? fmt::format("the only one that moves a {}: {}", what, most)
-                 : fmt::format("it moves {}, none of {} others more", most, best.moving - 1);
+                 : fmt::format("it moves {}, the most of {} that move any", most, best.moving);
   return best;
 }
 

@@ -23,7 +23,8 @@ std::string animation_list(const nodes::Scene& scene);
 Result<int> find_animation(const nodes::Scene& scene, const std::string& wanted,
                            const std::string& file);
 
-// An animation, and for messages why it was chosen: "it moves 41 joints, none of 2 others more".
+// An animation, and for messages why it was chosen: "it moves 41 joints, the most of 3 that move
+// any".
 struct ChosenAnimation {
   int animation = -1;      // -1 for a scene without animations
   std::size_t count = 0;   // what it moves
