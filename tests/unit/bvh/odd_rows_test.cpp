@@ -92,7 +92,7 @@ TEST(OddRows, TheHintTellsWhatDividesValues) {
 // As exporters write that put no blank before a sign. In one row only, in all, and in an OFFSET;
 // the other rows have as many words as the hierarchy has channels.
 TEST(OddRows, NumbersWithoutABlankBetweenAreNamedAndSplitByRepair) {
-  const std::string good = "0 1.5 0 0 0 0 0 0 0\n", glued = "0 1.5 0.0-7.5094748 0 0 0 1e-1-2+3\n";
+  const std::string good = "0 1.5 0 0 0 0 0 0 0\n", glued = "0 1.5 0.0-7.5094748 0 0 0 1e-1-2\n";
   for (const auto& [rows, line] : std::vector<std::pair<std::string, int>>{
            {glued + glued, 19}, {good + glued, 20}, {glued + good, 19}}) {
     for (const Strictness strictness : {Strictness::normal, Strictness::strict}) {
@@ -114,10 +114,8 @@ TEST(OddRows, NumbersWithoutABlankBetweenAreNamedAndSplitByRepair) {
   EXPECT_EQ(capture.clip.frame_count(), 2);
   ASSERT_EQ(capture.repairs.size(), 1u);
   EXPECT_EQ(find(capture.diagnostics, "bvh-repair")->where.line, 8);
-  const Capture whole = read_ok(kArm + motion(2, "0 1.5 0.0-7.5094748 0 0 0 1e-1-2\n" + good),
-                                with(Strictness::repair));
-  EXPECT_EQ(whole.clip.frame_orientations(0)[1].coeffs(),
-            apart.clip.frame_orientations(0)[1].coeffs());
+  EXPECT_TRUE(capture.clip.frame_orientations(1)[1].coeffs() ==
+              apart.clip.frame_orientations(0)[1].coeffs());
 }
 
 TEST(OddRows, DecimalCommasAreReadByRepair) {
