@@ -14,10 +14,10 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/bvh/choose_conventions_internal.h"
-#include "formats/bvh/decimal_commas_internal.h"
 #include "formats/bvh/far_rows_internal.h"
 #include "formats/bvh/hierarchy.h"
 #include "formats/bvh/kinematics.h"
+#include "formats/bvh/mended_numbers_internal.h"
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/row_frames.h"
 #include "scene/farthest.h"
@@ -279,23 +279,35 @@ class Reader {
   Capture capture_;
 };
 
+// Puts a change of numbers before what was reported about the changed text. `what` has a place for
+// their count.
+void add_repair(fmt::format_string<std::string> what, std::string_view text,
+                const MendedText& mended, const std::string& file_name, Capture& capture) {
+  Error repair("bvh-repair",
+               fmt::format(what, counted(static_cast<long long>(mended.count), "place")));
+  repair.where = locate(text, mended.first, file_name);
+  repair.severity = Severity::warning;
+  capture.repairs.insert(capture.repairs.begin(),
+                         fmt::format("line {}: {}", repair.where.line, repair.message));
+  capture.diagnostics.insert(capture.diagnostics.begin(), std::move(repair));
+}
+
 }  // namespace
 
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options) {
   if (Status status = check_rate(options.rate, "bvh-frame-time"); !status) return status.error();
-  const bool repair = options.strictness == Strictness::repair;
-  const auto pointed = repair ? with_decimal_points(text) : std::nullopt;
-  if (!pointed) return Reader(text, file_name, options).read();
-  auto capture = Reader(pointed->text, file_name, options).read();
+  if (options.strictness != Strictness::repair) return Reader(text, file_name, options).read();
+  const auto split = with_split_numbers(text);
+  const std::string_view apart = split ? std::string_view(split->text) : text;
+  const auto pointed = with_decimal_points(apart);
+  auto capture = Reader(pointed ? pointed->text : apart, file_name, options).read();
   if (!capture) return capture;
-  Error told("bvh-repair", fmt::format("decimal commas were read as points in {}",
-                                       counted(static_cast<long long>(pointed->count), "number")));
-  told.where = locate(text, pointed->first, file_name);
-  told.severity = Severity::warning;
-  capture->repairs.insert(capture->repairs.begin(),
-                          fmt::format("line {}: {}", told.where.line, told.message));
-  capture->diagnostics.insert(capture->diagnostics.begin(), std::move(told));
+  if (pointed)
+    add_repair("decimal commas were read as points in {}", apart, *pointed, file_name, *capture);
+  if (split)
+    add_repair("numbers without a blank between them were split in {}", text, *split, file_name,
+               *capture);
   return capture;
 }
 

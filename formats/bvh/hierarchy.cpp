@@ -11,7 +11,9 @@
 #include "formats/bvh/channel_name_internal.h"
 #include "formats/bvh/file_kind.h"
 #include "formats/bvh/finish_hierarchy_internal.h"
+#include "formats/bvh/mended_numbers_internal.h"
 #include "formats/bvh/names.h"
+#include "formats/bvh/row_faults_internal.h"
 #include "formats/bvh/text_cursor.h"
 
 namespace krok::bvh {
@@ -234,7 +236,8 @@ class HierarchyParser {
         return fail("bvh-number",
                     fmt::format("'{}' in the OFFSET of {} is not a finite number", shown(word),
                                 open_name()),
-                    word.find(',') == std::string_view::npos
+                    glued_numbers(word) > 0 ? RowFaults::hint_for(word)
+                    : word.find(',') == std::string_view::npos
                         ? "OFFSET needs three numbers"
                         : "write numbers with a decimal point and without commas between them");
       }

@@ -2,6 +2,8 @@
 // fail, joints stand or turn wrong, move at another speed, or lose weights, keys or names, without
 // anything being said. SMD has a file of its own.
 
+#include "formats/assimp/fbx_text_internal.h"
+#include "unit/assimp/binary_text.h"
 #include "unit/assimp/expectations.h"
 
 namespace krok {
@@ -345,6 +347,19 @@ TEST(Fbx, PivotsAndPreAndPostRotations) {
   for (const nodes::Node& node : scene.nodes) {
     EXPECT_EQ(node.name.find("$AssimpFbx$"), std::string::npos) << node.name;
   }
+}
+
+// Also of joints that no mesh is weighted to and no curve moves, of which Assimp keeps no mark.
+TEST(Fbx, JointsAreKnown) {
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.fbx", FbxSample().text()));
+  for (const nodes::Node& node : scene.nodes) {
+    EXPECT_EQ(node.bone, node.name == "Hips" || node.name == "Spine") << node.name;
+  }
+  BinaryText record;
+  record.text("S", 1).put(std::uint32_t{11}).text(std::string_view("Hips\0\1Model", 11), 11);
+  record.text("S", 1).put(std::uint32_t{8}).text("LimbNode", 8);
+  EXPECT_EQ(assimp::fbx_limb_names(record.take()), std::set<std::string>{"Hips"});
 }
 
 TEST(Fbx, LayersThatAreBlendedAreWarnedOf) {
