@@ -1,45 +1,26 @@
 #include "formats/assimp/fbx_text_internal.h"
 
-#include <cstring>
+#include <algorithm>
 
-#include "core/numbers.h"
-#include "core/text.h"
+#include "formats/assimp/fbx_elements_internal.h"
 
 namespace krok::assimp {
 
 std::vector<double> fbx_target_weights(std::string_view text) {
-  constexpr std::string_view kName = "DeformPercent";
   std::vector<double> weights;
-  for (std::size_t at = text.find(kName); at != std::string_view::npos;
-       at = text.find(kName, at + 1)) {
-    std::string_view after = text.substr(at + kName.size());
-    if (after.starts_with(':')) {
-      after = trimmed(after.substr(1, 64));
-      const auto value = parse_finite(after.substr(0, after.find_first_of(" \t\r\n,}")));
-      if (value) weights.push_back(*value / 100);
-    } else if (after.size() > sizeof(double) && after[0] == 'D') {
-      // A node's name is followed by its properties: a type letter and a value each.
-      double value = 0;
-      std::memcpy(&value, after.data() + 1, sizeof(value));
-      if (value > -1e6 && value < 1e6) weights.push_back(value / 100);
-    }
+  const auto elements = fbx_elements(text);
+  for (std::size_t e = 0; elements && e < elements->list.size(); ++e) {
+    const FbxElement& element = elements->list[e];
+    if (element.name == "DeformPercent")
+      weights.push_back(elements->number(element.value(0)) / 100);
   }
   return weights;
 }
 
 std::size_t fbx_object_count(std::string_view text, std::string_view kind) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(kind); at != std::string_view::npos;
-       at = text.find(kind, at + kind.size())) {
-    const std::string_view after = text.substr(at + kind.size());
-    // ASCII: name, colon, id; binary: length of the name, name, properties with the id first.
-    const bool ascii =
-        after.size() > 2 && after.starts_with(": ") && after[2] >= '0' && after[2] <= '9';
-    const bool binary =
-        at > 0 && static_cast<unsigned char>(text[at - 1]) == kind.size() && after.starts_with('L');
-    count += ascii || binary ? 1 : 0;
-  }
-  return count;
+  const auto elements = fbx_elements(text);
+  if (!elements) return 0;
+  return static_cast<std::size_t>(std::ranges::count(elements->list, kind, &FbxElement::name));
 }
 
 }  // namespace krok::assimp
