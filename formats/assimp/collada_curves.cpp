@@ -13,16 +13,6 @@ namespace {
 
 constexpr std::string_view kEndOfSampler = "</sampler>";
 
-std::vector<std::string_view> words_of(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (!(text = trimmed(text)).empty()) {
-    const std::size_t end = std::min(text.find_first_of(" \t\r\n"), text.size());
-    words.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return words;
-}
-
 // Of a reference, "#id", in the same file.
 std::string id_of(std::string_view tag, std::string_view name) {
   const std::string reference = attribute(tag, name);
@@ -78,25 +68,19 @@ Curve curve_of(ColladaSampler& sampler, double& unknown_gap) {
   curve.segments.resize(keys - 1);
   for (std::size_t k = 0; k + 1 < keys && k < shapes.size(); ++k) {
     Segment& segment = curve.segments[k];
-    const double third = (curve.times[k + 1] - curve.times[k]) / 3;
-    const bool hermite = shapes[k] == "HERMITE";
-    // A tangent: time and value, or the value alone; of a Hermite curve three times the way to the
-    // inner point.
-    const auto point = [&](const std::vector<double>& tangents, std::size_t key, double side) {
-      const Vec2 at(curve.times[key], curve.values[key]);
-      if (tangents.size() == 2 * keys) {
-        const Vec2 tangent(tangents[2 * key], tangents[2 * key + 1]);
-        return hermite ? Vec2(at + side * tangent / 3) : tangent;
-      }
-      const double value = tangents.size() == keys ? tangents[key] : at[1];
-      return Vec2(at[0] + side * third, hermite ? at[1] + side * value / 3 : value);
+    const double gap = curve.times[k + 1] - curve.times[k];
+    // Time and value, or the value alone, a third of the gap away.
+    const auto point = [&](const std::vector<double>& points, std::size_t key, double side) {
+      if (points.size() == 2 * keys) return Vec2(points[2 * key], points[2 * key + 1]);
+      const double value = points.size() == keys ? points[key] : curve.values[key];
+      return Vec2(curve.times[key] + side * gap / 3, value);
     };
-    if (shapes[k] == "BEZIER" || hermite) {
+    if (shapes[k] == "BEZIER") {
       segment = {Shape::bezier, point(out, k, 1), point(into, k + 1, -1)};
     } else if (shapes[k] == "STEP") {
       segment.shape = Shape::hold;
     } else if (shapes[k] != "LINEAR") {
-      unknown_gap = std::max(unknown_gap, 3 * third);
+      unknown_gap = std::max(unknown_gap, gap);
     }
   }
   return curve;

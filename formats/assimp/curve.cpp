@@ -189,17 +189,24 @@ void resample(CurveSet& set) {
   for (Curve& curve : set.curves) add_keys(frames, curve);
 }
 
-std::vector<double> numbers_of(std::string_view text) {
+std::vector<std::string_view> words_of(std::string_view text) {
   constexpr std::string_view kBetween = " \t\r\n,";
-  std::vector<double> numbers;
-  while (true) {
-    text.remove_prefix(std::min(text.find_first_not_of(kBetween), text.size()));
-    if (text.empty()) return numbers;
-    const std::size_t end = std::min(text.find_first_of(kBetween), text.size());
-    const auto number = parse_finite(text.substr(0, end));
-    numbers.push_back(number.value_or(std::numeric_limits<double>::quiet_NaN()));
-    text.remove_prefix(end);
+  std::vector<std::string_view> words;
+  for (std::size_t at = text.find_first_not_of(kBetween); at < text.size();
+       at = text.find_first_not_of(kBetween, at)) {
+    const std::size_t end = std::min(text.find_first_of(kBetween, at), text.size());
+    words.push_back(text.substr(at, end - at));
+    at = end;
   }
+  return words;
+}
+
+std::vector<double> numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  for (const std::string_view word : words_of(text)) {
+    numbers.push_back(parse_finite(word).value_or(std::numeric_limits<double>::quiet_NaN()));
+  }
+  return numbers;
 }
 
 }  // namespace krok::assimp

@@ -64,7 +64,8 @@ inline constexpr double kCurveDegrees = 0.02, kCurveMetres = 3.5e-4;
 // increase or whose numbers are not finite are left alone.
 void resample(CurveSet& set);
 
-// The numbers of a list, separated by spaces or commas; NaN for what is none.
+// The items of a list, separated by spaces or commas; NaN for what is no number.
+std::vector<std::string_view> words_of(std::string_view text);
 std::vector<double> numbers_of(std::string_view text);
 
 struct ResampledFile {
