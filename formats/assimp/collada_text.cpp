@@ -33,7 +33,8 @@ std::string unescaped(std::string_view text) {
   return to_utf8(plain);
 }
 
-// The value of an attribute of a tag; empty if there is none.
+}  // namespace
+
 std::string attribute(std::string_view tag, std::string_view name) {
   for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
     std::string_view rest = tag.substr(at + name.size());
@@ -47,22 +48,6 @@ std::string attribute(std::string_view tag, std::string_view name) {
   }
   return {};
 }
-
-// Calls `use` with each tag of this name, and with the text after it.
-template <typename Use>
-void for_each_tag(std::string_view text, std::string_view opening, Use use) {
-  for (std::size_t at = text.find(opening); at != std::string_view::npos;
-       at = text.find(opening, at + 1)) {
-    const std::size_t after = at + opening.size();
-    if (after >= text.size()) return;
-    if (!is_space(text[after]) && text[after] != '>' && text[after] != '/') continue;
-    const std::size_t end = text.find('>', at);
-    if (end == std::string_view::npos) return;
-    use(text.substr(at, end - at), text.substr(end + 1));
-  }
-}
-
-}  // namespace
 
 std::map<std::string, std::string> collada_node_names(std::string_view text) {
   std::map<std::string, std::string> names;
@@ -239,11 +224,6 @@ bool collada_has_unit(std::string_view text) {
     found = found || !attribute(tag, "meter").empty();
   });
   return found;
-}
-
-bool collada_has_curves(std::string_view text) {
-  return text.find("BEZIER") != std::string_view::npos ||
-         text.find("HERMITE") != std::string_view::npos;
 }
 
 }  // namespace krok::assimp

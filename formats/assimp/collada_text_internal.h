@@ -6,9 +6,28 @@
 #include <string_view>
 #include <vector>
 
+#include "core/text.h"
+
 // Finds COLLADA data that Assimp 5.2 ignores, in the file's text.
 
 namespace krok::assimp {
+
+// The value of an attribute of a tag; empty if there is none.
+std::string attribute(std::string_view tag, std::string_view name);
+
+// Calls `use` with each tag of this name, and with the text after it.
+template <typename Use>
+void for_each_tag(std::string_view text, std::string_view opening, Use use) {
+  for (std::size_t at = text.find(opening); at != std::string_view::npos;
+       at = text.find(opening, at + 1)) {
+    const std::size_t after = at + opening.size();
+    if (after >= text.size()) return;
+    if (!is_space(text[after]) && text[after] != '>' && text[after] != '/') continue;
+    const std::size_t end = text.find('>', at);
+    if (end == std::string_view::npos) return;
+    use(text.substr(at, end - at), text.substr(end + 1));
+  }
+}
 
 // Maps ids of <node> elements, which Assimp uses as names, to their names; nodes with both only.
 std::map<std::string, std::string> collada_node_names(std::string_view text);
@@ -37,8 +56,5 @@ std::vector<ColladaClip> collada_clips(std::string_view text);
 std::string collada_with_one_animation(std::string_view text, const ColladaClip* clip);
 
 bool collada_has_unit(std::string_view text);
-
-// Whether any keys have BEZIER or HERMITE interpolation.
-bool collada_has_curves(std::string_view text);
 
 }  // namespace krok::assimp

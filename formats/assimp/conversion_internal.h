@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "formats/assimp/curve_internal.h"
 #include "formats/registry/registry.h"
 #include "nodes/scene.h"
 
@@ -66,6 +67,8 @@ void convert_animations(Conversion& conversion, const aiScene& source);
 void convert_space(Conversion& conversion);
 void report_same_names(Conversion& conversion);
 void report_takes(Conversion& conversion);
+// How well the keys of `conversion` hold the file's curves, by what was resampled of them before.
+void report_curves(Conversion& conversion, const std::optional<Resampling>& resampling);
 void rename_collada_nodes(Conversion& conversion);    // last: other steps use Assimp's names
 void report_what_is_missing(Conversion& conversion);  // last
 

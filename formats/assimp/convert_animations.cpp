@@ -79,12 +79,25 @@ std::map<int, NodeSource> AnimationBuilder::sources() {
   return sources;
 }
 
+// 3DS: a key's rotation is relative to the key before, about axes of the parent; Assimp 5.2
+// multiplies them as if the axes turned with the object, d1 d2 d3 for d3 d2 d1.
+void reverse_products(std::vector<aiQuatKey>& keys) {
+  aiQuaternion before, product;
+  for (aiQuatKey& key : keys) {
+    product = aiQuaternion(before).Conjugate() * key.mValue * product;
+    before = key.mValue;
+    key.mValue = product;
+  }
+}
+
 NodeTracks AnimationBuilder::whole_tracks(const aiNodeAnim& source) {
   NodeTracks tracks;
   tracks.translation =
       vector_track(source.mPositionKeys, source.mNumPositionKeys, seconds_, faults_);
-  tracks.rotation =
-      rotation_track(source.mRotationKeys, source.mNumRotationKeys, seconds_, faults_);
+  std::vector<aiQuatKey> rotations(source.mRotationKeys,
+                                   source.mRotationKeys + source.mNumRotationKeys);
+  if (to_.kind == Kind::max_3ds) reverse_products(rotations);
+  tracks.rotation = rotation_track(rotations.data(), source.mNumRotationKeys, seconds_, faults_);
   tracks.scale = vector_track(source.mScalingKeys, source.mNumScalingKeys, seconds_, faults_);
   return tracks;
 }

@@ -1,77 +1,49 @@
 #include "formats/assimp/fbx_text_internal.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
 
-#include "core/numbers.h"
 #include "core/text.h"
+#include "formats/assimp/fbx_elements_internal.h"
 
 namespace krok::assimp {
 
 std::vector<double> fbx_target_weights(std::string_view text) {
-  constexpr std::string_view kName = "DeformPercent";
   std::vector<double> weights;
-  for (std::size_t at = text.find(kName); at != std::string_view::npos;
-       at = text.find(kName, at + 1)) {
-    std::string_view after = text.substr(at + kName.size());
-    if (after.starts_with(':')) {
-      after = trimmed(after.substr(1, 64));
-      const auto value = parse_finite(after.substr(0, after.find_first_of(" \t\r\n,}")));
-      if (value) weights.push_back(*value / 100);
-    } else if (after.size() > sizeof(double) && after[0] == 'D') {
-      // A node's name is followed by its properties: a type letter and a value each.
-      double value = 0;
-      std::memcpy(&value, after.data() + 1, sizeof(value));
-      if (value > -1e6 && value < 1e6) weights.push_back(value / 100);
-    }
+  const auto elements = fbx_elements(text);
+  for (std::size_t e = 0; elements && e < elements->list.size(); ++e) {
+    const FbxElement& element = elements->list[e];
+    if (element.name == "DeformPercent")
+      weights.push_back(elements->number(element.value(0)) / 100);
   }
   return weights;
 }
 
 std::size_t fbx_object_count(std::string_view text, std::string_view kind) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(kind); at != std::string_view::npos;
-       at = text.find(kind, at + kind.size())) {
-    const std::string_view after = text.substr(at + kind.size());
-    // ASCII: name, colon, id; binary: length of the name, name, properties with the id first.
-    const bool ascii =
-        after.size() > 2 && after.starts_with(": ") && after[2] >= '0' && after[2] <= '9';
-    const bool binary =
-        at > 0 && static_cast<unsigned char>(text[at - 1]) == kind.size() && after.starts_with('L');
-    count += ascii || binary ? 1 : 0;
-  }
-  return count;
+  const auto elements = fbx_elements(text);
+  if (!elements) return 0;
+  return static_cast<std::size_t>(std::ranges::count(elements->list, kind, &FbxElement::name));
 }
 
 std::set<std::string> fbx_limb_names(std::string_view text) {
-  constexpr std::string_view kLimb = "LimbNode", kAscii = "\"Model::";
+  constexpr std::string_view kAscii = "\"Model::";
   constexpr std::string_view kBinary("\0\1Model", 7);
+  constexpr std::size_t kHeader = 5;  // of a text in a binary file: a letter and its length
   std::set<std::string> names;
-  for (std::size_t at = text.find(kLimb); at != std::string_view::npos;
-       at = text.find(kLimb, at + kLimb.size())) {
-    // ASCII: "Model::Hips", "LimbNode"; binary: a letter and a length before each text.
-    const std::size_t first = at - std::min(at, kLongestName + 32);
-    std::string_view before = text.substr(first, at - first);
-    if (before.ends_with('"')) {
-      const std::size_t end = before.rfind('"', before.size() - 2);
-      const std::size_t begin = end == 0 ? end : before.rfind('"', end - 1);
-      if (end == before.npos || begin == before.npos) continue;
-      const std::string_view name = before.substr(begin, end - begin);
-      if (name.starts_with(kAscii)) names.insert(to_utf8(name.substr(kAscii.size())));
+  const auto elements = fbx_elements(text);
+  for (std::size_t e = 0; elements && e < elements->list.size(); ++e) {
+    const FbxElement& element = elements->list[e];
+    std::string_view name = element.value(1);
+    if (element.name != "Model" || element.value(2).find("LimbNode") == std::string_view::npos) {
       continue;
     }
-    constexpr std::size_t kPrefix = 1 + sizeof(std::uint32_t);
-    before.remove_suffix(std::min(before.size(), kPrefix));
-    if (!before.ends_with(kBinary)) continue;
-    for (std::size_t size = kBinary.size(); size + kPrefix <= before.size(); ++size) {
-      const std::string_view field = before.substr(before.size() - size - kPrefix);
-      std::uint32_t length = 0;
-      std::memcpy(&length, field.data() + 1, sizeof(length));
-      if (field[0] != 'S' || length != size) continue;
-      names.insert(to_utf8(field.substr(kPrefix, size - kBinary.size())));
-      break;
+    if (name.starts_with(kAscii) && name.ends_with('"')) {
+      name = name.substr(kAscii.size(), name.size() - kAscii.size() - 1);
+    } else if (name.size() >= kHeader + kBinary.size() && name.ends_with(kBinary)) {
+      name = name.substr(kHeader, name.size() - kHeader - kBinary.size());
+    } else {
+      continue;
     }
+    names.insert(to_utf8(name));
   }
   return names;
 }

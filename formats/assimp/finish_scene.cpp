@@ -29,25 +29,22 @@ std::string list_of(const std::vector<std::string>& things) {
   return list;
 }
 
-// Whether keys are so far apart that the interpolation matters.
-bool has_sparse_keys(const Scene& scene) {
-  constexpr float kLongGap = 1.0f / 14;  // seconds
+// The longest time, in seconds, in which a value changes from one key to the next.
+double longest_gap(const Scene& scene) {
   constexpr float kChange = 1e-3f;
+  float longest = 0;
   for (const Animation& animation : scene.animations) {
     for (const Channel& channel : animation.channels) {
       const std::vector<float>& times = *channel.times;
       const auto width = static_cast<std::size_t>(channel.width);
-      for (std::size_t k = 1; k < times.size(); ++k) {
-        if (times[k] - times[k - 1] < kLongGap) continue;
-        for (std::size_t i = 0; i < width; ++i) {
-          const float before = (*channel.values)[(k - 1) * width + i];
-          const float after = (*channel.values)[k * width + i];
-          if (std::abs(after - before) > kChange * std::max(1.0f, std::abs(before))) return true;
-        }
+      for (std::size_t i = width; i < times.size() * width; ++i) {
+        const float before = (*channel.values)[i - width], after = (*channel.values)[i];
+        if (std::abs(after - before) <= kChange * std::max(1.0f, std::abs(before))) continue;
+        longest = std::max(longest, times[i / width] - times[i / width - 1]);
       }
     }
   }
-  return false;
+  return static_cast<double>(longest);
 }
 
 }  // namespace
@@ -110,6 +107,30 @@ void report_takes(Conversion& to) {
           "if the motion looks wrong, merge the layers before exporting");
 }
 
+void report_curves(Conversion& to, const std::optional<Resampling>& resampling) {
+  if (resampling && resampling->rate > 0) {
+    const bool holds = resampling->degrees <= kCurveDegrees && resampling->metres <= kCurveMetres;
+    const std::string message = fmt::format(
+        "curves were resampled at {:.6g} keys per second; between them, rotations deviate by up to "
+        "{:.2g} degrees and translations by up to {:.2g} mm",
+        resampling->rate, resampling->degrees, resampling->metres * 1e3);
+    holds ? to.note("assimp-curves", message) : to.warn("assimp-curves", message);
+  }
+  constexpr double kLongGap = 1.0 / 14;  // seconds
+  const bool read = resampling ? resampling->gap < kLongGap
+                               : to.kind != Kind::fbx && to.kind != Kind::max_3ds &&
+                                     (to.kind != Kind::ase ||
+                                      (to.text.find("_BEZIER_") == std::string_view::npos &&
+                                       to.text.find("_TCB_") == std::string_view::npos));
+  const double gap = resampling ? resampling->gap : longest_gap(to.scene);
+  if (read || gap < kLongGap) return;
+  to.warn("assimp-curves",
+          fmt::format("curves between keys up to {:.3g} s apart cannot be read; they are "
+                      "interpolated linearly",
+                      gap),
+          "if the motion looks stiff, export with the animation baked to every frame");
+}
+
 void report_what_is_missing(Conversion& to) {
   const Scene& scene = to.scene;
   std::vector<std::string> missing;
@@ -129,16 +150,6 @@ void report_what_is_missing(Conversion& to) {
     to.note("assimp-rate", fmt::format("SMD files do not store their frame rate; {:g} frames per "
                                        "second are assumed",
                                        to.frames_per_second));
-  }
-  const bool curves =
-      to.kind == Kind::fbx || (to.kind == Kind::collada && collada_has_curves(to.text)) ||
-      (to.kind == Kind::ase && (to.text.find("_BEZIER_") != std::string_view::npos ||
-                                to.text.find("_TCB_") != std::string_view::npos));
-  if (curves && has_sparse_keys(scene)) {
-    to.warn("assimp-curves",
-            "keys are far apart, and Assimp does not read the curves between them; motion is "
-            "interpolated linearly",
-            "if it looks stiff, export with the animation baked to every frame");
   }
 }
 

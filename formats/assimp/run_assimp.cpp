@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "formats/assimp/clips_internal.h"
 #include "formats/assimp/conversion_internal.h"
+#include "formats/assimp/curve_internal.h"
 #include "formats/assimp/mend_input_internal.h"
 #include "formats/assimp/run_assimp_internal.h"
 
@@ -111,6 +112,10 @@ void convert_further_clips(Conversion& to, const std::vector<ColladaClip>& clips
   }
 }
 
+std::string_view text_of(const MemoryFile& file) {
+  return {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
+}
+
 // Input for Assimp.
 struct Input {
   std::vector<MemoryFile> files;
@@ -120,10 +125,19 @@ struct Input {
   std::string_view text;               // the file to open, mended
   bool bare_motion = false;            // an MD5 motion without its mesh
   std::vector<ColladaClip> clips;
+  std::string resampled;             // the file to open, with its curves resampled
+  std::optional<Resampling> curves;  // nullopt if they could not be read
 };
 
-std::string_view text_of(const MemoryFile& file) {
-  return {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
+// Replaces the file to open by one that Assimp's interpolation does not change.
+void resample_curves(Kind kind, MemoryFile& file, Input& input) {
+  std::optional<ResampledFile> resampled;
+  if (kind == Kind::fbx) resampled = resample_fbx(text_of(file));
+  if (kind == Kind::collada) resampled = resample_collada(text_of(file));
+  if (!resampled) return;
+  input.curves = resampled->result;
+  input.resampled = std::move(resampled->text);
+  if (!input.resampled.empty()) file.bytes = std::as_bytes(std::span(input.resampled));
 }
 
 Result<Input> prepare(std::vector<MemoryFile> files, Kind kind) {
@@ -142,9 +156,11 @@ Result<Input> prepare(std::vector<MemoryFile> files, Kind kind) {
     std::string& mended = input.mended.back();
     mended = std::move(*mend);
     if (!mended.empty()) files[0].bytes = std::as_bytes(std::span(mended));
+    resample_curves(kind, files[0], input);
     input.text = text_of(files[0]);
     input.clips = collada_clips(input.text);
   }
+  if (kind == Kind::fbx) resample_curves(kind, files[0], input);
   for (std::size_t f = 0; f < files.size(); ++f) {
     std::string& mended = input.mended[f];
     if (kind == Kind::collada) {
@@ -218,6 +234,7 @@ Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
             fmt::format("{} meshes have no normals; smooth ones were computed", without_normals));
   }
   report_takes(to);
+  report_curves(to, input->curves);
   report_what_is_missing(to);
   return std::move(to.scene);
 }

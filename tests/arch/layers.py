@@ -69,7 +69,7 @@ ALLOWED = {
     "formats/steps": BASE | {"lib/contacts", "lib/parametric", "lib/rbf", "formats/container",
                              "formats/registry"},
     "formats/gltf": BASE | {"lib/nodes", "lib/skin", "lib/tracks"},
-    "formats/assimp": BASE | {"lib/nodes", "formats/registry"},
+    "formats/assimp": BASE | {"lib/capture", "lib/character", "lib/nodes", "formats/registry"},
     "formats/csv": BASE,
     "formats/film": {"lib/core"},
     "formats/opensim": {"lib/core", "formats/csv"},

@@ -38,7 +38,7 @@ inline std::string ase() {
       "\t\t\t*CONTROL_POS_SAMPLE 0 0 0 0\n\t\t\t*CONTROL_POS_SAMPLE 640 1 0 0\n"
       "\t\t\t*CONTROL_POS_SAMPLE 4800 1 2 0\n\t\t}\n\t\t*CONTROL_ROT_TRACK {\n"
       "\t\t\t*CONTROL_ROT_SAMPLE 0 0 0 1 0\n\t\t\t*CONTROL_ROT_SAMPLE 640 0 0 1 0.5\n"
-      "\t\t\t*CONTROL_ROT_SAMPLE 4800 0 0 1 0.25\n\t\t}\n\t}\n}\n";
+      "\t\t\t*CONTROL_ROT_SAMPLE 4800 1 0 0 0.25\n\t\t}\n\t}\n}\n";
   text +=
       "*CAMERAOBJECT {\n\t*NODE_NAME \"eye\"\n\t*CAMERA_TYPE Free\n\t*NODE_TM {\n"
       "\t\t*NODE_NAME \"eye\"\n\t\t*TM_ROW0 1 0 0\n\t\t*TM_ROW1 0 0 1\n\t\t*TM_ROW2 0 -1 0\n"
