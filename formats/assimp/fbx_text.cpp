@@ -1,6 +1,5 @@
 #include "formats/assimp/fbx_text_internal.h"
 
-#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
@@ -45,32 +44,27 @@ std::size_t fbx_object_count(std::string_view text, std::string_view kind) {
 }
 
 std::set<std::string> fbx_limb_names(std::string_view text) {
-  constexpr std::string_view kLimb = "LimbNode", kAscii = "\"Model::";
-  constexpr std::string_view kBinary("\0\1Model", 7);
+  constexpr std::string_view kLimb = "LimbNode", kAscii = "Model::", kAfterAscii = "\", \"";
+  constexpr std::string_view kAfterBinary("\0\1Model", 7);
+  constexpr std::size_t kPrefix = 1 + sizeof(std::uint32_t);  // of a binary text: 'S' and its size
   std::set<std::string> names;
   for (std::size_t at = text.find(kLimb); at != std::string_view::npos;
        at = text.find(kLimb, at + kLimb.size())) {
-    // ASCII: "Model::Hips", "LimbNode"; binary: a letter and a length before each text.
-    const std::size_t first = at - std::min(at, kLongestName + 32);
-    std::string_view before = text.substr(first, at - first);
-    if (before.ends_with('"')) {
-      const std::size_t end = before.rfind('"', before.size() - 2);
-      const std::size_t begin = end == 0 ? end : before.rfind('"', end - 1);
-      if (end == before.npos || begin == before.npos) continue;
-      const std::string_view name = before.substr(begin, end - begin);
+    const std::string_view before = text.substr(0, at);
+    if (before.ends_with(kAfterAscii)) {
+      std::string_view name = before.substr(0, at - kAfterAscii.size());
+      name.remove_prefix(name.rfind('"') + 1);
       if (name.starts_with(kAscii)) names.insert(to_utf8(name.substr(kAscii.size())));
-      continue;
     }
-    constexpr std::size_t kPrefix = 1 + sizeof(std::uint32_t);
-    before.remove_suffix(std::min(before.size(), kPrefix));
-    if (!before.ends_with(kBinary)) continue;
-    for (std::size_t size = kBinary.size(); size + kPrefix <= before.size(); ++size) {
-      const std::string_view field = before.substr(before.size() - size - kPrefix);
+    if (at < kPrefix || !before.substr(0, at - kPrefix).ends_with(kAfterBinary)) continue;
+    for (std::size_t size = kAfterBinary.size(); size + 2 * kPrefix <= at; ++size) {
+      const std::string_view field = before.substr(at - size - 2 * kPrefix, size + kPrefix);
       std::uint32_t length = 0;
       std::memcpy(&length, field.data() + 1, sizeof(length));
-      if (field[0] != 'S' || length != size) continue;
-      names.insert(to_utf8(field.substr(kPrefix, size - kBinary.size())));
-      break;
+      if (field[0] == 'S' && length == size) {
+        names.insert(to_utf8(field.substr(kPrefix, size - kAfterBinary.size())));
+      }
+      if (size > kLongestName || length == size) break;
     }
   }
   return names;
