@@ -222,7 +222,10 @@ Status read_animations(const ParsedJson& parsed, Accessors& accessors, Scene& sc
   if (!left_out.empty()) {
     constexpr std::size_t kMaxListed = 6;
     const auto count = std::ssize(left_out);
-    if (left_out.size() > kMaxListed) left_out.resize(kMaxListed), left_out.emplace_back("...");
+    if (left_out.size() > kMaxListed) {
+      left_out.resize(kMaxListed);
+      left_out.emplace_back("...");
+    }
     warn(scene.diagnostics, "gltf-animation-pointer",
          fmt::format("{} left out: {}",
                      counted(count, "animated property is", "animated properties are"),

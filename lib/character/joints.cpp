@@ -379,7 +379,10 @@ void Chooser::report_left_out() {
   const auto report = [&](Severity severity, const char* what, std::vector<std::string>& names) {
     if (names.empty()) return;
     const auto count = std::ssize(names);
-    if (names.size() > kMaxNamed) names.resize(kMaxNamed), names.emplace_back("...");
+    if (names.size() > kMaxNamed) {
+      names.resize(kMaxNamed);
+      names.emplace_back("...");
+    }
     tell(diagnostics_, severity, "scene-left-out",
          fmt::format("{} outside of the skeleton, left out: {}",
                      counted(count, fmt::format("{} node", what)), fmt::join(names, ", ")));
