@@ -51,9 +51,10 @@ void declare(CommandOptions& command, Options& options) {
                      "Show this ground, as for krok-walk: a height field (.exr, 16-bit .png), a "
                      "mesh (.gltf, .glb, .obj), or " +
                          std::string(terrain::kSpecForms));
-  command.add_option("--clip NAME", options.clip,
-                     "Animation of glTF files that plays first [the one that moves most joints]. All "
-                     "others can be chosen on the page");
+  command.add_option(
+      "--clip NAME", options.clip,
+      "Animation of glTF files that plays first [the first that moves at least half as "
+      "many joints as any other]. All others can be chosen on the page");
   add_prints_option(command, options.prints,
                     "Show footprints (formats/prints/SPEC.md) on the ground, as krok-walk "
                     "--save-prints writes them; those that a foot stands on are marked");

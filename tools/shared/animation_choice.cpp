@@ -61,20 +61,27 @@ void report_animation(const nodes::Scene& scene, const ChosenAnimation& chosen, 
 ChosenAnimation best_animation(
     const nodes::Scene& scene, const char* what,
     const std::function<std::size_t(const nodes::Animation& animation)>& count) {
+  std::vector<std::size_t> counts;
+  for (const nodes::Animation& animation : scene.animations) counts.push_back(count(animation));
   ChosenAnimation best;
-  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
-    const std::size_t here = count(scene.animations[i]);
-    best.moving += here > 0 ? 1 : 0;
-    if (i > 0 && here <= best.count) continue;
-    best.animation = static_cast<int>(i);
-    best.count = here;
+  best.moving =
+      static_cast<std::size_t>(std::ranges::count_if(counts, [](auto n) { return n > 0; }));
+  // Alternative clips of a character move about the same joints; another object's clip hardly any.
+  const std::size_t enough = counts.empty() ? 0 : (*std::ranges::max_element(counts) + 1) / 2;
+  const auto first = std::ranges::find_if(counts, [&](auto n) { return n >= enough; });
+  if (first != counts.end()) {
+    best.animation = static_cast<int>(first - counts.begin());
+    best.count = *first;
   }
   const std::string most = counted(static_cast<long long>(best.count), what);
-  best.why = scene.animations.size() == 1 ? "the only one"
-             : best.moving == 0           ? fmt::format("the first, since none moves a {}", what)
-             : best.moving == 1
-                 ? fmt::format("the only one that moves a {}: {}", what, most)
-                 : fmt::format("it moves {}, the most of {} that move any", most, best.moving);
+  best.why =
+      scene.animations.size() == 1 ? "the only one"
+      : best.moving == 0           ? fmt::format("the first, since none moves a {}", what)
+      : best.moving == 1
+          ? fmt::format("the only one that moves a {}: {}", what, most)
+          : fmt::format(
+                "the first of {} that move any to move at least half as many {}s as the most: {}",
+                best.moving, what, most);
   return best;
 }
 

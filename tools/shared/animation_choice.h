@@ -23,20 +23,20 @@ std::string animation_list(const nodes::Scene& scene);
 Result<int> find_animation(const nodes::Scene& scene, const std::string& wanted,
                            const std::string& file);
 
-// An animation, and for messages why it was chosen: "it moves 41 joints, the most of 3 that move
-// any".
+// An animation, and for messages why it was chosen: "the first of 3 that move any to move at least
+// half as many joints as the most: 41 joints".
 struct ChosenAnimation {
   int animation = -1;      // -1 for a scene without animations
   std::size_t count = 0;   // what it moves
   std::size_t moving = 0;  // animations that move something
   std::string why;
 };
-// The animation for which `count` is largest, of equals the first; the first if all are 0. `what`
-// is counted: "joint".
+// The first animation for which `count` is at least half of the largest; the first if all are 0.
+// `what` is counted: "joint".
 ChosenAnimation best_animation(
     const nodes::Scene& scene, const char* what,
     const std::function<std::size_t(const nodes::Animation& animation)>& count);
-// The one that moves most nodes, else most morph targets.
+// By how many nodes move, else by morph targets.
 ChosenAnimation best_animation(const nodes::Scene& scene);
 // By nodes::moved_count().
 ChosenAnimation best_animation(const nodes::Scene& scene, std::span<const int> joints);

@@ -420,8 +420,8 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
 
 void add_clip_option(CommandOptions& command, std::string& clip) {
   command.add_option("--clip NAME", clip,
-                     "Animation of a glTF file that has several: name or number from 0 [the one "
-                     "that moves most joints]");
+                     "Animation of a glTF file that has several: name or number from 0 [the first "
+                     "that moves at least half as many joints as any other]");
 }
 
 namespace {
