@@ -58,7 +58,7 @@ TEST(FbxCurves, DamagedFiles) {
   for (std::size_t size = 0; size < file.size(); size += 97) {
     (void)assimp::read_file(folder.add("short.fbx", file.substr(0, size)));
   }
-  for (std::size_t place = 27; place < file.size(); place += 13) {
+  for (std::size_t place = 27; place < file.size(); place += 41) {
     std::string damaged = file;
     damaged[place] = static_cast<char>(damaged[place] ^ 0xff);
     (void)assimp::read_file(folder.add("damaged.fbx", damaged));
