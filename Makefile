@@ -18,11 +18,16 @@ DEB_PACKAGES := debhelper dh-python python3-all fakeroot lintian
 FUZZ_PACKAGES := afl++
 CLUSTER_PACKAGES := snakemake slurm-wlm munge
 
+# CPU minutes of what follows, added to the log under a part of the budget: $(call timed,build) COMMAND
+MINUTES_LOG = $(BUILD)/minutes.log
+timed = python3 tests/minutes/minutes.py $(MINUTES_LOG) run $(1)
+
 SOURCES = git ls-files --cached --others --exclude-standard '*.cpp' '*.h'
 
 .DEFAULT_GOAL := all
-.PHONY: help deps test-deps lint-deps configure all demo quick test test-build sanitize tsan bench \
-  cluster-test fuzz golden format format-check lint lint-changed headers install deb tarball clean
+.PHONY: help deps test-deps lint-deps configure all demo quick test test-build compiled-tests sanitize \
+  sanitize-list tsan coverage bench cluster-test fuzz golden format format-check lint check-changed \
+  headers time minutes install deb tarball clean
 
 help:
 	@echo "make demo                   build, then capture -> animated glTF on the samples, see out/demo"
@@ -32,7 +37,8 @@ help:
 	@echo
 	@echo "make all       build the tools into $(BUILD)/bin (the default)"
 	@echo "make deps      install the Debian packages that the build needs and lacks"
-	@echo "make sanitize  the tests under AddressSanitizer and UndefinedBehaviorSanitizer"
+	@echo "make sanitize  the tests under AddressSanitizer and UndefinedBehaviorSanitizer; those that take"
+	@echo "               long there, too, with ALL=1"
 	@echo "make tsan      the tests under ThreadSanitizer"
 	@echo "make fuzz      every reader and many operations under AFL++; MINUTES=60 for all together, of each"
 	@echo "               core; TARGETS='bvh operations' for some of them"
@@ -42,15 +48,19 @@ help:
 	@echo "               replace golden files that differ, too: review them as a diff"
 	@echo "make format    clang-format all sources"
 	@echo "make lint      clang-tidy, and each public header by itself; FILES='a.cpp b.cpp' for some sources"
+	@echo "make check-changed  what changed in the last three days: compiled alone, and by clang-tidy"
+	@echo "make time      where the minutes of the last builds and tests went"
 	@echo "make install   install tools, library and headers (PREFIX=/usr/local, DESTDIR=)"
 	@echo "make deb       Debian packages krok, libkrok-dev, python3-krok in build-deb"
 	@echo "make tarball   the tools with the libraries they need, for any x86-64 Linux, in build-tarball"
 	@echo "make clean     remove the build folders"
 
 # install-missing PACKAGES: apt-get only for what is not there, so that no network and no root are
-# needed once everything is.
+# needed once everything is. Elsewhere than on Debian and its like it only names what is needed.
 define install-missing
-	@missing=""; for package in $(1); do \
+	@if ! command -v apt-get > /dev/null || ! command -v dpkg-query > /dev/null; then \
+	  echo "no apt-get here; needed, by Debian's names: $(1)"; exit 0; fi; \
+	missing=""; for package in $(1); do \
 	  dpkg-query -W -f '$${Status}' $$package 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$package"; \
 	done; \
 	if [ -n "$$missing" ]; then \
@@ -102,18 +112,39 @@ test-build: test-deps all
 
 # The build is a make of its own, for in `make demo test` the demo's is one without tests.
 test: test-deps format-check
-	@$(MAKE) test-build
+	@$(call timed,build) $(MAKE) test-build
 	@rm -rf $(BUILD)/test_results
-	ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
+	@$(call timed,run) ctest --test-dir $(BUILD) -j $(JOBS) --output-on-failure
 	@python3 tests/count_tests.py $(BUILD)/test_results
 
-# The sanitizers take what reads, computes and writes, and leave out what only draws or measures.
+compiled-tests:
+	@$(MAKE) test-build TARGETS=krok_compiled_tests
+
+# The sanitizers take what reads, computes and writes, and leave out what only draws or measures, and
+# what takes long there (tests/sanitizers/slow_tests.txt) but with ALL=1. Tests themselves are those of
+# the release build.
+ALL ?=
 sanitize: test-deps
-	cmake --preset asan $(CMAKE_FLAGS)
-	cmake --build --preset asan -j $(JOBS)
+	@$(call timed,build) $(MAKE) compiled-tests
+	@cmake --preset asan -DKROK_TEST_OBJECTS=$(abspath $(BUILD)) -DKROK_SLOW_TESTS=$(if $(ALL),ON,OFF) $(CMAKE_FLAGS) > /dev/null
+	@$(call timed,build) cmake --build --preset asan -j $(JOBS)
 	@rm -rf build-asan/test_results
-	ctest --preset asan -j $(JOBS)
+	@$(call timed,run) ctest --preset asan -j $(JOBS)
 	@python3 tests/count_tests.py build-asan/test_results
+
+# The share of the library's lines that these tests run.
+coverage: test-deps
+	@$(MAKE) compiled-tests
+	@cmake --preset coverage -DKROK_TEST_OBJECTS=$(abspath $(BUILD)) -DKROK_SLOW_TESTS=$(if $(ALL),ON,OFF) $(CMAKE_FLAGS) > /dev/null
+	cmake --build --preset coverage -j $(JOBS)
+	find build-coverage -name '*.gcda' -delete
+	ctest --preset coverage -j $(JOBS)
+	python3 tests/sanitizers/line_coverage.py . build-coverage
+
+# Which tests those are, by their times in `make test`.
+sanitize-list:
+	python3 tests/sanitizers/slow_tests.py $(BUILD)/test_results > tests/sanitizers/slow_tests.tmp
+	mv tests/sanitizers/slow_tests.tmp tests/sanitizers/slow_tests.txt
 
 tsan: test-deps
 	cmake --preset tsan $(CMAKE_FLAGS)
@@ -157,17 +188,24 @@ lint: lint-deps headers
 	cmake --preset lint > /dev/null
 	@$(if $(FILES),echo $(FILES) | xargs -P $(JOBS) -n 1 clang-tidy -p build-lint --quiet,$(LINT_UNITS))
 
-# The same for what the last commit changed, at most 12 sources: what .ci/run has the time for.
-lint-changed: lint-deps
-	cmake --preset lint > /dev/null
-	@git diff --name-only --diff-filter=d HEAD~1 HEAD -- '*.cpp' ':!tests/consumer' 2> /dev/null | head -n 12 | \
-	  xargs -r -P $(JOBS) -n 1 clang-tidy -p build-lint --quiet
+# Every source and header that changed since the newest commit older than three days.
+check-changed: lint-deps
+	@cmake --preset lint > /dev/null
+	@$(call timed,check) python3 tests/arch/check_changed.py . build-lint --jobs $(JOBS)
 
 # Would not compile if a public header needed another one to be included before it.
 headers: deps
 	@git ls-files --cached --others --exclude-standard 'lib/*.h' 'formats/*.h' | grep -v '_internal\.h$$' | \
 	  xargs -P $(JOBS) -I{} sh -c 'echo "#include \"{}\"" | $(CXX) -std=c++20 -fsyntax-only -Wall \
 	    -I. -Ilib -isystem /usr/include/eigen3 -x c++ - || { echo "{}: does not stand by itself"; exit 255; }'
+
+# Job seconds and tests' seconds of the last builds, from ninja's log and the tests' reports.
+time:
+	@python3 tests/minutes/build_times.py $(wildcard $(BUILD) build-asan)
+
+# CPU minutes of the commands above against their budget.
+minutes:
+	@python3 tests/minutes/minutes.py $(MINUTES_LOG) report
 
 PREFIX ?= /usr/local
 install: CMAKE_FLAGS += -DKROK_BUILD_TESTS=OFF -DCMAKE_INSTALL_PREFIX=$(PREFIX)
@@ -189,4 +227,4 @@ tarball: all
 	packaging/tarball.sh $(BUILD) build-tarball
 
 clean:
-	rm -rf $(BUILD) build build-asan build-tsan build-debug build-lint build-deb build-tarball out
+	rm -rf $(BUILD) build build-asan build-tsan build-coverage build-debug build-lint build-deb build-tarball out

@@ -59,6 +59,20 @@ std::map<std::string, std::string> collada_node_names(std::string_view text) {
   return names;
 }
 
+std::set<std::string> collada_joint_ids(std::string_view text) {
+  std::set<std::string> ids;
+  for_each_tag(text, "<node", [&](std::string_view tag, std::string_view) {
+    if (attribute(tag, "type") != "JOINT") return;
+    for (const char* key : {"id", "sid", "name"}) {
+      if (std::string id = attribute(tag, key); !id.empty()) {
+        ids.insert(std::move(id));
+        return;
+      }
+    }
+  });
+  return ids;
+}
+
 namespace {
 
 // The vertical field of view of a <camera>, degrees: <yfov>, or that of <xfov> and <aspect_ratio>

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,9 @@ void for_each_tag(std::string_view text, std::string_view opening, Use use) {
 
 // Maps ids of <node> elements, which Assimp uses as names, to their names; nodes with both only.
 std::map<std::string, std::string> collada_node_names(std::string_view text);
+
+// Names in Assimp (id, sid or name) of <node> elements of type JOINT.
+std::set<std::string> collada_joint_ids(std::string_view text);
 
 // The vertical field of view, degrees, of the camera at each node, by the node's id, sid and name.
 std::map<std::string, double> collada_fields_of_view(std::string_view text);

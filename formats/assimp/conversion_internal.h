@@ -60,6 +60,7 @@ void convert_nodes(Conversion& conversion);
 void convert_meshes(Conversion& conversion);   // after nodes
 void convert_cameras(Conversion& conversion);  // after nodes
 void mark_fixtures(Conversion& conversion);    // after nodes
+void mark_bones(Conversion& conversion);       // after nodes
 // After meshes. Animations of `source`: the conversion's scene, or one with the same nodes and
 // meshes.
 void convert_animations(Conversion& conversion, const aiScene& source);

@@ -3,7 +3,9 @@
 #include <cmath>
 
 #include "core/text.h"
+#include "formats/assimp/collada_text_internal.h"
 #include "formats/assimp/conversion_internal.h"
+#include "formats/assimp/fbx_text_internal.h"
 #include "math/quaternion.h"
 #include "nodes/evaluate.h"
 
@@ -146,6 +148,14 @@ void convert_nodes(Conversion& to) {
       pending.push_back({holder->mChildren[c], index});
     }
   }
+}
+
+// Assimp keeps which nodes are joints only of those that a mesh is weighted to.
+void mark_bones(Conversion& to) {
+  const auto names = to.kind == registry::Kind::fbx       ? fbx_limb_names(to.text)
+                     : to.kind == registry::Kind::collada ? collada_joint_ids(to.text)
+                                                          : std::set<std::string>();
+  for (Node& node : to.scene.nodes) node.bone = names.contains(node.name);
 }
 
 }  // namespace krok::assimp

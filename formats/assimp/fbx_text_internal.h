@@ -1,5 +1,7 @@
 #pragma once
 
+#include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -10,5 +12,8 @@ std::vector<double> fbx_target_weights(std::string_view text);
 
 // Number of objects of a kind ("AnimationLayer"); ASCII or binary FBX.
 std::size_t fbx_object_count(std::string_view text, std::string_view kind);
+
+// Names of all models of type LimbNode, which are joints; ASCII or binary FBX.
+std::set<std::string> fbx_limb_names(std::string_view text);
 
 }  // namespace krok::assimp

@@ -189,6 +189,7 @@ Status convert(Conversion& to, const Input& input) {
     if (!input.bare_motion) convert_meshes(to);  // Assimp adds a dummy mesh to bare bones
     convert_cameras(to);
     mark_fixtures(to);
+    mark_bones(to);
     convert_animations(to, to.source);
     convert_further_clips(to, input.clips);
     convert_space(to);

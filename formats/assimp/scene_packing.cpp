@@ -32,6 +32,7 @@ void put_node(ByteWriter& out, const Node& node) {
   out.write(static_cast<std::int32_t>(node.skin));
   out.write(static_cast<std::int32_t>(node.camera));
   out.write(static_cast<std::uint8_t>(node.fixture));
+  out.write(static_cast<std::uint8_t>(node.bone));
   put_array(out, node.weights);
 }
 

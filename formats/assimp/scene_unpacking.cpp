@@ -27,6 +27,7 @@ Node take_node(Parser& in) {
   node.skin = in.number<std::int32_t>();
   node.camera = in.number<std::int32_t>();
   node.fixture = in.number<std::uint8_t>() != 0;
+  node.bone = in.number<std::uint8_t>() != 0;
   node.weights = in.array<double>();
   for (const double weight : node.weights)
     in.require(std::isfinite(weight), "a weight is not finite");

@@ -14,10 +14,10 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/bvh/choose_conventions_internal.h"
-#include "formats/bvh/decimal_commas_internal.h"
 #include "formats/bvh/far_rows_internal.h"
 #include "formats/bvh/hierarchy.h"
 #include "formats/bvh/kinematics.h"
+#include "formats/bvh/mended_numbers_internal.h"
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/row_frames.h"
 #include "scene/farthest.h"
@@ -36,6 +36,7 @@ class Reader {
     auto hierarchy = parse_hierarchy(text_, file_name_, options_, capture_.diagnostics);
     if (!hierarchy) return std::move(hierarchy).error();
     hierarchy_ = std::move(*hierarchy);
+    if (hierarchy_.no_motion) return true;
     auto header =
         parse_motion_header(text_, hierarchy_.end, file_name_, options_, capture_.diagnostics);
     if (!header) return std::move(header).error();
@@ -76,7 +77,7 @@ class Reader {
 
   std::optional<OpenedCapture> open(std::function<void(std::size_t)> release) {
     const auto one_row_a_line = begin(release);
-    if (!one_row_a_line || !*one_row_a_line) return std::nullopt;
+    if (!one_row_a_line || !*one_row_a_line || hierarchy_.no_motion) return std::nullopt;
     if (!choose() || !check_size()) return std::nullopt;
     make_frames();
     // The first frames are enough to detect a rest frame.
@@ -114,6 +115,7 @@ class Reader {
     if (!chosen) return std::move(chosen).error();
     positions_ = chosen->positions;
     conversion_ = chosen->conversion;
+    usual_distance_ = chosen->usual_distance;
     return {};
   }
 
@@ -145,6 +147,7 @@ class Reader {
   // Makes the skeleton and the converter from rows to frames.
   void make_frames() {
     Kinematics kinematics(hierarchy_, positions_, conversion_);
+    kinematics.expect_within(usual_distance_);
     capture_.clip.skeleton = skeleton_of(hierarchy_, kinematics);
     frames_ = std::make_shared<const RowFrames>(text_, std::move(rows_), hierarchy_.channels.size(),
                                                 std::move(kinematics), careful_);
@@ -270,28 +273,41 @@ class Reader {
   std::atomic<bool> row_is_faulty_ = false;
   Positions positions_ = Positions::absolute;
   Conversion conversion_;
+  double usual_distance_ = 0;
   std::shared_ptr<const RowFrames> frames_;
   FarValues far_;
   Capture capture_;
 };
+
+// Puts a change of numbers before what was reported about the changed text. `what` has a place for
+// their count.
+void add_repair(fmt::format_string<std::string> what, std::string_view text,
+                const MendedText& mended, const std::string& file_name, Capture& capture) {
+  Error repair("bvh-repair",
+               fmt::format(what, counted(static_cast<long long>(mended.count), "place")));
+  repair.where = locate(text, mended.first, file_name);
+  repair.severity = Severity::warning;
+  capture.repairs.insert(capture.repairs.begin(),
+                         fmt::format("line {}: {}", repair.where.line, repair.message));
+  capture.diagnostics.insert(capture.diagnostics.begin(), std::move(repair));
+}
 
 }  // namespace
 
 Result<Capture> read(std::string_view text, const std::string& file_name,
                      const ReadOptions& options) {
   if (Status status = check_rate(options.rate, "bvh-frame-time"); !status) return status.error();
-  const bool repair = options.strictness == Strictness::repair;
-  const auto pointed = repair ? with_decimal_points(text) : std::nullopt;
-  if (!pointed) return Reader(text, file_name, options).read();
-  auto capture = Reader(pointed->text, file_name, options).read();
+  if (options.strictness != Strictness::repair) return Reader(text, file_name, options).read();
+  const auto split = with_split_numbers(text);
+  const std::string_view apart = split ? std::string_view(split->text) : text;
+  const auto pointed = with_decimal_points(apart);
+  auto capture = Reader(pointed ? pointed->text : apart, file_name, options).read();
   if (!capture) return capture;
-  Error told("bvh-repair", fmt::format("decimal commas were read as points in {}",
-                                       counted(static_cast<long long>(pointed->count), "number")));
-  told.where = locate(text, pointed->first, file_name);
-  told.severity = Severity::warning;
-  capture->repairs.insert(capture->repairs.begin(),
-                          fmt::format("line {}: {}", told.where.line, told.message));
-  capture->diagnostics.insert(capture->diagnostics.begin(), std::move(told));
+  if (pointed)
+    add_repair("decimal commas were read as points in {}", apart, *pointed, file_name, *capture);
+  if (split)
+    add_repair("numbers without a blank between them were split in {}", text, *split, file_name,
+               *capture);
   return capture;
 }
 

@@ -51,7 +51,8 @@ struct Capture : krok::Capture {
 // frames move up, and the warning says so.
 //
 // Codes of errors: bvh-kind (not a BVH file), bvh-syntax, bvh-number, bvh-channels,
-// bvh-channel-count, bvh-frame-count, bvh-frame-time, bvh-no-motion, bvh-limit, direction-parallel.
+// bvh-channel-count, bvh-frame-count, bvh-frame-time, bvh-no-motion (no MOTION section: if strict,
+// otherwise a warning, and a skeleton without frames), bvh-limit, direction-parallel.
 // Of warnings and notes besides these: bvh-name, bvh-name-duplicate, bvh-roots, bvh-offset,
 // bvh-text-after, bvh-positions, bvh-rate, bvh-unit, bvh-up, bvh-forward, bvh-rest-frame,
 // bvh-reference, bvh-repair, bvh-cut, bvh-zero-bones, bvh-end-site, bvh-exporter, bvh-angles,

@@ -25,7 +25,7 @@ struct WriteOptions {
 
   // Writes the root's reference position as its OFFSET. Without it the root's OFFSET is 0 0 0,
   // which is unambiguous; with it, readers that add position channels to OFFSETs misplace the
-  // character. Either way the root's channels store its position.
+  // character. Either way the root's channels store its position, as this project's reader knows.
   bool root_offset = false;
 
   // Joints other than the root get position channels if their local translation differs from the

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "capture/exporter.h"
+#include "capture/far_values.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/bvh/angle_unit_internal.h"
@@ -30,22 +31,26 @@ class ConventionChooser {
     report_exporter(samples);
     choose_angles(samples);
     PositionChoice positions;
-    if (file_.options.positions == Positions::automatic) {
+    const bool detected = file_.options.positions == Positions::automatic && !mark();
+    if (detected) {
       positions = choose_positions(hierarchy_, samples, file_.options.up);
     } else {
-      positions.positions = file_.options.positions;
+      const bool given = file_.options.positions != Positions::automatic;
+      if (given) positions.positions = file_.options.positions;
       positions.choice.choice =
-          file_.options.positions == Positions::absolute ? "absolute" : "additive";
-      positions.choice.reason = "as given";
+          positions.positions == Positions::absolute ? "absolute" : "additive";
+      positions.choice.reason = given ? "as given" : "as krok-export writes them";
       positions.choice.confidence = Confidence::certain;
     }
     if (Status status = detect(samples, positions.positions); !status) return status.error();
-    if (file_.options.positions == Positions::automatic && samples.count() > 0) {
-      positions = choose_positions(hierarchy_, samples, capture_.conventions.up);
+    if (positions.depends_on_up) {
+      auto again = choose_detected(samples, positions);
+      if (!again) return again.error();
+      positions = *std::move(again);
     }
     chosen_.positions = positions.positions;
     capture_.positions = positions.choice;
-    if (file_.options.positions == Positions::automatic && positions.has_evidence) {
+    if (detected && positions.has_evidence) {
       const bool guess = positions.choice.confidence == Confidence::guess;
       report(guess ? Severity::warning : Severity::note, "bvh-positions",
              fmt::format("position channels are {} ({}): {}", positions.choice.choice,
@@ -74,6 +79,10 @@ class ConventionChooser {
     if (file_.options.rate) {
       rate = *file_.options.rate;
       capture_.rate = {readable(rate), "as given", Confidence::certain};
+      return {};
+    }
+    if (hierarchy_.no_motion) {
+      capture_.rate = {readable(rate), "there is no motion", Confidence::guess};
       return {};
     }
     PrintedRate printed = rate_of_frame_time(file_.header.frame_time_text, file_.header.frame_time);
@@ -178,19 +187,42 @@ class ConventionChooser {
     auto roles = roles_of(skeleton, file_.options);
     if (!roles) return std::move(roles).error();
     capture_.roles = *std::move(roles);
+    std::vector<Vec3> sample_positions;
+    std::vector<Transform> pose(in_file.joint_count());
+    for (std::size_t i = 0; i < samples.count(); ++i) {
+      in_file.pose(samples.row(i), pose);
+      for (const Transform& joint : pose) sample_positions.push_back(joint.position);
+    }
     if (!file_.options.complete()) {
-      std::vector<Vec3> sample_positions;
-      std::vector<Transform> pose(in_file.joint_count());
-      for (std::size_t i = 0; i < samples.count(); ++i) {
-        in_file.pose(samples.row(i), pose);
-        for (const Transform& joint : pose) sample_positions.push_back(joint.position);
-      }
       conventions = detect_conventions(skeleton, capture_.roles, sample_positions);
       if (exporter_) apply_exporter(*exporter_, conventions);
       take_mark(conventions);
     }
     apply_given(file_.options, conventions);
+    chosen_.usual_distance =
+        usual_distance(sample_positions, pose.size()) * conventions.unit.metres;
     return {};
+  }
+
+  // The final choice, after a detection of the axes with the first one.
+  Result<PositionChoice> choose_detected(const SampleRows& samples, const PositionChoice& first) {
+    Positions assumed = first.positions;
+    const Conventions& found = capture_.conventions;
+    // A person's doubtful up axis is no evidence; without a person, +y is as good as any.
+    const auto clear = [&] {
+      return found.up_confidence != Confidence::guess || !capture_.roles.humanoid;
+    };
+    if (!clear()) {
+      // The ground is evidence of up, which only the right positions show.
+      if (Status status = detect(samples, Positions::additive); !status) return status.error();
+      assumed = Positions::additive;
+    }
+    auto choice =
+        choose_positions(hierarchy_, samples, clear() ? std::optional(found.up) : std::nullopt);
+    if (choice.positions != assumed) {
+      if (Status status = detect(samples, choice.positions); !status) return status.error();
+    }
+    return choice;
   }
 
   Status make_conversion() {

@@ -27,6 +27,7 @@ struct IndexedFile {
 struct ChosenConventions {
   Positions positions = Positions::absolute;
   Conversion conversion;
+  double usual_distance = 0;  // metres, capture/far_values.h
 };
 
 // Chooses how to read the rows: frame rate, position channels, unit of angles, unit of length and

@@ -46,8 +46,12 @@ class FarRows {
     const std::string number =
         fmt::format("{} is {}", hierarchy_.channel_name(channel), readable(values_[channel]));
     const bool moves = hierarchy_.channels[channel].kind == ChannelKind::position;
-    Error failure = far_position("bvh-far-position", hierarchy_.joints[joint].name,
-                                 pose[joint].position, count, moves ? number : "");
+    const bool only_unusual =
+        !(pose[joint].position.norm() > farthest_position(kinematics.reference()));
+    Error failure =
+        far_position("bvh-far-position", hierarchy_.joints[joint].name, pose[joint].position, count,
+                     moves ? number : "",
+                     only_unusual ? std::optional(kinematics.usual_distance()) : std::nullopt);
     return placed(std::move(failure), row, channel, static_cast<int>(joint));
   }
 

@@ -11,7 +11,9 @@
 #include "formats/bvh/channel_name_internal.h"
 #include "formats/bvh/file_kind.h"
 #include "formats/bvh/finish_hierarchy_internal.h"
+#include "formats/bvh/mended_numbers_internal.h"
 #include "formats/bvh/names.h"
+#include "formats/bvh/row_faults_internal.h"
 #include "formats/bvh/text_cursor.h"
 
 namespace krok::bvh {
@@ -35,7 +37,10 @@ class HierarchyParser {
     if (Status status = parse_start(); !status) return status.error();
     for (;;) {
       const std::string_view word = cursor_.word();
-      if (word.empty()) return end_of_file();
+      if (word.empty()) {
+        if (Status status = end_of_file(); !status) return status.error();
+        break;
+      }
       if (same_word(word, "MOTION")) {
         if (!open_.empty()) {
           return fail("bvh-syntax",
@@ -127,14 +132,15 @@ class HierarchyParser {
     return joint.end_site ? "an End Site" : readable_name(joint.name);
   }
 
-  Error end_of_file() {
+  Status end_of_file() {
     if (!open_.empty()) {
       return fail("bvh-syntax",
                   fmt::format("the file ends inside the hierarchy, {} is not closed", open_name()),
                   "the file is truncated; export or copy it again");
     }
-    return fail("bvh-no-motion", "the file ends without a MOTION section",
-                "the file is truncated; export or copy it again");
+    result_.no_motion = true;
+    return warn_at(text_.size(), "bvh-no-motion",
+                   "there is no MOTION section: read as a skeleton without frames", {});
   }
 
   Status parse_item(std::string_view word) {
@@ -230,7 +236,8 @@ class HierarchyParser {
         return fail("bvh-number",
                     fmt::format("'{}' in the OFFSET of {} is not a finite number", shown(word),
                                 open_name()),
-                    word.find(',') == std::string_view::npos
+                    glued_numbers(word) > 0 ? RowFaults::hint_for(word)
+                    : word.find(',') == std::string_view::npos
                         ? "OFFSET needs three numbers"
                         : "write numbers with a decimal point and without commas between them");
       }

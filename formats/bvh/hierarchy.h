@@ -35,6 +35,7 @@ struct Hierarchy {
   std::vector<Joint> joints;
   std::vector<Channel> channels;   // in the order of the values of a row
   std::size_t end = 0;             // the byte after the word MOTION
+  bool no_motion = false;          // a skeleton: the file ends after the hierarchy
   double degrees_per_angle = 1.0;  // unit of the rotation channels
 
   // "LeftToe.Yrotation".

@@ -59,6 +59,11 @@ Kinematics::Kinematics(const Hierarchy& hierarchy, Positions positions,
   farthest_ = farthest_position(reference());
 }
 
+void Kinematics::expect_within(double usual_distance) {
+  usual_distance_ = usual_distance;
+  farthest_ = farthest_position(reference(), usual_distance);
+}
+
 kinematics_detail::Job Kinematics::job(double* scratch) const {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   const Vec3& p = reference_to_motion_.position;

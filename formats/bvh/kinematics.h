@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,6 +39,10 @@ class Kinematics {
   // Limit beyond which positions are reported, in metres.
   double farthest() const { return farthest_; }
 
+  // Lowers that limit for a motion within `usual_distance` (capture/far_values.h).
+  void expect_within(double usual_distance);
+  double usual_distance() const { return usual_distance_; }
+
   // The first channel with a rotation beyond kFarthestRotation in a row, whose values are `stride`
   // apart, and its absolute value in degrees.
   struct Rotation {
@@ -61,6 +66,7 @@ class Kinematics {
   Transform reference_to_motion_;
   double degrees_per_angle_ = 1.0;
   double farthest_ = 0;
+  double usual_distance_ = INFINITY;
   std::vector<kinematics_detail::Step> steps_;  // joint by joint
   std::vector<std::size_t> step_begins_;        // [joints + 1]
 };

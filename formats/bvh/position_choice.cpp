@@ -175,6 +175,7 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
   }
   const int asked = absolute + additive;
   result.has_evidence = asked > 0 || root_place;
+  result.depends_on_up = asked == 0 && root_place;
   bool is_additive = false;
   if (asked > 0) {
     is_additive = additive > absolute;
@@ -190,15 +191,17 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
     if (heights) {
       if (const auto by_ground = choose_by_ground(*heights)) return *by_ground;
     }
-    const bool usual = heights && lies_far_from_both(*root_place, *heights);
+    const bool usual = !up || (heights && lies_far_from_both(*root_place, *heights));
     is_additive = *root_place <= 0.5 && !usual;
     const double distance = std::abs(*root_place - (is_additive ? 0.0 : 1.0));
     result.choice.reason =
         fmt::format("the root's positions are at {} of its OFFSET, {}", readable(*root_place, 2),
-                    usual         ? "which is inconclusive; in most files they replace it"
+                    !up           ? "and up is unclear; in most files they replace it"
+                    : usual       ? "which is inconclusive; in most files they replace it"
                     : is_additive ? "so they are added to it"
                                   : "so they replace it");
-    result.choice.confidence = distance < 0.35 ? Confidence::likely : Confidence::guess;
+    result.choice.confidence =
+        distance < 0.35 && (up || *root_place > 0.5) ? Confidence::likely : Confidence::guess;
   } else {
     result.choice.reason = rows.count() == 0 ? "there are no frames to decide from"
                                              : "no joint has both position channels and an OFFSET";

@@ -21,15 +21,16 @@ struct SampleRows {
 struct PositionChoice {
   Positions positions = Positions::absolute;
   Choice choice;
-  bool has_evidence = false;  // false: no joint decides, and both modes give the same result
+  bool depends_on_up = false;  // the root decides
+  bool has_evidence = false;   // false: no joint decides, and both modes give the same result
 };
 
 // Whether position channels replace OFFSETs or are added to them. Each joint with position channels
 // and a non-zero OFFSET votes: in the median row, are its values near the OFFSET (absolute) or near
 // zero (additive)? Joints below the root decide, if there are any. A root travels, and so does a
-// joint that carries the whole skeleton: if `up` is known, the mode that puts the character on the
-// ground is chosen; if that is inconclusive, only the root's height is compared, if its OFFSET has
-// one.
+// joint that carries the whole skeleton: the mode that puts the character on the ground is chosen;
+// if that is inconclusive, only the root's height is compared, if its OFFSET has one. Without `up`,
+// where it is unclear, the positions of a root replace its OFFSET, as in most files.
 PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& rows,
                                 std::optional<Direction> up);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/numbers.h"
+#include "formats/bvh/mended_numbers_internal.h"
 
 namespace krok::bvh {
 
@@ -24,10 +25,13 @@ Error RowFaults::number_fault(std::size_t begin) {
 }
 
 Error RowFaults::number_fault_at(std::string_view word, std::size_t at, std::size_t channel) {
-  Error error = error_at(at, "bvh-number",
-                         fmt::format("'{}' is {} ({})", shown(word),
-                                     parse_finite(word) ? "too large" : "not a finite number",
-                                     hierarchy_.channel_name(channel)));
+  const std::size_t glued = glued_numbers(word);
+  const std::string what = glued > 0 ? fmt::format("{} numbers without a blank between them", glued)
+                           : parse_finite(word) ? "too large"
+                                                : "not a finite number";
+  Error error =
+      error_at(at, "bvh-number",
+               fmt::format("'{}' is {} ({})", shown(word), what, hierarchy_.channel_name(channel)));
   error.hint = hint_for(word);
   error.joint =
       hierarchy_.joints[static_cast<std::size_t>(hierarchy_.channels[channel].joint)].name;
@@ -36,6 +40,7 @@ Error RowFaults::number_fault_at(std::string_view word, std::size_t at, std::siz
 
 const char* RowFaults::hint_for(std::string_view word) {
   const auto has = [&](std::string_view part) { return word.find(part) != word.npos; };
+  if (glued_numbers(word) > 0) return "--repair splits them";
   const std::size_t comma = word.find(',');
   const bool one = comma != word.npos && word.find(',', comma + 1) == word.npos;
   if (one && comma + 1 < word.size() && !has(".")) {

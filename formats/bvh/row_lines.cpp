@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "core/text.h"
+#include "formats/bvh/mended_numbers_internal.h"
 #include "formats/bvh/motion_rows.h"
 
 namespace krok::bvh {
@@ -48,7 +49,10 @@ std::vector<Line> split_lines(std::string_view text, std::size_t begin) {
         line.text = begins_like_text(word);
       }
       if (line.words < std::numeric_limits<std::uint32_t>::max()) ++line.words;
-      line.numbers = line.numbers && is_number(word);
+      if (!is_number(word)) {
+        line.numbers = false;
+        line.glued = line.glued || glued_numbers(word) > 0;
+      }
       at += word.size();
     }
     if (line.words > 0) lines.push_back(line);

@@ -14,6 +14,7 @@ struct Line {
   std::size_t begin = 0;    // offset of the first word
   std::uint32_t words = 0;  // number of words
   bool numbers = true;      // all words are complete, finite numbers
+  bool glued = false;       // a word is several numbers without a blank between them
   bool text = false;        // the first word is not even the beginning of a number
 };
 

@@ -27,6 +27,11 @@ class CarefulIndexer {
 
   Result<RowIndex> index() {
     lines_ = split_lines(text_, header_.end);
+    // Before counting: numbers without a blank between them would be one value.
+    for (std::size_t i = 0; i < lines_.size() && channels_ > 0; ++i) {
+      const bool row = static_cast<long long>(i) < header_.frames && !lines_[i].text;
+      if (row && lines_[i].glued) return words_for_.number_fault(lines_[i].begin);
+    }
     Status status = channels_ == 0     ? index_nothing()
                     : one_row_a_line() ? index_rows_as_lines()
                                        : index_rows_over_lines();

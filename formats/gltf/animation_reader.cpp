@@ -1,10 +1,12 @@
 #include "formats/gltf/animation_reader_internal.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/gltf/reader_words_internal.h"
 
 namespace krok::gltf {
@@ -19,6 +21,9 @@ class Reader {
 
   Status read_channel(const tinygltf::Animation& source, std::size_t index, std::size_t channel,
                       Animation& animation);
+  // False if the channel is not read.
+  Result<bool> read_lens(const tinygltf::Animation& source, const PointerChannel& pointer,
+                         Animation& animation);
   void report_repeated();
 
  private:
@@ -94,6 +99,29 @@ Status Reader::read_channel(const tinygltf::Animation& source, std::size_t index
   }
   animation.channels.push_back(std::move(channel));
   return {};
+}
+
+Result<bool> Reader::read_lens(const tinygltf::Animation& source, const PointerChannel& pointer,
+                               Animation& animation) {
+  if (!exists(pointer.camera, scene_.cameras.size()) ||
+      !exists(pointer.sampler, source.samplers.size())) {
+    return false;
+  }
+  Channel channel;
+  channel.node = pointer.camera;
+  channel.path = Path::field_of_view;
+  channel.width = 1;
+  const std::string name =
+      fmt::format("{}, {}", label("animation", pointer.animation, source.name), pointer.pointer);
+  const auto& sampler = source.samplers[static_cast<std::size_t>(pointer.sampler)];
+  if (auto read = read_keys(sampler, name, channel); !read) return read.error();
+  const std::size_t parts = channel.interpolation == Interpolation::cubic_spline ? 3 : 1;
+  for (std::size_t i = parts / 2; i < channel.values->size(); i += parts) {
+    const float angle = (*channel.values)[i];
+    if (!(angle > 0 && angle < static_cast<float>(kPi))) return false;
+  }
+  animation.lenses.push_back(std::move(channel));
+  return true;
 }
 
 Status Reader::read_keys(const tinygltf::AnimationSampler& sampler, const std::string& name,
@@ -173,7 +201,8 @@ void Reader::report_repeated() {
 
 }  // namespace
 
-Status read_animations(const tinygltf::Model& model, Accessors& accessors, Scene& scene) {
+Status read_animations(const ParsedJson& parsed, Accessors& accessors, Scene& scene) {
+  const tinygltf::Model& model = parsed.model;
   Reader reader(accessors, scene);
   for (std::size_t i = 0; i < model.animations.size(); ++i) {
     Animation& animation = scene.animations.emplace_back();
@@ -181,6 +210,23 @@ Status read_animations(const tinygltf::Model& model, Accessors& accessors, Scene
     for (std::size_t c = 0; c < model.animations[i].channels.size(); ++c) {
       if (auto read = reader.read_channel(model.animations[i], i, c, animation); !read) return read;
     }
+  }
+  std::vector<std::string> left_out;
+  for (const PointerChannel& pointer : parsed.pointers) {
+    if (pointer.animation >= model.animations.size()) continue;
+    const auto read = reader.read_lens(model.animations[pointer.animation], pointer,
+                                       scene.animations[pointer.animation]);
+    if (!read) return read.error();
+    if (!*read) left_out.push_back(shown(pointer.pointer));
+  }
+  if (!left_out.empty()) {
+    constexpr std::size_t kMaxListed = 6;
+    const auto count = std::ssize(left_out);
+    if (left_out.size() > kMaxListed) left_out.resize(kMaxListed), left_out.emplace_back("...");
+    warn(scene.diagnostics, "gltf-animation-pointer",
+         fmt::format("{} left out: {}",
+                     counted(count, "animated property is", "animated properties are"),
+                     fmt::join(left_out, ", ")));
   }
   reader.report_repeated();
   return {};

@@ -58,7 +58,7 @@ class Builder {
   Status read_skins();
   Status check_instances();
   Status place_instances();
-  Status read_animations() { return gltf::read_animations(model_, accessors_, scene_); }
+  Status read_animations() { return gltf::read_animations(parsed_, accessors_, scene_); }
 
   const ParsedJson& parsed_;
   const tinygltf::Model& model_;

@@ -106,7 +106,7 @@ bool is_supported(std::string_view extension) {
                                     "MSFT_texture_",  "KHR_lights_",          "EXT_lights_",
                                     "KHR_xmp",        "KHR_techniques_webgl", "MSFT_lod"};
   return extension == "KHR_mesh_quantization" || extension == kMeshopt || extension == kDraco ||
-         extension == kInstancing || extension == kVisibility ||
+         extension == kInstancing || extension == kVisibility || extension == kPointer ||
          std::any_of(kPrefixes.begin(), kPrefixes.end(),
                      [&](const char* prefix) { return extension.starts_with(prefix); });
 }
@@ -217,6 +217,47 @@ std::vector<InstancedNode> read_instanced(const Json& json) {
   return all;
 }
 
+// The index in a pointer such as "/nodes/3/rotation"; -1 in others.
+int index_between(std::string_view before, std::string_view pointer, std::string_view after) {
+  if (!pointer.starts_with(before) || !pointer.ends_with(after)) return -1;
+  if (pointer.size() <= before.size() + after.size()) return -1;
+  pointer.remove_prefix(before.size());
+  pointer.remove_suffix(after.size());
+  const auto index = parse_integer(pointer);
+  return index && *index >= 0 && *index <= 0x7FFFFFFF ? static_cast<int>(*index) : -1;
+}
+
+// Takes the channels of KHR_animation_pointer; those of a node's own properties become channels as
+// glTF has them without the extension.
+std::vector<PointerChannel> take_pointers(Json& json) {
+  std::vector<PointerChannel> all;
+  const auto animations = json.find("animations");
+  if (animations == json.end() || !animations->is_array()) return all;
+  for (std::size_t i = 0; i < animations->size(); ++i) {
+    Json& animation = (*animations)[i];
+    if (!animation.is_object() || !animation.contains("channels")) continue;
+    for (Json& channel : animation["channels"]) {
+      if (!channel.is_object() || !channel.contains("target")) continue;
+      Json& target = channel["target"];
+      const Json* extension = extension_of(target, kPointer);
+      if (extension == nullptr) continue;
+      const std::string pointer = text_member(*extension, "pointer");
+      const std::string path = pointer.substr(pointer.rfind('/') + 1);
+      const int node = index_between("/nodes/", pointer, "/" + path);
+      if (node >= 0 &&
+          (path == "translation" || path == "rotation" || path == "scale" || path == "weights")) {
+        target = {{"node", node}, {"path", path}};
+        continue;
+      }
+      const auto sampler = channel.find("sampler");
+      const bool given = sampler != channel.end() && sampler->is_number_integer();
+      all.push_back({i, given ? sampler->get<int>() : -1, pointer,
+                     index_between("/cameras/", pointer, "/perspective/yfov")});
+    }
+  }
+  return all;
+}
+
 // Extensions whose data is read. Those of materials are read where they are on materials.
 bool is_shown(std::string_view extension) {
   constexpr std::array kOthers = {"KHR_mesh_quantization", "KHR_texture_transform",
@@ -228,22 +269,15 @@ bool is_shown(std::string_view extension) {
          (extension.starts_with("KHR_materials_") && extension != "KHR_materials_variants");
 }
 
-std::vector<std::string> read_not_shown(const Json& json, const std::vector<bool>& lights) {
+std::vector<std::string> read_not_shown(const Json& json, const ParsedJson& parsed) {
   std::vector<std::string> all;
   const auto add = [&](std::int64_t count, const char* one, const char* many) {
     if (count > 0) all.push_back(counted(count, one, many));
   };
-  add(std::ranges::count(lights, true), "light", "lights");
-  std::int64_t cameras = 0, pointers = 0, attributes = 0;
+  add(std::ranges::count(parsed.lights, true), "light", "lights");
+  std::int64_t cameras = 0, attributes = 0;
   for (const Json& node : entries_of(json, "nodes")) {
     cameras += node.is_object() && node.contains("camera") ? 1 : 0;
-  }
-  for (const Json& animation : entries_of(json, "animations")) {
-    for (const Json& channel : entries_of(animation, "channels")) {
-      const auto target = channel.is_object() ? channel.find("target") : channel.end();
-      if (!channel.is_object() || target == channel.end()) continue;
-      pointers += extension_of(*target, kPointer) != nullptr ? 1 : 0;
-    }
   }
   for (const Json& mesh : entries_of(json, "meshes")) {
     for (const Json& primitive : entries_of(mesh, "primitives")) {
@@ -256,7 +290,7 @@ std::vector<std::string> read_not_shown(const Json& json, const std::vector<bool
     }
   }
   add(cameras, "camera", "cameras");
-  add(pointers, "animation channel of KHR_animation_pointer",
+  add(std::ssize(parsed.pointers), "animation channel of KHR_animation_pointer",
       "animation channels of KHR_animation_pointer");
   add(attributes, "vertex attribute of other names", "vertex attributes of other names");
   for (const Json& extension : entries_of(json, "extensionsUsed")) {
@@ -444,7 +478,8 @@ Result<ParsedJson> parse_json(const Container& container) {
     result.hidden.push_back(visibility != nullptr && visibility->value("visible", Json()) == false);
   }
   result.instanced = read_instanced(json);
-  result.not_shown = read_not_shown(json, result.lights);
+  result.pointers = take_pointers(json);
+  result.not_shown = read_not_shown(json, result);
   auto views = read_packed_views(json);
   if (!views) return views.error();
   result.packed_views = std::move(*views);

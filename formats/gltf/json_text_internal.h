@@ -62,6 +62,14 @@ struct CameraEntry {
   std::vector<float> lens;
 };
 
+// An animation channel of KHR_animation_pointer. Its values are not checked.
+struct PointerChannel {
+  std::size_t animation = 0;
+  int sampler = -1;
+  std::string pointer;  // "/cameras/0/perspective/yfov"
+  int camera = -1;      // whose field of view it is; -1 if it is another property
+};
+
 struct ParsedJson {
   tinygltf::Model model;  // without buffers, materials, images, cameras, extras and extensions
   std::vector<BufferEntry> buffers;
@@ -73,6 +81,8 @@ struct ParsedJson {
   std::vector<bool> marked;  // [nodes], whether Krok wrote them to name a joint as an eye
   std::vector<bool> hidden;  // [nodes], by themselves (KHR_node_visibility)
   std::vector<InstancedNode> instanced;
+  // Without those of a node's transform or weights, which are in `model` as channels of the node.
+  std::vector<PointerChannel> pointers;
   std::vector<std::string> not_shown;  // as nodes::Scene::not_shown
   std::vector<PackedView> packed_views;
   std::vector<PackedPrimitive> packed_primitives;

@@ -9,6 +9,8 @@
 
 namespace krok::io {
 
+class Takes;
+
 // Where readers get their files from and report to. A reader may need more than the file it was
 // given: the ASF of an AMC, the buffers of a glTF, the model of a character. It opens all of them
 // here, so that a caller knows what a result depends on. A program that only wants the data uses
@@ -38,6 +40,7 @@ class Inputs {
 
   int jobs = 0;                  // threads; 0 is one per core
   Progress* progress = nullptr;  // may be null
+  Takes* takes = nullptr;        // the other files of a batch (takes.h); null outside one
 };
 
 // Opens files as they are and keeps what readers report.

@@ -8,6 +8,7 @@
 #include "formats/acclaim/find_skeleton.h"
 #include "formats/io/formats.h"
 #include "formats/io/readers_internal.h"
+#include "formats/io/takes.h"
 
 namespace krok::io {
 
@@ -98,11 +99,8 @@ FrameSource watched(const FrameSource& frames, std::atomic<bool>& faulty) {
   return watching;
 }
 
-}  // namespace
-
-Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& /*inputs*/,
-                               const CaptureReading& reading, bool stream) {
-  if (Status status = check_no_skeleton(file, reading); !status) return status.error();
+Result<OpenedCapture> open_bvh_with(const InputFile& file, const CaptureReading& reading,
+                                    bool stream) {
   bvh::ReadOptions options;
   static_cast<CaptureOptions&>(options) = reading;
   options.positions = reading.positions;
@@ -125,6 +123,43 @@ Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& /*inputs*/,
   if (!read) return std::move(read).error();
   CaptureDetails details = details_of(*read);
   return read_whole(*std::move(read), std::move(details));
+}
+
+}  // namespace
+
+Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& inputs, const CaptureReading& reading,
+                               bool stream) {
+  if (Status status = check_no_skeleton(file, reading); !status) return status.error();
+  auto opened = open_bvh_with(file, reading, stream);
+  if (!opened || inputs.takes == nullptr || reading.up || reading.forward || reading.roles) {
+    return opened;
+  }
+  const Conventions& alone = opened->capture->conventions;
+  if (alone.up_confidence == Confidence::certain) return opened;
+  const auto axes = inputs.takes->axes_for(file.text());
+  if (!axes) return opened;
+  // The result depends on the takes asked, and on which takes there are.
+  for (const std::string& path : axes->from) {
+    if (path == file.path()) continue;
+    if (const auto asked = inputs.open_input(path); !asked) return asked.error();
+  }
+  inputs.depends_on_neighbours(file.path(), ".bvh");
+  const bool same = axes->up == alone.up && axes->forward == alone.forward &&
+                    axes->reference_up == alone.reference_up &&
+                    axes->reference_forward == alone.reference_forward;
+  if (same && axes->confidence <= alone.up_confidence) return opened;
+  CaptureReading agreed = reading;
+  agreed.up = axes->up;
+  agreed.forward = axes->forward;
+  agreed.reference_up = axes->reference_up;
+  agreed.reference_forward = axes->reference_forward;
+  // A take that clearly shows other axes remains doubtful.
+  const bool contrary = axes->up != alone.up && alone.up_confidence == Confidence::likely;
+  agreed.axes_confidence = contrary ? Confidence::guess : axes->confidence;
+  agreed.forward_confidence = std::min(agreed.axes_confidence, axes->forward_confidence);
+  agreed.axes_reason =
+      axes->reason + (axes->up == alone.up ? "" : "; by itself: " + alone.up_reason);
+  return open_bvh_with(file, agreed, stream);
 }
 
 Result<OpenedCapture> open_amc(const InputFile& file, Inputs& inputs, const CaptureReading& reading,

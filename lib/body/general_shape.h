@@ -11,7 +11,9 @@ namespace krok::body {
 // proportional to the total length of all descendant bones, as in the branches of a tree, so a
 // spine is thicker than the legs and limbs taper to their tips. A chain of bones is one tube
 // through its joints; other bones are blended on where they branch off. Zero-length bones are
-// skipped; a skeleton of zero extent becomes a ball of radius `lone_radius` metres.
+// skipped, and those that stand for no part of a body: to IK targets, props, eyes and other parts
+// of a face, by name, and from a root on the ground to the body above it. A skeleton of zero extent
+// becomes a ball of radius `lone_radius` metres.
 Shape general_shape(const Skeleton& skeleton, std::span<const Transform> pose,
                     double lone_radius = 0.1);
 

@@ -1,6 +1,9 @@
 #include "body/human_actor.h"
 
 #include <algorithm>
+#include <array>
+
+#include "roles/joint_names.h"
 
 namespace krok::body {
 
@@ -31,10 +34,11 @@ std::vector<int> longest_chain(const Skeleton& skeleton,
 }
 
 // All finger chains below the wrist. Skips a joint between wrist and knuckles that several fingers
-// share (a palm).
+// share (a palm), and joints of props.
 void find_fingers(const Skeleton& skeleton, const std::vector<std::vector<int>>& children,
                   int joint, int depth, std::vector<std::vector<int>>& fingers) {
   for (const int child : children[static_cast<std::size_t>(joint)]) {
+    if (names_no_shape(skeleton.names[static_cast<std::size_t>(child)])) continue;
     std::size_t deep = 0;
     for (const int grandchild : children[static_cast<std::size_t>(child)]) {
       if (!skeleton.end_sites[static_cast<std::size_t>(grandchild)]) ++deep;
@@ -73,6 +77,22 @@ std::vector<double> stature_estimates(std::span<const Transform> pose, const Hum
     statures.push_back(distance(pose, leg.hip, leg.ankle) / 0.491);
   }
   return statures;
+}
+
+// Whether a level trunk stands on hanging legs and arms, as an animal's whose joints have a
+// person's names.
+bool is_on_four_legs(std::span<const Transform> pose, const HumanActor& actor, const Vec3& trunk) {
+  if (std::abs(trunk.y()) > 0.5 * trunk.norm()) return false;
+  const auto hangs = [&](int from, int to) {
+    const Vec3 limb =
+        pose[static_cast<std::size_t>(to)].position - pose[static_cast<std::size_t>(from)].position;
+    return limb.y() < -0.7 * limb.norm();
+  };
+  return std::ranges::all_of(std::array{0, 1}, [&](int side) {
+    const auto& arm = actor.arms[static_cast<std::size_t>(side)];
+    const auto& leg = actor.legs[static_cast<std::size_t>(side)];
+    return hangs(arm.shoulder, arm.wrist) && hangs(leg.hip, leg.ankle);
+  });
 }
 
 double median(std::vector<double> values) {
@@ -135,6 +155,7 @@ std::optional<HumanActor> find_human(const Skeleton& skeleton, const RoleMap& ro
   const Vec3 shoulder_middle =
       0.5 * (pose[static_cast<std::size_t>(actor.arms[0].shoulder)].position +
              pose[static_cast<std::size_t>(actor.arms[1].shoulder)].position);
+  if (is_on_four_legs(pose, actor, shoulder_middle - hip_middle)) return std::nullopt;
   const double trunk = (shoulder_middle - hip_middle).norm();
   if (trunk < 0.1 * actor.stature || trunk > 0.7 * actor.stature) return std::nullopt;
 

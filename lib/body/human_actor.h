@@ -37,7 +37,7 @@ struct HumanActor {
 };
 
 // The landmarks, if the joint roles form a human and a human body fits the bone lengths; nullopt
-// otherwise.
+// otherwise, and for an animal on four legs whose joints have a person's names.
 std::optional<HumanActor> find_human(const Skeleton& skeleton, const RoleMap& roles);
 
 // Unit vectors of a posed body: up along the trunk, left across hips and shoulders, forward.

@@ -11,6 +11,10 @@ namespace krok::body {
 
 namespace {
 
+// From the wrist, over stature. A chain without length at the wrist, such as a prop's joint, is no
+// finger.
+constexpr double kShortestFinger = 0.02;
+
 bool named_thumb(const std::string& name) {
   std::string lower = name;
   for (char& c : lower) {
@@ -42,7 +46,9 @@ HandLayout hand_layout(const Skeleton& skeleton, const HumanActor& actor, std::s
       if (!palm && !aside && !short_bone) break;
       chain.erase(chain.begin());
     }
-    if (chain.size() < 2) continue;
+    const bool within_wrist = std::ranges::all_of(
+        chain, [&](int joint) { return (at(joint) - wrist).norm() < kShortestFinger * u; });
+    if (chain.size() < 2 || within_wrist) continue;
     if (hand.thumb.empty() && thumb) {
       hand.thumb = std::move(chain);
     } else {

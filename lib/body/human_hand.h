@@ -11,7 +11,8 @@ namespace krok::body {
 struct HandLayout {
   Vec3 along = Vec3::UnitX();   // unit, from the wrist to the knuckles
   Vec3 across = Vec3::UnitZ();  // unit, perpendicular to `along`, towards the thumb
-  // Chains from knuckle to tip, at least two joints each, starting at the thumb side.
+  // Chains from knuckle to tip, at least two joints each, starting at the thumb side. Chains within
+  // the wrist are left out.
   std::vector<std::vector<int>> fingers;
   std::vector<int> thumb;  // empty if there is none
   // Whether the skeleton has a complete hand. With fewer than three fingers they are placeholders.

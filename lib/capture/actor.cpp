@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -20,18 +21,6 @@ Vec3 middle_of_feet(Positions pose, const Landmarks& marks) {
   return 0.5 * (at(pose, marks.left_foot) + at(pose, marks.right_foot));
 }
 
-// Unit vector from right to left, from hips and shoulders.
-std::optional<Vec3> side_axis(Positions pose, const Landmarks& marks) {
-  Vec3 sum = Vec3::Zero();
-  const auto add = [&](int right, int left) {
-    if (right < 0 || left < 0) return;
-    if (const auto side = direction_between(at(pose, right), at(pose, left))) sum += *side;
-  };
-  add(marks.right_leg, marks.left_leg);
-  add(marks.right_arm, marks.left_arm);
-  return direction_between(Vec3::Zero(), sum);
-}
-
 // The up axis of an upright pose, from trunk and legs; empty if the body is bent at the hips or not
 // along one axis.
 std::optional<NearestAxis> standing_axis(Positions pose, const Landmarks& marks) {
@@ -46,12 +35,15 @@ std::optional<NearestAxis> standing_axis(Positions pose, const Landmarks& marks)
 
 }  // namespace
 
-std::optional<double> stretch(Positions pose, const Landmarks& marks) {
-  if (!marks.upright_known()) return std::nullopt;
-  const auto trunk = direction_between(at(pose, marks.hips), at(pose, marks.head));
-  const auto legs = direction_between(middle_of_feet(pose, marks), at(pose, marks.hips));
-  if (!trunk || !legs) return std::nullopt;
-  return trunk->dot(*legs);
+std::optional<Vec3> side_axis(Positions pose, const Landmarks& marks) {
+  Vec3 sum = Vec3::Zero();
+  const auto add = [&](int right, int left) {
+    if (right < 0 || left < 0) return;
+    if (const auto side = direction_between(at(pose, right), at(pose, left))) sum += *side;
+  };
+  add(marks.right_leg, marks.left_leg);
+  add(marks.right_arm, marks.left_arm);
+  return direction_between(Vec3::Zero(), sum);
 }
 
 NearestAxis nearest_axis(const Vec3& v) {
@@ -138,31 +130,46 @@ std::optional<Stature> stature_of(const Evidence& evidence) {
   return krok::stature_of(evidence.skeleton, evidence.roles, evidence.sample(0));
 }
 
-std::optional<Heights> heights_along(const Evidence& evidence, Direction up) {
+std::optional<std::array<Heights, 6>> heights_of(const Evidence& evidence) {
   const auto stature = stature_of(evidence);
-  if (!stature || evidence.marks.hips < 0) return std::nullopt;
-  const double height = stature->metres;
-  const Vec3 vertical = direction_vector(up);
-  std::vector<double> lows;
-  std::vector<double> hips;
+  const int hips = evidence.marks.hips;
+  if (!stature || hips < 0) return std::nullopt;
+  // What carries the hips may be a point of the world that never moves.
+  const std::vector<int>& parents = evidence.skeleton.parents;
+  std::vector<char> carried(parents.size());
+  for (std::size_t j = 0; j < parents.size(); ++j) {
+    carried[j] = static_cast<int>(j) == hips ||
+                 (parents[j] >= 0 && carried[static_cast<std::size_t>(parents[j])] != 0);
+  }
+  std::array<std::vector<double>, 6> lows, aboves;
   for (std::size_t i = 0; i < evidence.sample_count; ++i) {
     const Positions sample = evidence.sample(i);
-    double low = INFINITY;
-    for (const Vec3& position : sample) low = std::min(low, position.dot(vertical));
-    const double above = at(sample, evidence.marks.hips).dot(vertical) - low;
-    if (!std::isfinite(low) || !std::isfinite(above)) continue;
-    lows.push_back(low / height);
-    hips.push_back(above / height);
+    Eigen::AlignedBox3d box;
+    for (std::size_t j = 0; j < carried.size(); ++j) {
+      if (carried[j] != 0) box.extend(sample[j]);
+    }
+    if (!box.min().allFinite() || !box.max().allFinite()) continue;
+    for (std::size_t d = 0; d < 6; ++d) {
+      const auto axis = static_cast<Eigen::Index>(d / 2);
+      const double low = d % 2 == 0 ? box.min()[axis] : -box.max()[axis];
+      const double hip = (d % 2 == 0 ? 1.0 : -1.0) * at(sample, hips)[axis];
+      lows[d].push_back(low / stature->metres);
+      aboves[d].push_back((hip - low) / stature->metres);
+    }
   }
-  if (lows.empty()) return std::nullopt;
+  if (lows[0].empty()) return std::nullopt;
   const auto ranked = [](std::vector<double>& values, double share) {
     const double place = share * static_cast<double>(values.size());
     const auto found = values.begin() + static_cast<std::ptrdiff_t>(place);
     std::nth_element(values.begin(), found, values.end());
     return *found;
   };
-  const double spread = ranked(lows, 0.9) - ranked(lows, 0.1);
-  return Heights{ranked(lows, 0.5), ranked(hips, 0.5), spread};
+  std::array<Heights, 6> heights;
+  for (std::size_t d = 0; d < 6; ++d) {
+    const double spread = ranked(lows[d], 0.9) - ranked(lows[d], 0.1);
+    heights[d] = {ranked(lows[d], 0.5), ranked(aboves[d], 0.5), spread};
+  }
+  return heights;
 }
 
 }  // namespace krok::actor

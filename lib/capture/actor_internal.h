@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -59,9 +60,8 @@ inline const Vec3& at(Positions pose, int joint) {
 // Unit vector from the midpoint of the feet to the head; from the hips unless both feet are known.
 std::optional<Vec3> body_axis(Positions pose, const Landmarks& marks);
 
-// Cosine of the angle between the legs (feet to hips) and the trunk (hips to head): 1 when
-// standing, near 0 on all fours.
-std::optional<double> stretch(Positions pose, const Landmarks& marks);
+// Unit vector from right to left, from hips and shoulders; empty if these are missing.
+std::optional<Vec3> side_axis(Positions pose, const Landmarks& marks);
 
 // Facing direction derived from hips and shoulders, perpendicular to `up`; empty if these are
 // missing or the body lies on its side.
@@ -93,7 +93,7 @@ struct Evidence {
 // From the reference pose; if it has no length there, from the first sample.
 std::optional<Stature> stature_of(const Evidence& evidence);
 
-// Positions along `up` in body heights; `lowest` and `hips` are medians over the samples.
+// Positions along an axis in body heights; `lowest` and `hips` are medians over the samples.
 struct Heights {
   double lowest = 0;  // the lowest joint; 0 if on the ground of the file's world
   double hips = 0;    // the hips above the lowest joint
@@ -102,8 +102,9 @@ struct Heights {
   double spread = 0;
 };
 
-// Empty without samples, hips or a height.
-std::optional<Heights> heights_along(const Evidence& evidence, Direction up);
+// Along each Direction, of the hips and the joints below them. Empty without samples, hips or a
+// height.
+std::optional<std::array<Heights, 6>> heights_of(const Evidence& evidence);
 
 // The detections. Each sets its part of `found`; detect_up must come first.
 void detect_up(const Evidence& evidence, Conventions& found);

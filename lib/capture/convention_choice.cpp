@@ -23,6 +23,7 @@ std::string how(bool given, Confidence confidence) {
 }  // namespace
 
 void apply_given(const GivenConventions& given, Conventions& conventions) {
+  const std::string axes_reason = given.axes_reason.empty() ? kGiven : given.axes_reason;
   if (given.unit) {
     conventions.unit = *given.unit;
     conventions.unit_confidence = Confidence::certain;
@@ -30,13 +31,13 @@ void apply_given(const GivenConventions& given, Conventions& conventions) {
   }
   if (given.up) {
     conventions.up = conventions.reference_up = *given.up;
-    conventions.up_confidence = Confidence::certain;
-    conventions.up_reason = kGiven;
+    conventions.up_confidence = given.axes_confidence;
+    conventions.up_reason = axes_reason;
   }
   if (given.forward) {
     conventions.forward = conventions.reference_forward = *given.forward;
-    conventions.forward_confidence = Confidence::certain;
-    conventions.forward_reason = kGiven;
+    conventions.forward_confidence = given.forward_confidence;
+    conventions.forward_reason = axes_reason;
   }
   if (given.reference_up) conventions.reference_up = *given.reference_up;
   if (given.reference_forward) conventions.reference_forward = *given.reference_forward;
@@ -113,9 +114,9 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
   };
   report(given.unit.has_value(), "unit", "the unit", conventions.unit.name,
          conventions.unit_confidence, conventions.unit_reason);
-  report(given.up.has_value(), "up", "up", std::string(direction_name(conventions.up)),
+  report(given.axes_given(given.up), "up", "up", std::string(direction_name(conventions.up)),
          conventions.up_confidence, conventions.up_reason);
-  report(given.forward.has_value(), "forward", "forward",
+  report(given.axes_given(given.forward), "forward", "forward",
          std::string(direction_name(conventions.forward)), conventions.forward_confidence,
          conventions.forward_reason);
 }
@@ -130,10 +131,10 @@ std::vector<std::string> describe_conversions(const Conventions& conventions,
   }
   const auto axes = [&](const char* what, Direction up, Direction forward) {
     if (up == Direction::plus_y && forward == Direction::plus_z) return;
-    lines.push_back(
-        fmt::format("{}: up {} ({}), forward {} ({}) to up y, forward z", what, direction_name(up),
-                    how(given.up.has_value(), conventions.up_confidence), direction_name(forward),
-                    how(given.forward.has_value(), conventions.forward_confidence)));
+    lines.push_back(fmt::format(
+        "{}: up {} ({}), forward {} ({}) to up y, forward z", what, direction_name(up),
+        how(given.axes_given(given.up), conventions.up_confidence), direction_name(forward),
+        how(given.axes_given(given.forward), conventions.forward_confidence)));
   };
   axes("axes", conventions.up, conventions.forward);
   if (conventions.reference_up != conventions.up ||

@@ -27,6 +27,12 @@ struct GivenConventions {
   std::optional<Direction> forward;
   // Of the reference pose, where they differ; needs `up` and `forward`.
   std::optional<Direction> reference_up, reference_forward;
+  // Axes that are not the user's but those of other takes: why, a sentence without a full stop.
+  std::string axes_reason;
+  Confidence axes_confidence = Confidence::certain, forward_confidence = Confidence::certain;
+  bool axes_given(const std::optional<Direction>& axis) const {
+    return axis.has_value() && axes_reason.empty();
+  }
   bool complete() const { return unit && up && forward; }
 };
 

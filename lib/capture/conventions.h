@@ -61,15 +61,17 @@ struct Conventions {
 // empty. Never fails: non-finite values are skipped, and what the data does not show is set to a
 // default with confidence `guess`.
 //
-// Up: the axis along which the head is above the feet in most samples, or in the reference pose if
-// there are no samples. A motion that is upside down does not override an upright reference pose,
-// nor does one that lies down in most samples but is upright in others. Forward: left x up in the
+// Up: of the six signed axes the one that explains the samples best: along which the head is above
+// the feet, the lowest joint is at 0 and keeps its height while the character travels, the left and
+// right side are level, and the reference pose stands. It is certain only if the reference pose
+// stands and agrees, or if the motion shows clearly that the reference pose's axis is level.
+// Without samples: that of the reference pose. Forward: left x up in the
 // reference pose, checked against the toes; the default if the reference pose is not upright along
 // the motion's up axis, so that all takes of a skeleton agree. Unit: the one that gives a body
 // height, computed from leg and spine lengths, closest to an adult's 1.72 m, with a penalty for
-// rarer units. Defaults: +Y up without hips and head; +Z forward without left and right limbs (-Y
-// if up is along z); without legs and arms the first of m, cm and mm that gives a size of at most
-// 10 m, or mm.
+// rarer units, which a height alone does not make certain. Defaults: +Y up without hips and head;
+// +Z forward without left and right limbs (-Y if up is along z); without legs and arms the first of
+// m, cm and mm that gives a size of at most 10 m, or mm.
 Conventions detect_conventions(const Skeleton& skeleton, const RoleMap& roles,
                                std::span<const Vec3> sample_positions);
 

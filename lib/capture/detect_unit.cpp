@@ -48,7 +48,9 @@ void detect_unit_of_actor(const Stature& stature, bool cmu_names, Conventions& f
   // Where segments disagree, so do the units that they would give.
   const double doubt = std::min(stature.uncertainty / height, 1.0);
   const double margin = second - best;
-  if (metres >= 1.45 && metres <= 2.1 && margin > 0.3 + doubt) {
+  // A height that only a rare unit explains may come from any scale.
+  const bool usual = found.unit.name == "m" || found.unit.name == "cm" || found.unit.name == "mm";
+  if (usual && metres >= 1.45 && metres <= 2.1 && margin > 0.3 + doubt) {
     found.unit_confidence = Confidence::certain;
   } else if (metres >= 1.25 && metres <= 2.4 && margin > 0.3) {
     found.unit_confidence = Confidence::likely;

@@ -57,176 +57,173 @@ bool is_usual(Direction up) {
   return up == Direction::plus_y || up == Direction::plus_z;
 }
 
-// The reference pose's up axis if files have such a one; a reference pose along another lies.
-std::optional<NearestAxis> usual_reference(const Evidence& evidence) {
-  const auto& reference = evidence.reference_stands;
-  return reference && is_usual(reference->direction) ? reference : std::nullopt;
-}
-
-constexpr double kNear = 0.08;  // in body heights, as all that follow
-constexpr double kBelow = -0.03;
-constexpr double kKeepsHeight = 0.1;
-
-bool keeps_to_the_ground(const Heights& heights) {
-  return heights.lowest >= kBelow && heights.lowest <= kNear && heights.spread < kKeepsHeight;
-}
-
-// The floor is at 0, so the lowest joint of a standing character is near 0. If it is not along the
-// detected up axis, and the reference pose is not upright along that axis either, the character may
-// lie on the floor: its lowest joint is then near 0 along the true up axis.
-void hold_against_the_ground(const Evidence& evidence, Conventions& found) {
-  constexpr double kMinHips = 0.03;  // soft tissue between the hips and the ground
-  const auto reference = usual_reference(evidence);
-  const bool unusual = !is_usual(found.up);
-  const auto standing = heights_along(evidence, found.up);
-  if (!standing || (std::abs(standing->lowest) <= kNear && !unusual)) return;
-  const auto lies = [&](Direction up) {
-    if (on_one_axis(up, found.up)) return false;
-    const auto lying = heights_along(evidence, up);
-    return lying && keeps_to_the_ground(*lying) && lying->hips >= kMinHips;
-  };
-  std::optional<Direction> ground;
-  if (reference) {
-    if (lies(reference->direction)) ground = reference->direction;
-  } else {
-    for (const Direction up : {Direction::plus_z, Direction::plus_y}) {
-      if (lies(up)) ground = up;
+// How well each signed axis explains the motion as up.
+class UpScores {
+ public:
+  UpScores(const Evidence& evidence, const UpVotes& votes)
+      : votes_(votes), heights_(heights_of(evidence)) {
+    if (evidence.reference_stands) reference_ = evidence.reference_stands->direction;
+    const Vec3 side = mean_side(evidence);
+    for (int i = 0; i < 6; ++i) {
+      const auto d = static_cast<Direction>(i);
+      scores_[static_cast<std::size_t>(i)] = score(d) - kSide * side[i / 2];
+    }
+    // +y, which most files have, wins a tie.
+    for (const Direction d : {Direction::plus_z, Direction::plus_x, Direction::minus_x,
+                              Direction::minus_y, Direction::minus_z}) {
+      if (of(d) > of(best_)) best_ = d;
     }
   }
-  if (ground) {
-    found.up_reason += fmt::format(
-        "; but the lowest joint is near 0 along {} instead, so the character seems to lie down{}",
-        signed_name(*ground), reference ? "" : ", and the reference pose is not upright");
-    found.up = *ground;
-    found.up_confidence = Confidence::guess;
-    return;
-  }
-  const auto& stands = evidence.reference_stands;
-  if (std::abs(standing->lowest) <= kNear || (stands && stands->direction == found.up)) return;
-  found.up_reason += "; but the lowest joint is not near the ground there";
-  if (unusual || reference) {
-    if (unusual && reference) {
-      found.up = reference->direction;
-      found.up_reason += ", and that up axis is rare; using that of the reference pose";
+
+  Direction best() const { return best_; }
+
+  // By how much the best axis exceeds the second.
+  double margin() const {
+    double second = -INFINITY;
+    for (int i = 0; i < 6; ++i) {
+      const auto d = static_cast<Direction>(i);
+      if (d != best_) second = std::max(second, of(d));
     }
-    found.up_confidence = Confidence::guess;
-  } else if (found.up_confidence == Confidence::certain) {
-    found.up_confidence = Confidence::likely;
+    return of(best_) - second;
   }
-}
 
-// Whether trunk and legs are rarely aligned: on all fours, crawling or sitting.
-bool stays_folded(const Evidence& evidence) {
-  constexpr double kStretched = 0.6;
-  constexpr double kNow = 0.2;
-  std::size_t known = 0, stretched = 0;
-  for (std::size_t i = 0; i < evidence.sample_count; ++i) {
-    const auto cosine = stretch(evidence.sample(i), evidence.marks);
-    if (!cosine) continue;
-    ++known;
-    if (*cosine >= kStretched) ++stretched;
+  bool heights_known() const { return heights_.has_value(); }
+
+  // Range of the lowest joint's height over time, in body heights: small along the true up axis,
+  // however far the character travels. Of both signs the smaller.
+  double spread(Direction d) const {
+    return std::min(heights(d).spread, heights(opposite(d)).spread);
   }
-  return known > 0 && static_cast<double>(stretched) < kNow * static_cast<double>(known);
-}
 
-// On all fours the head is in front of the feet rather than above them, so the heading is mistaken
-// for up. If such a character travels along the detected up axis while its lowest joint stays at
-// one height along another axis, that axis is up.
-void look_for_a_floor(const Evidence& evidence, Conventions& found) {
-  constexpr std::size_t kFewestSamples = 10;
-  constexpr double kTravels = 0.25;
-  if (evidence.sample_count < kFewestSamples || !stays_folded(evidence)) return;
-  const auto seeming = heights_along(evidence, found.up);
-  if (!seeming || seeming->spread < kTravels) return;
-  std::optional<Direction> floor;
-  double least = kKeepsHeight;
-  for (const Direction up : {Direction::plus_y, Direction::plus_z}) {
-    const auto heights = on_one_axis(up, found.up) ? std::nullopt : heights_along(evidence, up);
-    if (!heights || heights->spread >= least) continue;
-    floor = up;
-    least = heights->spread;
+  // Whether the lowest joint is at the ground of the file's world, which is at 0, and stays there.
+  bool on_the_ground(Direction d) const {
+    constexpr double kNear = 0.08, kBelow = -0.03, kKeeps = 0.1;
+    constexpr double kMinHips = 0.03;  // soft tissue between the hips and the ground
+    if (!heights_) return false;
+    const Heights& found = heights(d);
+    return found.lowest >= kBelow && found.lowest <= kNear && found.spread < kKeeps &&
+           found.hips >= kMinHips;
   }
-  if (!floor) return;
-  found.up_reason += fmt::format(
-      "; but the body is bent at the hips and the lowest joint keeps its height along {} while it "
-      "travels, so the character seems to move on all fours",
-      signed_name(*floor));
-  found.up = *floor;
-  found.up_confidence = Confidence::guess;
+
+ private:
+  // Weights. Ground outweighs a body that is upright elsewhere, since it may lie; a character that
+  // travels along an axis outweighs both; a reference pose alone does not.
+  static constexpr double kUpright = 1.5, kReference = 1, kGround = 1.6, kReferenceOnGround = 0.4;
+  static constexpr double kTravel = 2.5, kSide = 0.8;
+  static constexpr double kUsual = 0.2, kUsualAlone = 1.6;  // with a reference pose, without
+
+  static Vec3 mean_side(const Evidence& evidence) {
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (std::size_t i = 0; i < evidence.sample_count; ++i) {
+      const auto side = side_axis(evidence.sample(i), evidence.marks);
+      if (!side) continue;
+      sum += side->cwiseAbs();
+      ++count;
+    }
+    return count == 0 ? sum : Vec3(sum / count);
+  }
+
+  double of(Direction d) const { return scores_[static_cast<std::size_t>(d)]; }
+  const Heights& heights(Direction d) const { return (*heights_)[static_cast<std::size_t>(d)]; }
+
+  double score(Direction d) const {
+    const bool agrees = reference_ == d;
+    double sum = kUpright * votes_.share(d) + (agrees ? kReference : 0);
+    if (is_usual(d)) sum += reference_ ? kUsual : kUsualAlone;
+    if (!heights_) return sum;
+    if (on_the_ground(d)) sum += kGround + (agrees ? kReferenceOnGround : 0);
+    constexpr double kSteady = 0.02, kTravels = 0.42;  // in body heights
+    return sum - kTravel * std::clamp((spread(d) - kSteady) / (kTravels - kSteady), 0.0, 1.0);
+  }
+
+  const UpVotes& votes_;
+  std::optional<std::array<Heights, 6>> heights_;
+  std::optional<Direction> reference_;
+  std::array<double, 6> scores_{};
+  Direction best_ = Direction::plus_y;
+};
+
+int percent_of(double share) {
+  return static_cast<int>(std::lround(100 * share));
 }
 
-constexpr double kPart = 0.2;  // of the samples
-
-// Whether the character is upright along both usual axes in part of the motion, so that it lies or
-// falls along one of them.
-bool is_upright_along_both(const UpVotes& votes) {
-  return votes.share(Direction::plus_y) >= kPart && votes.share(Direction::plus_z) >= kPart;
+// Whether the character travels along another axis than `up`, while its support keeps its height.
+bool travels_level(const UpScores& scores, Direction up, std::optional<Direction> along) {
+  constexpr double kLevel = 0.25;  // in body heights
+  constexpr double kSteadier = 0.5;
+  if (!scores.heights_known()) return false;
+  for (const Direction d : {Direction::plus_x, Direction::plus_y, Direction::plus_z}) {
+    if (on_one_axis(d, up) || (along && !on_one_axis(d, *along))) continue;
+    if (scores.spread(d) > kLevel && scores.spread(up) < kSteadier * scores.spread(d)) return true;
+  }
+  return false;
 }
 
-// Whether the character is upright along the reference pose's up axis in part of the motion; along
-// `other` it then lies or falls.
-bool stands_at_times(const Evidence& evidence, const UpVotes& votes, Direction other) {
-  const auto reference = usual_reference(evidence);
-  return reference && reference->direction != other && votes.share(reference->direction) >= kPart;
-}
-
-// The up axis of a character that is rarely upright or lies along a usual axis at times: +y, which
-// most files have, unless its lowest joint keeps to the ground along +z alone.
-Direction up_by_the_ground(const Evidence& evidence) {
-  const auto y = heights_along(evidence, Direction::plus_y);
-  const auto z = heights_along(evidence, Direction::plus_z);
-  const bool along_z = z && keeps_to_the_ground(*z) && !(y && keeps_to_the_ground(*y));
-  return along_z ? Direction::plus_z : Direction::plus_y;
-}
-
-void detect_up_of_motion(const Evidence& evidence, const UpVotes& votes, Conventions& found) {
+// Certain only where reference pose and motion agree, or where the motion shows besides that the
+// reference pose's axis is level.
+Confidence confidence_of(const Evidence& evidence, const UpVotes& votes, const UpScores& scores) {
+  constexpr double kAtTimes = 0.2, kMostly = 0.5, kThroughout = 0.95;
+  constexpr double kClear = 0.5;  // of scores
+  const Direction up = scores.best();
+  const double share = votes.share(up);
   const auto& reference = evidence.reference_stands;
-  const auto usual = usual_reference(evidence);
+  if (reference && reference->direction == up) {
+    if (share >= kMostly) return Confidence::certain;
+    const bool elsewhere = votes.share(votes.winner()) >= kMostly;
+    return share >= kAtTimes || !elsewhere ? Confidence::likely : Confidence::guess;
+  }
+  if (share < kMostly) return Confidence::guess;
+  if (!reference) {
+    const auto trunk = body_axis(evidence.reference, evidence.marks);  // all there is without feet
+    const bool agrees =
+        !evidence.marks.feet_known() && trunk && nearest_axis(*trunk).direction == up;
+    const bool shown = agrees || scores.on_the_ground(up) || travels_level(scores, up, {});
+    return shown && scores.margin() > kClear ? Confidence::likely : Confidence::guess;
+  }
+  const Direction other = reference->direction;
+  const bool grounded = scores.on_the_ground(up) && !scores.on_the_ground(other);
+  const bool level = travels_level(scores, up, other);
+  if (!grounded && !level) {
+    // Files with up along x are rare: such a reference pose lies.
+    return is_usual(up) && !is_usual(other) ? Confidence::likely : Confidence::guess;
+  }
+  return share >= kThroughout && !on_one_axis(up, other) ? Confidence::certain : Confidence::likely;
+}
+
+std::string reason_of(const Evidence& evidence, const UpVotes& votes, const UpScores& scores) {
+  const Direction up = scores.best();
   const Direction winner = votes.winner();
-  const double share = votes.share(winner);
-  const int percent = static_cast<int>(std::lround(100 * share));
-  const bool agrees = reference && reference->direction == winner;
-  const bool turned_over = usual && usual->direction == opposite(winner);
-  const bool lies_at_times =
-      usual ? stands_at_times(evidence, votes, winner) : is_upright_along_both(votes);
-  if (share >= 0.5 && !turned_over && !lies_at_times) {
-    found.up = winner;
-    found.up_confidence = agrees || share >= 0.8 ? Confidence::certain : Confidence::likely;
-    found.up_reason = fmt::format("the head is above the {} along {} in {}% of the sampled frames",
-                                  evidence.marks.lower_end(), signed_name(winner), percent);
-    if (agrees) {
-      found.up_reason += ", and the reference pose agrees";
-    } else if (reference) {
-      found.up_reason +=
-          fmt::format("; the reference pose is upright along {}, the motion takes precedence",
-                      signed_name(reference->direction));
-      if (found.up_confidence == Confidence::certain && share < 0.95) {
-        found.up_confidence = Confidence::likely;
-      }
-    }
-    if (!agrees || !is_usual(winner)) hold_against_the_ground(evidence, found);
-    if (!reference) look_for_a_floor(evidence, found);
-    return;
+  const auto& reference = evidence.reference_stands;
+  const bool agrees = reference && reference->direction == up;
+  const bool upright = votes.share(up) >= 0.5;
+  const bool lies = winner != up && votes.share(winner) >= 0.5;
+  const auto above = [&](Direction d) {
+    return fmt::format("the head is above the {} along {} in {}% of the sampled frames",
+                       evidence.marks.lower_end(), signed_name(d), percent_of(votes.share(d)));
+  };
+  if (agrees && upright) return above(up) + ", and the reference pose agrees";
+  std::string reason =
+      !reference ? "the reference pose does not stand"
+                 : "the reference pose is upright along " + signed_name(reference->direction);
+  reason += "; " + above(lies ? winner : up);
+  if (reference && !agrees && upright) {
+    reason += on_one_axis(up, reference->direction) ? ", upside down to it" : "";
+    reason += ", and the motion takes precedence";
   }
-  if (usual) {
-    found.up = usual->direction;
-    found.up_confidence = Confidence::likely;
-    found.up_reason = fmt::format(
-        "the reference pose is upright along {}; the motion is upright along it in only {}% of the "
-        "sampled frames",
-        signed_name(found.up), static_cast<int>(std::lround(100 * votes.share(found.up))));
-    if (turned_over && share >= 0.8) {
-      found.up_confidence = Confidence::guess;
-      found.up_reason += fmt::format(", and upside down in {}%", percent);
-    }
-    return;
+  if (lies && on_one_axis(up, winner)) reason += ", upside down";
+  if (!scores.heights_known()) return reason;
+  if (scores.on_the_ground(up)) {
+    reason += fmt::format("; the lowest joint is near 0 along {}", signed_name(up));
   }
-  found.up = up_by_the_ground(evidence);
-  found.up_reason =
-      fmt::format("the character is rarely upright; {}",
-                  found.up == Direction::plus_z ? "the lowest joint is near the ground along +z"
-                                                : "+y is kept, which most files have");
-  look_for_a_floor(evidence, found);
+  const Direction other = lies ? winner : reference && !agrees ? reference->direction : up;
+  reason += fmt::format("; the lowest joint keeps its height within {}% of the body's along {}",
+                        percent_of(scores.spread(up)), signed_name(up));
+  if (!on_one_axis(up, other)) {
+    reason +=
+        fmt::format(", within {}% along {}", percent_of(scores.spread(other)), signed_name(other));
+  }
+  return reason + (lies ? ": the character seems to lie or crawl" : "");
 }
 
 }  // namespace
@@ -241,7 +238,10 @@ void detect_up(const Evidence& evidence, Conventions& found) {
   if (votes.valid == 0) {
     detect_up_without_motion(evidence, found);
   } else {
-    detect_up_of_motion(evidence, votes, found);
+    const UpScores scores(evidence, votes);
+    found.up = scores.best();
+    found.up_confidence = confidence_of(evidence, votes, scores);
+    found.up_reason = reason_of(evidence, votes, scores);
   }
   if (marks.upright_known()) return;
   found.up_reason += "; not checked against the feet, as fewer than two were found";

@@ -123,13 +123,17 @@ Exporter motion_builder_names(const Skeleton& skeleton, const ExporterTraits& tr
 void apply_exporter(const Exporter& exporter, Conventions& conventions) {
   if (!exporter.up || !exporter.forward || exporter.confidence != Confidence::certain) return;
   const std::string reason = exporter.name + "'s files have it";
+  const Confidence alone = conventions.up_confidence;
+  conventions.up_confidence = Confidence::certain;
   if (conventions.up != *exporter.up) {
-    if (conventions.up_confidence == Confidence::certain) return;
+    if (alone == Confidence::certain) return;
+    // A motion that clearly shows another axis may have been turned since.
+    if (alone == Confidence::likely) conventions.up_confidence = Confidence::guess;
     conventions.up = *exporter.up;
-    conventions.up_reason = reason;
+    conventions.up_reason =
+        alone == Confidence::likely ? reason + ", but " + conventions.up_reason : reason;
     conventions.forward_confidence = Confidence::guess;
   }
-  conventions.up_confidence = Confidence::certain;
   if (conventions.forward_confidence != Confidence::guess) return;
   conventions.forward = *exporter.forward;
   conventions.forward_confidence = Confidence::likely;

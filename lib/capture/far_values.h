@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,6 +26,15 @@ inline constexpr double kFarthestRotation = 1e6;
 // motion stored as floats starts to jitter. At most kFarthest.
 double farthest_position(std::span<const Transform> reference);
 
+// How far from the origin the joints are at most in three quarters of the sample frames, shape
+// [samples x joints]; infinite without samples.
+double usual_distance(std::span<const Vec3> samples, std::size_t joints);
+
+// The same limit for a motion that keeps within that distance for most of its time: at most 10
+// times the distance and 100 times the size. A root beyond it for some frames is a fault of the
+// capture.
+double farthest_position(std::span<const Transform> reference, double usual_distance);
+
 // Frames with such values.
 struct FarValues {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -42,8 +52,10 @@ struct FarValues {
 // The warning about the first such value; the caller adds the location. `channel`: the rotation's
 // name in the file. `degrees`: positive. `frames`: number of frames with such values. `position`:
 // in metres. `of_file`: the value as in the file, "Hips.Xposition is 1e9"; may be empty.
+// `usual_distance`: given if the position is only far in comparison with other frames.
 Error far_rotation(std::string code, std::string_view channel, double degrees, std::size_t frames);
 Error far_position(std::string code, std::string_view joint, const Vec3& position,
-                   std::size_t frames, const std::string& of_file = {});
+                   std::size_t frames, const std::string& of_file = {},
+                   std::optional<double> usual_distance = {});
 
 }  // namespace krok

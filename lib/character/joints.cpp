@@ -6,9 +6,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "nodes/moving.h"
+#include "roles/joint_names.h"
 
 namespace krok::character {
 
@@ -45,10 +48,13 @@ class Groups {
 
 // What nodes and their descendants contain.
 struct Subtrees {
-  std::vector<char> skinned;   // a mesh with a skin
-  std::vector<char> laden;     // a mesh, a camera or a light
-  std::vector<char> animated;  // a node that an animation moves
-  std::vector<char> useful;    // something other than cameras and lights
+  std::vector<char> skinned;                  // a mesh with a skin
+  std::vector<char> laden;                    // a mesh, a camera or a light
+  std::vector<char> animated;                 // a node that an animation moves
+  std::vector<char> useful;                   // something other than cameras and lights
+  std::vector<char> moved;                    // a node whose transform an animation changes
+  std::vector<char> foreign;                  // a joint of a skin that is not chosen
+  std::vector<char> own_animated, own_moved;  // the node by itself
 };
 
 std::vector<char> animated_nodes(const Scene& scene) {
@@ -68,6 +74,14 @@ Subtrees look_at_subtrees(const Scene& scene, const std::vector<int>& order) {
   result.laden.assign(count, 0);
   result.useful.assign(count, 0);
   result.animated = animated_nodes(scene);
+  result.own_animated = result.animated;
+  result.own_moved.assign(count, 0);
+  for (const nodes::Animation& animation : scene.animations) {
+    const std::vector<char> here = nodes::moved_nodes(scene, animation);
+    for (std::size_t n = 0; n < count; ++n) result.own_moved[n] |= here[n];
+  }
+  result.moved = result.own_moved;
+  result.foreign.assign(count, 0);
   for (auto node = order.rbegin(); node != order.rend(); ++node) {
     const nodes::Node& one = scene.nodes[at(*node)];
     char& skinned = result.skinned[at(*node)];
@@ -82,6 +96,7 @@ Subtrees look_at_subtrees(const Scene& scene, const std::vector<int>& order) {
       laden |= result.laden[at(child)];
       useful |= result.useful[at(child)];
       result.animated[at(*node)] |= result.animated[at(child)];
+      result.moved[at(*node)] |= result.moved[at(child)];
     }
   }
   return result;
@@ -109,9 +124,12 @@ class Chooser {
                    "no skeleton found: there is no skin and no node that can be a joint");
     }
     join_trees();
+    extend_upwards();
     take_bare_nodes();
     leave_stretches_out();
-    return order_joints();
+    auto joints = order_joints();
+    if (joints) report_left_out();
+    return joints;
   }
 
  private:
@@ -122,6 +140,8 @@ class Chooser {
   void take_without_skin();
   int top_of_joints() const;
   void join_trees();
+  void extend_upwards();
+  void report_left_out();
   void take_bare_nodes();
   void leave_stretches_out();
   bool link(Joints& joints) const;
@@ -214,8 +234,14 @@ Status Chooser::take_skins(const std::string& skin) {
     return !keep;
   });
   report_choice(chosen, skeletons, !skin.empty());
-  for (const int member : skins_) {
-    for (const int joint : scene_.skins[at(member)].joints) taken_[at(joint)] = 1;
+  for (std::size_t s = 0; s < scene_.skins.size(); ++s) {
+    const bool own = std::ranges::find(skins_, static_cast<int>(s)) != skins_.end();
+    std::vector<char>& which = own ? taken_ : below_.foreign;
+    for (const int joint : scene_.skins[s].joints) which[at(joint)] = 1;
+  }
+  for (auto node = order_.rbegin(); node != order_.rend(); ++node) {
+    const int parent = scene_.nodes[at(*node)].parent;
+    if (parent >= 0) below_.foreign[at(parent)] |= below_.foreign[at(*node)];
   }
   return {};
 }
@@ -294,6 +320,72 @@ void Chooser::join_trees() {
     if (parent >= 0 && (taken_[at(*node)] || over[at(*node)])) over[at(parent)] = 1;
   }
   for (std::size_t n = 0; n < taken_.size(); ++n) taken_[n] |= under[n] && over[n];
+}
+
+// Whether a node is named as the hips are, which root joints without vertices or keys may be.
+bool is_named_hips(const std::string& name) {
+  Skeleton alone;
+  alone.add(to_utf8(name), -1, {});
+  const JointName read = read_joint_names(alone)[0];
+  return read.part == Part::hips && read.side == Side::middle;
+}
+
+// Takes ancestors of the topmost joint that belong to the skeleton, and the nodes up to them.
+void Chooser::extend_upwards() {
+  const int top = top_of_joints();
+  if (several_trees_ || top < 0) return;
+  std::vector<int> chain;
+  std::size_t kept = 0;
+  bool part_beside = false;
+  const auto parent = [&](int node) { return scene_.nodes[at(node)].parent; };
+  for (int below = top, node = parent(top); node >= 0; below = node, node = parent(node)) {
+    const nodes::Node& one = scene_.nodes[at(node)];
+    if (below_.foreign[at(node)] || one.mesh >= 0) break;
+    chain.push_back(node);
+    part_beside |= std::ranges::any_of(one.children, [&](int child) {
+      return child != below && below_.moved[at(child)] && below_.useful[at(child)];
+    });
+    if (one.bone || is_named_hips(one.name) || (part_beside && below_.own_animated[at(node)])) {
+      kept = chain.size();
+    }
+  }
+  for (std::size_t i = 0; i < kept; ++i) taken_[at(chain[i])] = 1;
+}
+
+// What is neither a joint nor above one, nor a part of another skeleton.
+void Chooser::report_left_out() {
+  std::vector<char> above(taken_.size(), 0);
+  for (auto node = order_.rbegin(); node != order_.rend(); ++node) {
+    const int parent = scene_.nodes[at(*node)].parent;
+    if (parent >= 0 && (taken_[at(*node)] || above[at(*node)])) above[at(parent)] = 1;
+  }
+  std::vector<char> of_skeleton(taken_.size(), 0);  // of this or of another
+  for (const nodes::Skin& skin : scene_.skins) {
+    for (const int joint : skin.joints) of_skeleton[at(joint)] = 1;
+  }
+  std::vector<std::string> moved, bare;
+  for (const int node : order_) {
+    const nodes::Node& one = scene_.nodes[at(node)];
+    char& part = of_skeleton[at(node)];
+    part |= one.parent >= 0 && of_skeleton[at(one.parent)] && !taken_[at(one.parent)];
+    if (part || taken_[at(node)] || above[at(node)] || below_.foreign[at(node)]) continue;
+    if (!one.in_scene || one.skin >= 0 || !below_.useful[at(node)]) continue;
+    if (below_.own_moved[at(node)]) {
+      moved.push_back(label("node", node, one.name));
+    } else if (!below_.laden[at(node)]) {
+      bare.push_back(label("node", node, one.name));
+    }
+  }
+  const auto report = [&](Severity severity, const char* what, std::vector<std::string>& names) {
+    if (names.empty()) return;
+    const auto count = std::ssize(names);
+    if (names.size() > kMaxNamed) names.resize(kMaxNamed), names.emplace_back("...");
+    tell(diagnostics_, severity, "scene-left-out",
+         fmt::format("{} outside of the skeleton, left out: {}",
+                     counted(count, fmt::format("{} node", what)), fmt::join(names, ", ")));
+  };
+  report(Severity::warning, "animated", moved);
+  report(Severity::note, "bare", bare);
 }
 
 void Chooser::take_bare_nodes() {

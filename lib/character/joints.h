@@ -26,6 +26,9 @@ struct Joints {
 //
 // With skins: their joints, the nodes between these up to the lowest common ancestor, and
 // descendants that are animated or carry no mesh, camera or light (ends of bones, sockets, props).
+// Above the common ancestor, in either case, the nodes up to the topmost one that the file calls a
+// joint, that is named as hips, or that is animated and has animated nodes of its own beside the
+// others (legs that no skin has); not past a node with joints of another skeleton.
 // Skins belong to one skeleton if they share a joint, if the joints of one are below those of the
 // other, or if their common ancestor has no skinned mesh. Of several skeletons the one with the
 // most joints is selected, or the one of the skin given by `skin` (its name, or its number from 0);
@@ -33,6 +36,9 @@ struct Joints {
 //
 // Without skins: the animated nodes and their descendants without a mesh, camera or
 // light; without animations all nodes of the displayed scene except cameras and lights.
+//
+// Animated nodes that belong to none of that are a warning, other nodes without a mesh, camera or
+// light a note (code scene-left-out).
 //
 // Joints have the order of the skin, if it lists all of them with parents first, otherwise depth
 // first. Codes: scene-skeleton (there is none), scene-skin (no skin of that name), scene-joints

@@ -64,8 +64,16 @@ bool report_scale(const std::vector<Deviation>& worst_of_frames, const Rig& rig,
   return true;
 }
 
-// The field of view of a perspective camera at a time of an animation.
-double lens_at(const nodes::Camera& lens, double time) {
+// The field of view of a perspective camera at a time of an animation. Splines may leave the range
+// of angles between their keys.
+double lens_at(const Scene& scene, int camera, int animation, double time) {
+  const nodes::Camera& lens = scene.cameras[at(camera)];
+  for (const nodes::Channel& channel : scene.animations[at(animation)].lenses) {
+    if (channel.node != camera) continue;
+    double angle = 0;
+    nodes::sample(channel, time, {&angle, 1});
+    return std::clamp(angle, 1e-3, kPi - 1e-3);
+  }
   if (lens.lens.empty()) return lens.field_of_view;
   const auto last = static_cast<double>(lens.lens.size() - 1);
   double place = std::clamp(time * lens.lens_rate, 0.0, last);
@@ -142,20 +150,6 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
   return clip;
 }
 
-bool moves_rig(const Scene& scene, const Rig& rig, int animation) {
-  std::vector<char> above(scene.nodes.size(), 0);
-  for (const int root : rig.joints.nodes) {
-    if (root < 0) continue;
-    for (int node = root; node >= 0 && !above[at(node)]; node = scene.nodes[at(node)].parent) {
-      above[at(node)] = 1;
-    }
-  }
-  for (const nodes::Channel& channel : scene.animations[at(animation)].channels) {
-    if (channel.path != nodes::Path::weights && above[at(channel.node)]) return true;
-  }
-  return false;
-}
-
 std::vector<Vec3> sample_positions(const nodes::Evaluator& evaluator, const Rig& rig, int animation,
                                    const Sampling& sampling, int most) {
   std::vector<Vec3> positions;
@@ -209,8 +203,9 @@ Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& eval
     track.positions.push_back(position.position.cast<float>());
     track.orientations.push_back((turn * placed.orientation).cast<float>().normalized());
     const bool changes = lens.perspective && animation >= 0;
-    track.fields_of_view.push_back(
-        static_cast<float>(changes ? lens_at(lens, sampling.time(frame)) : field_of_view));
+    track.fields_of_view.push_back(static_cast<float>(
+        changes ? lens_at(scene, scene.nodes[at(node)].camera, animation, sampling.time(frame))
+                : field_of_view));
   }
   return track;
 }

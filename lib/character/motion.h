@@ -32,10 +32,6 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
                        int jobs, Progress* progress, Diagnostics& diagnostics,
                        Stretches* stretches = nullptr);
 
-// Whether an animation moves the rig: a joint or an ancestor of one. Animations of cameras and of
-// morph targets do not.
-bool moves_rig(const nodes::Scene& scene, const Rig& rig, int animation);
-
 // Joint positions in the rig's own frame at up to `most` sampled frames, [frames x joints], for
 // find_conventions.
 std::vector<Vec3> sample_positions(const nodes::Evaluator& evaluator, const Rig& rig, int animation,

@@ -90,9 +90,11 @@ FoundRate find_rate(const std::vector<double>& times) {
 std::vector<double> distinct_key_times(const nodes::Animation& animation) {
   std::unordered_set<const std::vector<float>*> seen;  // channels often share their times
   std::vector<double> times;
-  for (const nodes::Channel& channel : animation.channels) {
-    if (!seen.insert(channel.times.get()).second) continue;
-    times.insert(times.end(), channel.times->begin(), channel.times->end());
+  for (const auto* channels : {&animation.channels, &animation.lenses}) {
+    for (const nodes::Channel& channel : *channels) {
+      if (!seen.insert(channel.times.get()).second) continue;
+      times.insert(times.end(), channel.times->begin(), channel.times->end());
+    }
   }
   std::sort(times.begin(), times.end());
   const auto same = [](double a, double b) { return b - a < 1e-6 + 2e-7 * std::abs(b); };

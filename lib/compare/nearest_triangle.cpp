@@ -1,10 +1,9 @@
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "compare/nearest_triangle_internal.h"
+#include "core/embree_internal.h"
 
 namespace krok::compare {
 

@@ -46,7 +46,9 @@ Diagnostics check_gait(const GaitMetrics& metrics, double speed, double leg_leng
   if (text.empty()) return warnings;
   warnings.push_back(
       make_warning("gait-implausible", "the keytimes are not those of people: " + text,
-                   "an event is missing or misplaced; check them with krok-keys --plot"));
+                   metrics.cadence > kHighCadence
+                       ? "the frame rate may be too high; set that of the capture with --fps N"
+                       : "an event is missing or misplaced; check them with krok-keys --plot"));
   return warnings;
 }
 

@@ -42,6 +42,7 @@ struct Node {
   bool in_scene = false;        // part of the displayed scene
   bool visible = true;          // KHR_node_visibility of the node and of all its ancestors
   bool fixture = false;         // a light, or what a camera is aimed by: never a joint
+  bool bone = false;            // the file calls it a joint, whether or not a skin has it
 };
 
 struct MorphTarget {
@@ -108,7 +109,7 @@ struct Space {
   bool up_is_y = false;              // +Y is up for certain, the facing is not specified
 };
 
-enum class Path : unsigned char { translation, rotation, scale, weights };
+enum class Path : unsigned char { translation, rotation, scale, weights, field_of_view };
 enum class Interpolation : unsigned char { linear, step, cubic_spline };
 
 // Keys of one property of one node. Times are strictly increasing. Values have `width` numbers per
@@ -125,7 +126,10 @@ struct Channel {
 
 struct Animation {
   std::string name;
-  std::vector<Channel> channels;
+  std::vector<Channel> channels;  // of nodes
+  // Of cameras: Channel::node is an index into Scene::cameras, the path is field_of_view with width
+  // 1 and values in (0, pi).
+  std::vector<Channel> lenses{};
 };
 
 struct Scene {

@@ -1,9 +1,8 @@
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "core/embree_internal.h"
 #include "render/tracer_internal.h"
 
 namespace krok::render {
@@ -297,10 +296,9 @@ std::optional<Hit> TracedActor::look(const Sight& sight) const {
   }
   ray.ray.mask = 0xFFFFFFFFU;
   ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect1(scene_->scene, &context, &ray);
+  embree::Context context;
+  embree::init(context);
+  embree::intersect(scene_->scene, context, ray, true);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   Hit hit;
   hit.depth = (kStart - static_cast<double>(ray.ray.tfar)) * unit_;
@@ -324,8 +322,8 @@ float TracedActor::occlusion(const Vec3f& point, const Vec3f& normal, const Rays
   const Vec3f across(1 + sign * normal.x() * normal.x() * a, sign * b, -sign * normal.x());
   const Vec3f other(b, sign + normal.y() * normal.y() * a, -normal.y());
   const Vec3f start = point + kStep * normal;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
+  embree::Context context;
+  embree::init(context);
   const Vec3f* ways = rays.directions == 18 ? directions<18>().data() : directions<54>().data();
   int met = 0;
   for (int i = rays.first; i < rays.first + rays.count; ++i) {
@@ -341,7 +339,7 @@ float TracedActor::occlusion(const Vec3f& point, const Vec3f& normal, const Rays
     ray.tnear = kStep;
     ray.tfar = reach;
     ray.mask = 0xFFFFFFFFU;
-    rtcOccluded1(scene_->scene, &context, &ray);
+    embree::occluded(scene_->scene, context, ray);
     met += ray.tfar < 0 ? 1 : 0;
   }
   return static_cast<float>(met) / static_cast<float>(rays.count);

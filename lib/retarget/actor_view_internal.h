@@ -12,7 +12,7 @@
 namespace krok::retarget {
 
 struct ArmRoles {
-  Role upper, lower, hand, fingers;
+  Role collar, upper, lower, hand, fingers;
 };
 struct LegRoles {
   Role upper, lower, foot;

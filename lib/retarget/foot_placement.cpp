@@ -31,6 +31,15 @@ double elevation(const Vec3& v) {
   return length > 0 ? std::asin(std::clamp(v.y() / length, -1.0, 1.0)) : 0.0;
 }
 
+// A correction of a leg's ankle without what comes of rounding, which would move a straight leg's
+// knee by its square root: none below a ten-thousandth of the leg, or a few steps of a float at
+// `place`; all of it from ten times that.
+Vec3 beyond_rounding(const Vec3& correction, double leg, const Vec3& place) {
+  const double least =
+      std::max(1e-4 * leg, 8 * std::numeric_limits<float>::epsilon() * place.norm());
+  return smooth_step(least, 10 * least, correction.norm()) * correction;
+}
+
 }  // namespace
 
 int softening_reach(double rate) {
@@ -284,26 +293,31 @@ LegPlacement::Outcome LegPlacement::place(std::span<const Transform> source_pose
   const Vec3 root = target_pose[at(upper_)].position;
   const Vec3 knee = target_pose[at(lower_)].position;
   const Vec3 ankle = target_pose[at(ankle_)].position;
-  const Vec3 goal = goal_of(source_pose, target_pose, standing);
-  Outcome outcome;
-  outcome.correction = (goal - ankle).norm();
-  if (outcome.correction < 1e-7) return outcome;
-
-  // The direction of the knee: its present one if bent, from its hinge if straight.
   const Vec3 upper_bone = knee - root;
   const Vec3 lower_bone = ankle - knee;
   const double length = upper_bone.norm() + lower_bone.norm();
+  Outcome outcome;
+  const Vec3 correction =
+      beyond_rounding(goal_of(source_pose, target_pose, standing) - ankle, length, ankle);
+  outcome.correction = correction.norm();
+  if (outcome.correction == 0) return outcome;
+  const Vec3 goal = ankle + correction;
+  // What keeps a knee from snapping also bends a straight one: in proportion to small corrections,
+  // so that a leg that needs none is continued by one that does.
+  const double soft = std::min(1.0, outcome.correction / (0.01 * length));
+
+  // The direction of the knee: its present one if bent, from its hinge if straight.
   const Vec3 line = (ankle - root).stableNormalized();
   const Vec3 by_hinge = line.cross(target_pose[at(upper_)].orientation * hinge_).stableNormalized();
   const Vec3 bent = upper_bone - line * line.dot(upper_bone);
   // The direction of a knee within 25 degrees of straight is unreliable.
   const double straight = 1 - smooth_step(0.05 * length, 0.11 * length, bent.norm());
-  const Vec3 outward = bent + (0.005 + 0.06 * straight) * length * by_hinge;
+  const Vec3 outward = bent + soft * (0.005 + 0.06 * straight) * length * by_hinge;
   TwoBoneChain chain{root, knee, ankle, outward.cross(line)};
   TwoBoneGoal to_reach;
   to_reach.target = goal;
   to_reach.pole = (goal - root).cross(chain.hinge);
-  to_reach.softness = 0.003 * length;
+  to_reach.softness = soft * 0.003 * length;
   const TwoBoneSolution solution = solve_two_bone(chain, to_reach);
   outcome.miss = (solution.end - goal).norm();
 

@@ -15,7 +15,8 @@
 // stays still whatever the height of the ankle and the length of the foot. Then the foot is raised
 // if one of its joints would be deeper in the floor than the source's. Two-bone inverse kinematics
 // moves the ankle there, weighted by the foot's stance; knees keep the plane they bend in, feet
-// their orientation. If legs are too short for it, the hips are lowered beforehand.
+// their orientation. A leg that needs no correction beyond rounding is left as it is. If legs are
+// too short for their goals, the hips are lowered beforehand.
 
 namespace krok::retarget {
 

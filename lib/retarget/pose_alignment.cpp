@@ -50,8 +50,10 @@ Quat swing(const Vec3& from, const Vec3& to, const Vec3& axis) {
 }
 
 constexpr std::array kArms = {
-    ArmRoles{Role::left_upper_arm, Role::left_lower_arm, Role::left_hand, Role::left_fingers},
-    ArmRoles{Role::right_upper_arm, Role::right_lower_arm, Role::right_hand, Role::right_fingers}};
+    ArmRoles{Role::left_collar, Role::left_upper_arm, Role::left_lower_arm, Role::left_hand,
+             Role::left_fingers},
+    ArmRoles{Role::right_collar, Role::right_upper_arm, Role::right_lower_arm, Role::right_hand,
+             Role::right_fingers}};
 constexpr std::array kLegs = {
     LegRoles{Role::left_upper_leg, Role::left_lower_leg, Role::left_foot},
     LegRoles{Role::right_upper_leg, Role::right_lower_leg, Role::right_foot}};
@@ -72,9 +74,7 @@ class Aligner {
     for (std::size_t k = 0; k < mapping_.size(); ++k) {
       if (mapping_[k].along > 0) set(static_cast<int>(k), slerp(hips_, chest_, mapping_[k].along));
     }
-    for (const Role role : {Role::chest, Role::head, Role::left_collar, Role::right_collar}) {
-      set(target_.joint(role), chest_);
-    }
+    for (const Role role : {Role::chest, Role::head}) set(target_.joint(role), chest_);
     for (const int neck : target_.roles().joints(Role::neck)) set(neck, chest_);
     for (const ArmRoles& arm : kArms) align_arm(arm);
     for (const LegRoles& leg : kLegs) align_leg(leg);
@@ -122,7 +122,10 @@ class Aligner {
   void align_arm(const ArmRoles& arm) {
     const Vec3 forward = source_forward(Role::left_upper_arm, Role::right_upper_arm);
     const bool elbow = source_.joint(arm.lower) >= 0 && target_.joint(arm.lower) >= 0;
-    const Quat upper = bone_turn(chest_, arm.upper, elbow ? arm.lower : arm.hand, forward);
+    const Role end = elbow ? arm.lower : arm.hand;
+    const Quat collar = collar_turn(arm, end, forward);
+    set(target_.joint(arm.collar), collar);
+    const Quat upper = bone_turn(collar, arm.upper, end, forward);
     set(target_.joint(arm.upper), upper);
     Quat lower = elbow ? bone_turn(upper, arm.lower, arm.hand, forward) : upper;
     const Quat straight = straight_hand(arm, lower, forward);
@@ -137,6 +140,26 @@ class Aligner {
     const int palm = palm_joint(target_.skeleton(), target_.roles(), arm.hand);
     set(palm, hand);
     align_fingers(arm, hand, palm, forward);
+  }
+
+  // Collars rise with raised arms: one is turned to the source's as far as both differ by more than
+  // build does and the arm is turned the same way. Without the source's: to straight aside.
+  Quat collar_turn(const ArmRoles& arm, Role end, const Vec3& forward) {
+    const auto from = target_.direction(target_.joint(arm.collar), target_.joint(arm.upper));
+    auto to = source_.direction(source_.joint(arm.collar), source_.joint(arm.upper));
+    if (!to) {
+      const bool is_left = arm.upper == Role::left_upper_arm;
+      to = is_left ? source_.left(Role::left_upper_arm, Role::right_upper_arm)
+                   : source_.left(Role::right_upper_arm, Role::left_upper_arm);
+    }
+    if (!from || !to) return chest_;
+    const Vec3 turn = rotation_vector(swing(chest_ * *from, *to, forward));
+    const Vec3 of_arm =
+        rotation_vector(bone_turn(chest_, arm.upper, end, forward) * chest_.conjugate());
+    const double alike = of_arm.dot(turn.stableNormalized());
+    const double share = smooth_step(degrees(30), degrees(50), turn.norm()) *
+                         smooth_step(degrees(30), degrees(50), alike);
+    return from_rotation_vector(share * turn) * chest_;
   }
 
   Vec3 source_forward(Role left, Role right) const {

@@ -14,10 +14,11 @@
 // bone point as the source's does in the source's reference pose. Hips and chest are aligned by
 // their left-right and up directions; a lean of the trunk counts as body build, not as a bend,
 // unless it is large. Limbs are aligned bone by bone, each by the smallest angle beyond its
-// parent's rotation, so that no twist is added. A hand is aligned by the direction of its fingers
-// and of its knuckles (or thumbs, if one side has no more). Feet are turned about the vertical
-// only, since soles are flat in a stance whatever the height of the ankle, unless their pitch
-// differs by more than 30 degrees.
+// parent's rotation, so that no twist is added. Collars are aligned only where they are raised or
+// lowered together with the arm; other differences are body build, too. A hand is aligned by the
+// direction of its fingers and of its knuckles (or thumbs, if one side has no more). Feet are
+// turned about the vertical only, since soles are flat in a stance whatever the height of the
+// ankle, unless their pitch differs by more than 30 degrees.
 
 namespace krok::retarget {
 

@@ -276,7 +276,8 @@ Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, con
     return Error("retarget-scale",
                  fmt::format("a scale of {} is not positive and finite", *options.scale));
   }
-  const auto same = same_skeleton(source.skeleton, target.skeleton);
+  auto same = same_skeleton(source.skeleton, target.skeleton);
+  if (!same) same = same_body(source.skeleton, source_roles, target.skeleton, target_roles);
   const auto fits = [](const std::vector<Transform>& pose, const Skeleton& skeleton) {
     return pose.empty() || pose.size() == skeleton.names.size();
   };

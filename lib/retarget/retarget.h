@@ -98,8 +98,8 @@ struct Retargeted {
 // of their joints. The target's own motion, which may have no frames, is used only if its reference
 // pose is not a stance, and for the thickness of its soles. Needs two humanoids, or skeletons that
 // share at least 60 % of the joint names of the smaller one. A source on its own skeleton is
-// returned bit for bit; on a uniformly scaled copy, scaled. The result is bit-identical for any
-// `jobs`.
+// returned bit for bit, whatever its joints are called there; on a uniformly scaled copy, scaled.
+// The result is bit-identical for any `jobs`.
 //
 // Errors: retarget-empty (no joints), retarget-roles (neither applies; the message names the
 // missing roles), retarget-scale (not positive and finite), retarget-frame (no such frame),

@@ -75,6 +75,12 @@ constexpr std::array<std::string_view, 27> kHelperWords = {
 constexpr std::array<std::string_view, 11> kHelperTokens = {
     "ik", "pole", "goal", "eye", "eyes", "ear", "lip", "nose", "tail", "nub", "heel"};
 
+// Of joints without a part in a body's shape, matched as words.
+constexpr std::array<std::string_view, 25> kShapelessWords = {
+    "ik",     "pole",   "goal",   "target", "effector", "control", "ctrl", "helper", "dummy",
+    "marker", "prop",   "weapon", "eye",    "eyes",     "eyelid",  "lid",  "brow",   "eyebrow",
+    "cheek",  "tongue", "teeth",  "lip",    "lips",     "mouth",   "face"};
+
 std::optional<Part> find_word(std::span<const Word> words, std::string_view text) {
   const auto found = std::find_if(words.begin(), words.end(),
                                   [text](const Word& word) { return word.text == text; });
@@ -275,6 +281,15 @@ std::string without_umlauts(std::string_view name) {
 }
 
 }  // namespace
+
+bool names_no_shape(std::string_view name) {
+  return std::ranges::any_of(name_tokens(name), [](const std::string& token) {
+    const auto is = [&](const std::string& word) {
+      return std::ranges::find(kShapelessWords, word) != kShapelessWords.end();
+    };
+    return is(token) || is(split_side(token).second);
+  });
+}
 
 std::vector<std::string> name_tokens(std::string_view full_name) {
   const std::size_t space = full_name.find_last_of(":|");

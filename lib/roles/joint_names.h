@@ -46,6 +46,10 @@ struct JointName {
 // most names start or end with ("Bip01", "CC_Base_", "Robot_"). End sites are unknown.
 std::vector<JointName> read_joint_names(const Skeleton& skeleton);
 
+// Whether a name is that of a joint that stands for no part of a body's shape: an IK target, a
+// control, a prop, an eye or another part of a face.
+bool names_no_shape(std::string_view name);
+
 // The words and numbers of a name in lower case, without namespace: "mixamorig:LeftForeArm2" gives
 // left, fore, arm, 2.
 std::vector<std::string> name_tokens(std::string_view name);

@@ -77,11 +77,11 @@ class RoleFinder {
     for (std::size_t j = 0; j < trunk_.size(); ++j) trunk_[j] = tips_below[j] >= 2 ? 1 : 0;
   }
 
-  // The joints between the trunk and `tip`, both exclusive, without helpers.
-  std::vector<int> limb_above(int tip) const {
+  // The joints between the trunk and `tip`, both exclusive, by default without helpers.
+  std::vector<int> limb_above(int tip, bool with_helpers = false) const {
     std::vector<int> chain;
     for (int j = joints_.parent(tip); j >= 0 && trunk_[at(j)] == 0; j = joints_.parent(j)) {
-      if (!joints_.is_helper(j) && !is_middle(j)) chain.push_back(j);
+      if ((with_helpers || !joints_.is_helper(j)) && !is_middle(j)) chain.push_back(j);
     }
     std::reverse(chain.begin(), chain.end());
     return chain;
@@ -160,7 +160,8 @@ class RoleFinder {
     const int foot = tips_.feet[side == Side::left ? 0 : 1];
     if (foot < 0) return;
     const LegRoles& roles = side == Side::left ? kLeftLeg : kRightLeg;
-    const std::vector<int> chain = limb_above(foot);
+    std::vector<int> chain = limb_above(foot);
+    if (chain.size() == 1) add_thigh(foot, chain);
     const int count = static_cast<int>(chain.size());
     int lower = position(chain, Part::lower_leg);
     int upper = position(chain, Part::upper_leg);
@@ -175,6 +176,18 @@ class RoleFinder {
     role(chain[at(lower)]) = roles.lower;
     role(foot) = roles.foot;
     ++limbs_;
+  }
+
+  // Where only one joint above the foot is named as a leg (LHipJoint, LLeg, LFoot), a helper above
+  // it whose bone has the length of a thigh is one.
+  void add_thigh(int foot, std::vector<int>& chain) const {
+    const double shank = joints_.distance(chain.front(), foot);
+    for (const int j : limb_above(foot, true)) {
+      const double bone = joints_.distance(j, chain.front());
+      if (!(bone > 0.6 * shank && bone < 1.6 * shank)) continue;
+      chain.insert(chain.begin(), j);
+      return;
+    }
   }
 
   int find_hips(int legs, int top) const {

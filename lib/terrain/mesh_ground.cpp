@@ -1,9 +1,10 @@
 #include "terrain/mesh_ground.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 
 #include <cmath>
+
+#include "core/embree_internal.h"
 
 namespace krok::terrain {
 
@@ -36,7 +37,7 @@ struct Found {
 };
 
 // What Embree hands through to the triangles it meets.
-struct Search : RTCIntersectContext {
+struct Search : embree::Context {
   Found* found = nullptr;
 };
 
@@ -87,9 +88,9 @@ class MeshGround final : public Terrain {
     ray.dir_x = way.x(), ray.dir_y = way.y(), ray.dir_z = way.z();
     ray.tfar = 1;
     ray.mask = 0xFFFFFFFFu;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(solid_scene_, &context, &ray);
+    embree::Context context;
+    embree::init(context);
+    embree::occluded(solid_scene_, context, ray);
     return ray.tfar < 0;
   }
 
@@ -106,9 +107,9 @@ class MeshGround final : public Terrain {
     ray.ray.mask = 0xFFFFFFFFu;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     Search search;
-    rtcInitIntersectContext(&search);
+    embree::init(search);
     search.found = &found;
-    rtcIntersect1(scene_, &search, &ray);
+    embree::intersect(scene_, search, ray);
     return found.best;
   }
 

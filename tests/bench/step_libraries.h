@@ -10,6 +10,7 @@
 #include "formats/bvh/bvh_reader.h"
 #include "parametric/cut_steps.h"
 #include "parametric/thin_out.h"
+#include "support/this_build.h"
 #include "unit/parametric/walks.h"
 
 // Step libraries to measure with.
@@ -47,7 +48,7 @@ inline parametric::Library grid_library(int dimensions) {
 // Of the steps of one man from slow to fast, as captured, by length and duration; no examples where
 // there is no corpus.
 inline parametric::Library walkset_library() {
-  const std::filesystem::path folder = KROK_CORPUS_DIR "/bvh/walkset_cmu07";
+  const std::filesystem::path folder = test::corpus_folder() + "/bvh/walkset_cmu07";
   if (!std::filesystem::exists(folder)) return {};
   std::set<std::filesystem::path> paths;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) paths.insert(entry.path());

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -236,7 +237,7 @@ TEST_F(Behaviour, AFlagThatIsOffIsReportedSo) {
 
 // A program started with its standard streams closed must not write messages into files.
 TEST_F(Behaviour, ClosedStandardStreamsAreNoTrouble) {
-  const std::string tool = std::string(KROK_BIN_DIR) + "/krok-import";
+  const std::string tool = test::tools_folder() + "/krok-import";
   const ToolRun run = test::run(
       {"/bin/sh", "-c",
        "'" + tool + "' '" + path("in.bvh") + "' -v -o '" + path("out.anim") + "' 0<&- 1>&- 2>&-"});

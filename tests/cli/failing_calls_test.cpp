@@ -2,7 +2,7 @@
 // crash, a success that is none, half a file, an old file gone, or temporary files left behind.
 
 #include "cli/fixture.h"
-#include "support/sanitized.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -12,10 +12,10 @@ namespace fs = std::filesystem;
 class FailingCalls : public CliTest {
  protected:
   void SetUp() override {
-    if (kSanitized) GTEST_SKIP() << "a sanitizer's runtime must be the first library";
+    if (sanitized()) GTEST_SKIP() << "a sanitizer's runtime must be the first library";
     CliTest::SetUp();
     fs::create_directories(path("in"));
-    put("in/walk.bvh", get(std::string(KROK_SOURCE_DIR) + "/samples/captures/walk.bvh"));
+    put("in/walk.bvh", get(test::source_folder() + "/samples/captures/walk.bvh"));
     made({"krok-import", "in/walk.bvh", "-o", "in/walk.anim"});
     made({"krok-body", "in/walk.anim", "--detail", "low", "-o", "in/walk.model"});
   }
@@ -101,11 +101,11 @@ class FailingCalls : public CliTest {
         restore(before);
         SCOPED_TRACE(command[0] + ": call " + call + " number " + std::to_string(at));
         std::vector<std::string> arguments = {"/usr/bin/env",
-                                              std::string("LD_PRELOAD=") + KROK_FAILING_CALLS,
+                                              std::string("LD_PRELOAD=") + test::failing_calls(),
                                               std::string("KROK_FAIL_CALL=") + call,
                                               "KROK_FAIL_AT=" + std::to_string(at),
                                               "KROK_FAIL_MARK=" + path("mark"),
-                                              std::string(KROK_BIN_DIR) + "/" + command[0]};
+                                              test::tools_folder() + "/" + command[0]};
         arguments.insert(arguments.end(), command.begin() + 1, command.end());
         ToolOptions options;
         options.folder = folder_.string();
@@ -180,7 +180,7 @@ TEST_F(FailingCalls, View) {
 TEST_F(FailingCalls, Fit) {
   for (const char* length : {"50", "60", "70"}) {
     const ToolRun walk =
-        run({KROK_MAKE_WALK, "--steps", "3", "--step-length", std::string(length) + "cm", "-q",
+        run({test::make_walk(), "--steps", "3", "--step-length", std::string(length) + "cm", "-q",
              "-o", path("in/" + std::string(length) + ".bvh")});
     ASSERT_EQ(walk.exit_code, 0) << walk.err;
   }

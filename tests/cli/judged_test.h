@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 
@@ -13,7 +14,7 @@ class JudgedTest : public CliTest {
  protected:
   // Runs a script of tests/golden over files of this folder; skips without its packages.
   void judge(const std::vector<std::string>& arguments) const {
-    const std::filesystem::path tests = std::filesystem::path(KROK_SOURCE_DIR) / "tests";
+    const std::filesystem::path tests = std::filesystem::path(test::source_folder()) / "tests";
     for (const char* needed : {"gltf-validator", "three"}) {
       if (!std::filesystem::exists(tests / "node_modules" / needed)) {
         GTEST_SKIP() << "skipped: no " << needed << " in tests/node_modules; run npm ci in tests/";

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "cli/fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -42,7 +43,7 @@ TEST_F(Krok, TellsWhichVerbThereIsNot) {
 
 // The tools stand beside the program itself, not beside a link to it.
 TEST_F(Krok, WorksThroughALink) {
-  std::filesystem::create_symlink(std::string(KROK_BIN_DIR) + "/krok", path("k"));
+  std::filesystem::create_symlink(test::tools_folder() + "/krok", path("k"));
   const ToolRun run = test::run({path("k"), "info", "--version"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, run_tool("krok-info", {"--version"}).out);
@@ -100,8 +101,9 @@ TEST_F(Krok, ABarOnATerminalHonoursNoColor) {
     std::filesystem::create_hard_link(path("long.bvh"), path("in/" + std::to_string(i) + ".bvh"));
   }
   const auto bar = [&](const std::string& environment) {
-    const std::string command = environment + " " + KROK_BIN_DIR + "/krok-import " + path("in") +
-                                " --out-dir " + path("out") + " --force -j 1 --progress=bar";
+    const std::string command = environment + " " + test::tools_folder() + "/krok-import " +
+                                path("in") + " --out-dir " + path("out") +
+                                " --force -j 1 --progress=bar";
     ToolOptions options;
     options.folder = folder_.string();
     return test::run({"/usr/bin/script", "-qec", command, "/dev/null"}, options).out;

@@ -1,6 +1,7 @@
 // Plausible mistakes on the command line, and what helps against them: near names, completion,
 // colours. Would fail if a typing mistake were answered with a riddle.
 #include "cli/motion_fixture.h"
+#include "support/this_build.h"
 #include "tools/cli/console_progress.h"
 
 namespace krok::test {
@@ -118,7 +119,7 @@ TEST_F(Mistakes, PatternsThatTheShellLeftAreExpanded) {
 TEST_F(Mistakes, BinaryDataIsNotWrittenToATerminal) {
   // `script` gives the tool a terminal; without it there is none to test with.
   if (!std::filesystem::exists("/usr/bin/script")) GTEST_SKIP() << "script is not installed";
-  const std::string tool = std::string(KROK_BIN_DIR) + "/krok-import";
+  const std::string tool = test::tools_folder() + "/krok-import";
   const ToolRun run = test::run(
       {"/usr/bin/script", "-qec", "'" + tool + "' '" + path("in.bvh") + "' -o -", "/dev/null"});
   EXPECT_EQ(run.exit_code, 2);
@@ -127,7 +128,7 @@ TEST_F(Mistakes, BinaryDataIsNotWrittenToATerminal) {
 }
 
 TEST_F(Mistakes, BashCompletesVerbsOptionsAndTheirValues) {
-  const std::string krok = std::string(KROK_BIN_DIR) + "/krok";
+  const std::string krok = test::tools_folder() + "/krok";
   ASSERT_EQ(run_tool("krok", {"completion", "tcsh"}).exit_code, 2);
   const ToolRun script = run_tool("krok", {"completion", "bash"});
   ASSERT_EQ(script.exit_code, 0) << script.err;

@@ -2,7 +2,7 @@
 // behind, or a limit of the system ends a tool without a word.
 #include "cli/fixture.h"
 #include "support/glb_builder.h"
-#include "support/sanitized.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -19,7 +19,8 @@ class Results : public CliTest {
   }
   // A command of a shell in the test's folder, with the tools on its path.
   ToolRun shell(const std::string& command) const {
-    return test::run({"/bin/sh", "-c", "PATH='" KROK_BIN_DIR "':$PATH; " + command}, in_folder_);
+    return test::run({"/bin/sh", "-c", "PATH='" + test::tools_folder() + "':$PATH; " + command},
+                     in_folder_);
   }
   // in.bvh, 30 frames, and in.anim.
   void make_motion() {
@@ -201,7 +202,7 @@ TEST_F(Results, ANameThatIsNoUtf8IsNoTrouble) {
 constexpr const char* kFewThreads = "ulimit -s 1000000; ulimit -v 2500000; ";
 
 TEST_F(Results, FewerThreadsThanAskedForWillDo) {
-  if (kSanitized) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
+  if (sanitized()) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
   make_character();
   const ToolRun run =
       shell(std::string(kFewThreads) + "krok-skin in.model in.anim --as frames -o x.glb -j 1024");
@@ -210,7 +211,7 @@ TEST_F(Results, FewerThreadsThanAskedForWillDo) {
 }
 
 TEST_F(Results, FewerThreadsWillDoForABatchToo) {
-  if (kSanitized) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
+  if (sanitized()) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
   make_motion();
   fs::create_directory(path("many"));
   for (int i = 0; i < 100; ++i) {
@@ -223,7 +224,7 @@ TEST_F(Results, FewerThreadsWillDoForABatchToo) {
 }
 
 TEST_F(Results, WithoutMemoryAToolSaysSoAndLeavesNothing) {
-  if (kSanitized) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
+  if (sanitized()) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
   put("in.bvh", capture(20000));
   put("out.anim", "old");
   const auto limited = [&](int kibibytes, const std::string& command) {

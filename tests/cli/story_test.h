@@ -5,10 +5,7 @@
 #include "cli/fixture.h"
 #include "support/folder_test.h"
 #include "support/run_tool.h"
-
-#ifndef KROK_SAMPLES_BIN
-#error "stories are run with the programs of samples/: define where those are built"
-#endif
+#include "support/this_build.h"
 
 namespace krok::test {
 
@@ -16,19 +13,19 @@ namespace krok::test {
 class StoryTest : public FolderTest {
  protected:
   explicit StoryTest(std::string name)
-      : folder_of_story_(std::string(KROK_SOURCE_DIR "/samples/") + std::move(name) + "/") {}
+      : folder_of_story_(test::source_folder() + "/samples/" + std::move(name) + "/") {}
 
   // A file of the story's own.
   std::string told(const std::string& file) const { return get(folder_of_story_ + file); }
 
   // Its script, on tools of another folder where `bin` is given.
-  ToolRun story(const std::string& arguments, const std::string& bin = KROK_BIN_DIR) const {
+  ToolRun story(const std::string& arguments, const std::string& bin = test::tools_folder()) const {
     ToolOptions options;
     options.folder = folder_.string();
     options.timeout = 600;
     return run({"/bin/sh", "-c",
-                "KROK_BIN='" + bin + "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" + folder_of_story_ +
-                    "run.sh' " + arguments},
+                "KROK_BIN='" + bin + "' SAMPLES_BIN='" + test::sample_programs() + "' '" +
+                    folder_of_story_ + "run.sh' " + arguments},
                options);
   }
 

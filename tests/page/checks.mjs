@@ -11,9 +11,13 @@ import { chromium } from 'playwright-core';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const bin = process.argv[2];
-const folder = mkdtempSync(join(tmpdir(), 'krok-page-'));
-const faults = [];
+let folder;
+let faults = [];
 let checks = 0;
+let kept = false;
+
+// For several tests, one after the other, in one process.
+export const keepBrowser = () => { kept = true; };
 
 export function expect(condition, text) {
   ++checks;
@@ -24,7 +28,7 @@ export function expect(condition, text) {
 }
 
 export const run = (tool, ...words) => execFileSync(join(bin, tool), words, { stdio: ['ignore', 'pipe', 'pipe'] });
-export const made = (name) => join(folder, name);
+export const made = (name) => join(folder ??= mkdtempSync(join(tmpdir(), 'krok-page-')), name);
 
 export const browser = await chromium.launch({
   executablePath: process.env.KROK_CHROMIUM ?? '/usr/bin/chromium',
@@ -95,9 +99,13 @@ export async function check(least, test) {
   } catch (error) {
     expect(false, error.stack ?? String(error));
   } finally {
-    await browser.close();
-    rmSync(folder, { recursive: true, force: true });
+    if (kept) await Promise.all(browser.contexts().map((context) => context.close()));
+    else await browser.close();
+    if (folder) rmSync(folder, { recursive: true, force: true });
+    folder = undefined;
   }
   console.log(`${checks} checks, ${faults.length} faults`);
-  process.exitCode = faults.length > 0 || checks < least ? 1 : 0;
+  if (faults.length > 0 || checks < least) process.exitCode = 1;
+  faults = [];
+  checks = 0;
 }

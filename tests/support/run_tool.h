@@ -15,6 +15,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/this_build.h"
+
 // Runs a program and captures its output. For tests of the real tools.
 
 namespace krok::test {
@@ -60,7 +62,7 @@ inline ToolRun run(const std::vector<std::string>& arguments, const ToolOptions&
   const pid_t child = fork();
   if (child == 0) {
     int output = fileno(out);
-    if (!options.output_path.empty()) output = open(options.output_path.c_str(), O_WRONLY);
+    if (!options.output_path.empty()) output = ::open(options.output_path.c_str(), O_WRONLY);
     dup2(fileno(in), STDIN_FILENO);
     dup2(output, STDOUT_FILENO);
     dup2(fileno(err), STDERR_FILENO);
@@ -114,7 +116,7 @@ inline void keep_report(const std::vector<std::string>& arguments, const ToolOpt
   }
   // A refused report may name an input.
   if (!report.starts_with("{") || result.exit_code < 0) return;
-  const fs::path folder = KROK_REPORTS;
+  const fs::path folder = test::reports_folder();
   fs::create_directories(folder);
   std::ofstream kept(folder / (std::to_string(getpid()) + "_" + std::to_string(count++) + ".json"),
                      std::ios::binary);
@@ -124,7 +126,7 @@ inline void keep_report(const std::vector<std::string>& arguments, const ToolOpt
 // A tool of this build.
 inline ToolRun run_tool(const std::string& tool, std::vector<std::string> arguments,
                         const ToolOptions& options = {}) {
-  arguments.insert(arguments.begin(), std::string(KROK_BIN_DIR) + "/" + tool);
+  arguments.insert(arguments.begin(), test::tools_folder() + "/" + tool);
   ToolRun result = run(arguments, options);
   keep_report(arguments, options, result);
   return result;

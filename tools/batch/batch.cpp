@@ -14,6 +14,7 @@
 #include "core/in_order.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "formats/io/takes.h"
 #include "tools/batch/journal.h"
 #include "tools/batch/list.h"
 #include "tools/batch/made_with.h"
@@ -131,6 +132,9 @@ class Batch {
 
   void do_files() {
     const std::size_t count = list_.files.size();
+    std::vector<std::string> inputs;
+    for (const auto& [number, path] : list_.read_files) inputs.push_back(path);
+    takes_.emplace(std::move(inputs));
     const int threads = thread_count(line_.jobs);
     const int workers =
         static_cast<int>(std::clamp<std::size_t>(count, 1, static_cast<std::size_t>(threads)));
@@ -173,6 +177,7 @@ class Batch {
     context.verbose = line_.verbose;
     context.progress = &no_progress_;
     context.one_of_many = &outcome.run;
+    context.takes = &*takes_;
     context.report_on_standard_output = line_.json_path == "-";
     context.subject.file = file.input;
     context.report_path = line_.json_path;
@@ -341,6 +346,7 @@ class Batch {
   BatchNames names_{list_, line_.out_dir};
   BatchReport report_;
   std::optional<Journal> journal_;
+  std::optional<io::Takes> takes_;
   int jobs_of_a_file_ = 1;
   std::optional<ReadyLines> ready_lines_;
   BatchTally tally_;

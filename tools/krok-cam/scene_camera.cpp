@@ -7,6 +7,8 @@
 #include "core/text.h"
 #include "formats/io/open_scene.h"
 #include "nodes/evaluate.h"
+#include "nodes/moving.h"
+#include "tools/shared/animation_choice.h"
 #include "tools/shared/camera_choice.h"
 
 namespace krok::cli::cam {
@@ -21,32 +23,20 @@ void report_all(Diagnostics& found, const std::string& path, ToolContext& contex
   found.clear();
 }
 
-bool moves(const nodes::Scene& scene, const nodes::Animation& animation, int camera) {
-  for (int node = camera; node >= 0; node = scene.nodes[static_cast<std::size_t>(node)].parent) {
-    for (const nodes::Channel& channel : animation.channels) {
-      if (channel.node == node && channel.path != nodes::Path::weights) return true;
-    }
-  }
-  return false;
-}
-
-// The first animation that moves the camera; -1 if none.
+// The animation that moves the camera most; -1 if none does.
 int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
-  int first = -1, count = 0;
-  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
-    if (!moves(scene, scene.animations[i], camera)) continue;
-    if (count++ == 0) first = static_cast<int>(i);
+  const ChosenAnimation best =
+      best_animation(scene, "camera channel", [&](const nodes::Animation& animation) {
+        return nodes::camera_count(scene, animation, camera);
+      });
+  if (best.count == 0) return -1;
+  if (best.moving > 1) {
+    const std::string name = animation_name(scene, static_cast<std::size_t>(best.animation));
+    found.push_back(make_warning("cam-animations",
+                                 fmt::format("using {}, {}", shown(name), best.why),
+                                 "krok-import --cam selects another with --clip"));
   }
-  if (count < 2) return first;
-  Diagnostic diagnostic;
-  diagnostic.severity = Severity::warning;
-  diagnostic.code = "cam-animations";
-  diagnostic.message =
-      fmt::format("{} animations move the camera; using the first, {} ({})", count, first,
-                  shown(scene.animations[static_cast<std::size_t>(first)].name));
-  diagnostic.hint = "krok-import --cam selects another with --clip";
-  found.push_back(std::move(diagnostic));
-  return first;
+  return best.animation;
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace krok::cli::cam {
 
-// A camera of a glTF file in the first animation that moves it or one of its parent nodes, at the
+// A camera of a glTF file in the animation that moves it most (nodes::camera_count), at the
 // rate of the keys or at `rate`; one frame if no animation does. `wanted` as in choose_camera.
 // Codes: cam-missing, import-camera, and those of reading and sampling.
 Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& wanted,

@@ -69,8 +69,9 @@ Result<double> reduce_tolerance(const Options& options) {
 // Checks that the options apply to this format.
 Status check_for(ExportFormat format, const Options& options) {
   if (const auto unit = unit_of(options, format); !unit) return unit.error();
-  if (format != ExportFormat::bvh && (options.digits || !options.order.empty())) {
-    return Error("usage", "--digits and --order are for BVH");
+  const bool for_bvh = options.digits || !options.order.empty() || options.root_offset;
+  if (format != ExportFormat::bvh && for_bvh) {
+    return Error("usage", "--digits, --order and --root-offset are for BVH");
   }
   const bool opensim = format == ExportFormat::mot || format == ExportFormat::sto;
   if ((options.what != What::automatic || !options.map.empty()) && format != ExportFormat::csv &&
@@ -146,6 +147,10 @@ void declare(CommandOptions& command, Options& options) {
                   "BVH: order of the rotation channels: XYZ, XZY, YXZ, YZX, ZXY or ZYX")
       .transform(one_of_words({"XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX"}))
       .default_str("ZXY");
+  command.add_flag("--root-offset", options.root_offset,
+                   "BVH: write the root's place in the reference pose as its OFFSET, as most "
+                   "programs do. By default it is 0, since programs that add positions to OFFSETs, "
+                   "such as three.js, would show the character at twice its height");
   command.add_option("--reduce LENGTH", options.reduce,
                      "glTF: reduce keys for a smaller file; joints, and points 3 cm around them, "
                      "move by at most this distance, such as 1mm. By default each frame is a key");

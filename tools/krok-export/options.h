@@ -26,6 +26,7 @@ struct Options {
   ExportFormat format = ExportFormat::from_extension;
   std::string unit;                   // BVH: length unit; empty: centimetres
   std::optional<int> digits;          // BVH: decimal places of degrees and centimetres
+  bool root_offset = false;           // BVH: write the root's reference position
   std::string order;                  // BVH: of rotation channels, "ZXY"; empty: default
   std::string reduce;                 // glTF: key reduction tolerance; empty: keep all keys
   What what = What::automatic;        // tables

@@ -53,6 +53,7 @@ EulerOrder order_of(const std::string& letters) {
 Status write_bvh(const Clip& clip, const Options& options, double unit_metres, OutputFile& file) {
   bvh::WriteOptions writing;
   writing.unit_metres = unit_metres;
+  writing.root_offset = options.root_offset;
   if (options.digits) writing.decimals = *options.digits;
   if (!options.order.empty()) writing.order = order_of(options.order);
   return bvh::write(clip, writing, file);

@@ -7,7 +7,6 @@
 #include "capture/unique_names.h"
 #include "core/text.h"
 #include "tools/cli/file_name.h"
-#include "tools/shared/animation_choice.h"
 
 namespace krok::cli::import {
 
@@ -20,7 +19,7 @@ std::vector<ChosenClip> all_clips(const nodes::Scene& scene) {
   UniqueNames names;
   for (std::size_t i = 0; i < scene.animations.size(); ++i) {
     const std::string name = animation_name(scene, i);
-    clips.push_back({static_cast<int>(i), name, names.make(file_name_of(name))});
+    clips.push_back({static_cast<int>(i), name, names.make(file_name_of(name)), "as given"});
   }
   return clips;
 }
@@ -28,7 +27,8 @@ std::vector<ChosenClip> all_clips(const nodes::Scene& scene) {
 }  // namespace
 
 Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const std::string& wanted,
-                                             const std::string& file, ToolContext& context) {
+                                             const ChosenAnimation& best, const std::string& file,
+                                             ToolContext& context) {
   std::vector<ChosenClip> clips = all_clips(scene);
   if (clips.empty() && (wanted.empty() || wanted == "all")) return clips;
   if (clips.empty()) {
@@ -42,17 +42,12 @@ Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const st
     if (wanted == "all") return clips;
     return found.error();
   }
-  if (clips.size() > 1) {
-    Diagnostic diagnostic =
-        make_warning("import-clips",
-                     fmt::format("using the first of {} animations, {}; available: {}",
-                                 clips.size(), shown(clips[0].name), animation_list(scene)),
-                     "select another with --clip NAME or NUMBER, or all with --clip all");
-    diagnostic.where.file = file;
-    context.diagnose(std::move(diagnostic));
-  }
-  clips.resize(1);
-  return clips;
+  report_animation(scene, best, "import-clips",
+                   "select another with --clip NAME or NUMBER, or all with --clip all", file,
+                   context);
+  ChosenClip chosen = std::move(clips[static_cast<std::size_t>(best.animation)]);
+  chosen.why = best.why;
+  return std::vector{std::move(chosen)};
 }
 
 Result<std::string> clip_path(const std::string& pattern, const std::string& option,

@@ -50,7 +50,8 @@ void declare_characters(CommandOptions& command, Options& options) {
       "OUT_textures/, morph targets in OUT_morphs.exr; replaces --model and --morphs");
   command.add_option("--clip NAME", options.clip,
                      "Animation to import: name, number from 0, or all; for all, {clip} in the "
-                     "output's name is the animation's name [the first]");
+                     "output's name is the animation's name [the one that moves most joints; for "
+                     "--cam alone the camera]");
   command.add_option("--skin NAME", options.skin,
                      "Use the skeleton of this skin (name or number) if the file has several [the "
                      "one with the most joints]");

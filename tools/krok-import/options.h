@@ -18,7 +18,7 @@ struct Options {
   std::string map;        // --map, empty: none
   std::string model;      // --model, empty: none
   std::string character;  // --character, empty: none
-  std::string clip;       // --clip, empty: the first
+  std::string clip;       // --clip, empty: the one that moves most
   std::string skin;       // --skin, empty: the largest skeleton
   std::string cam;        // --cam, empty: none
   std::string camera;     // --camera, empty: the first

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "nodes/moving.h"
 #include "tools/krok-import/facts.h"
 #include "tools/shared/camera_choice.h"
 #include "tools/shared/role_report.h"
@@ -13,8 +15,9 @@
 namespace krok::cli::import {
 
 Result<int> SceneImporter::run() {
-  for (auto step : {&SceneImporter::choose, &SceneImporter::find_rig, &SceneImporter::find_space,
-                    &SceneImporter::add_actor, &SceneImporter::add_clips}) {
+  for (auto step :
+       {&SceneImporter::choose, &SceneImporter::find_rig, &SceneImporter::choose_animations,
+        &SceneImporter::find_space, &SceneImporter::add_actor, &SceneImporter::add_clips}) {
     if (Status status = (this->*step)(); !status) return std::move(status.error()).in_file(path_);
   }
   report_what_else_is_there();
@@ -67,16 +70,43 @@ Status SceneImporter::choose() {
   if (wants_camera()) {
     if (Status status = choose_camera(); !status) return status;
   }
-  auto clips = choose_clips(scene_, options_.clip, path_, context_);
-  if (!clips) return clips.error();
-  clips_ = std::move(*clips);
   // In a batch, the motion of this particular file was not requested.
-  still_ = clips_.empty() && context_.one_of_many != nullptr &&
+  const bool none = scene_.animations.empty();
+  still_ = none && context_.one_of_many != nullptr &&
            (wants_model() || wants_character() || wants_camera() || wants_morphs());
-  if (wants_motion() && clips_.empty()) {
+  if (wants_motion() && none && (options_.clip.empty() || options_.clip == "all")) {
     return missing("animation", "-o",
                    "use --model without -o for the character, or --cam for a camera");
   }
+  return {};
+}
+
+Status SceneImporter::choose_animations() {
+  ChosenAnimation best, of_camera;
+  if (wants_camera()) {
+    of_camera = best_animation(scene_, "camera channel", [&](const auto& animation) {
+      return nodes::camera_count(scene_, animation, camera_);
+    });
+  }
+  if (rig_ && (wants_motion() || !(wants_camera() || wants_morphs()))) {
+    best = best_animation(scene_, rig_->joints.nodes);
+  } else {
+    best = wants_camera() ? of_camera : best_animation(scene_, "morph target", nodes::target_count);
+  }
+  auto clips = choose_clips(scene_, options_.clip, best, path_, context_);
+  if (!clips) return clips.error();
+  clips_ = std::move(*clips);
+  // Programs write an animation for each object, on one time axis.
+  const bool still =
+      clips_.size() == 1 && of_camera.count > 0 &&
+      nodes::camera_count(scene_, scene_.animations[at(clips_[0].animation)], camera_) == 0;
+  if (!still) return {};
+  const std::string name = animation_name(scene_, at(of_camera.animation));
+  if (options_.clip.empty()) camera_clip_ = {of_camera.animation, name, {}, of_camera.why};
+  warn("import-camera-clip",
+       fmt::format("{} does not move the camera; {} does{}", shown(clips_[0].name), shown(name),
+                   camera_clip_ ? " and is used for it, over the time of the motion" : ""),
+       camera_clip_ ? "--cam without -o writes it over its own time" : "");
   return {};
 }
 

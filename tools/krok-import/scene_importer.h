@@ -49,6 +49,7 @@ class SceneImporter {
   // Selects the parts to import; determines unit and axes (scene_importer.cpp).
   Status choose();
   Status choose_camera();
+  Status choose_animations();
   Status find_rig();
   Status find_space();
 
@@ -76,9 +77,10 @@ class SceneImporter {
   OutputSet outputs_;
 
   std::vector<ChosenClip> clips_;
-  std::vector<int> cameras_;  // nodes
-  bool still_ = false;        // in a batch: a file without animations
-  int camera_ = -1;           // node of the camera to write
+  std::vector<int> cameras_;               // nodes
+  bool still_ = false;                     // in a batch: a file without animations
+  int camera_ = -1;                        // node of the camera to write
+  std::optional<ChosenClip> camera_clip_;  // if it is not that of the motion
   std::optional<character::Rig> rig_;
   RoleMap roles_;  // of the rig's joints
   character::Actor actor_;

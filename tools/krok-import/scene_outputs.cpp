@@ -8,6 +8,7 @@
 #include "formats/csv/csv_writer.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
+#include "nodes/moving.h"
 #include "tools/cli/output_kind.h"
 #include "tools/krok-import/character_files.h"
 #include "tools/krok-import/facts.h"
@@ -21,12 +22,16 @@ using registry::Kind;
 
 namespace {
 
-int moved_targets(const nodes::Animation& animation) {
+int animated_targets(const nodes::Animation& animation) {
   int targets = 0;
   for (const nodes::Channel& channel : animation.channels) {
     if (channel.path == nodes::Path::weights) targets += channel.width;
   }
   return targets;
+}
+
+Json to_json(const ChosenClip& clip) {
+  return {{"name", clip.name}, {"number", clip.animation}, {"reason", clip.why}};
 }
 
 }  // namespace
@@ -142,13 +147,13 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
   const auto sampling = character::choose_sampling(animation, wanted, found);
   if (!sampling) return sampling.error();
   Json facts = Json::object();
-  facts["clip"] = {{"name", chosen.name}, {"number", chosen.animation}};
+  facts["clip"] = to_json(chosen);
   if (wants_motion()) {
-    if (!character::moves_rig(scene_, *rig_, chosen.animation)) {
+    if (nodes::moved_count(scene_, animation, rig_->joints.nodes) == 0) {
       warn("import-still",
            fmt::format("{} does not move any joint of the skeleton", shown(chosen.name)));
     }
-    if (const int targets = moved_targets(animation); targets > 0 && options_.weights.empty()) {
+    if (const int targets = animated_targets(animation); targets > 0 && options_.weights.empty()) {
       warn("import-weights",
            fmt::format("{} moves {}: not written", shown(chosen.name),
                        counted(targets, "morph target")),
@@ -197,9 +202,9 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
 Status SceneImporter::add_camera(const ChosenClip& clip,
                                  const character::ChosenSampling& sampling) {
   Diagnostics found;
-  auto track = character::make_camera(scene_, evaluator_, camera_, conversion_,
-                                      character::rotation_to_apply(scene_.space), clip.animation,
-                                      sampling.sampling, found);
+  auto track = character::make_camera(
+      scene_, evaluator_, camera_, conversion_, character::rotation_to_apply(scene_.space),
+      (camera_clip_ ? *camera_clip_ : clip).animation, sampling.sampling, found);
   if (!track) return track.error();
   report_all(found);
   track->provenance = context_.provenance();
@@ -212,6 +217,7 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
       {"frames", track->frame_count()},
       {"rate", track->rate},
       {"field_of_view", static_cast<double>(track->fields_of_view.front()) / kRadiansPerDegree}};
+  if (camera_clip_) result_["camera"]["clip"] = to_json(*camera_clip_);
   if (line_.empty()) {
     line_ = fmt::format("{}: camera {}, {} at {} fps", base_name(path_),
                         shown(scene_.nodes[static_cast<std::size_t>(camera_)].name),

@@ -11,6 +11,7 @@
 #include "nodes/evaluate.h"
 #include "tools/krok-info/describe.h"
 #include "tools/krok-info/volumes.h"
+#include "tools/shared/animation_choice.h"
 #include "tools/shared/scene_conventions.h"
 
 namespace krok::cli::info {
@@ -213,9 +214,10 @@ Status add_actor(const nodes::Scene& scene, const std::string& path, const Skele
     if (!map) return map.error();
     roles = *std::move(map);
   }
-  const int first = scene.animations.empty() ? -1 : 0;
+  const std::vector<int> joints = *rig ? (*rig)->joints.nodes : std::vector<int>();
+  const int animation = best_animation(scene, joints).animation;
   const auto conventions =
-      scene_conventions(scene, *evaluator, *rig ? &**rig : nullptr, roles, first, {});
+      scene_conventions(scene, *evaluator, *rig ? &**rig : nullptr, roles, animation, {});
   if (!conventions) return conventions.error();
   if (listed && *rig) {
     add_skeleton((*rig)->skeleton, roles, how.verbose, conventions->unit.metres, out);

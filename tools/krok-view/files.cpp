@@ -21,6 +21,7 @@
 #include "tools/cli/file_name.h"
 #include "tools/krok-view/goals.h"
 #include "tools/krok-view/ragdoll_bodies.h"
+#include "tools/shared/animation_choice.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::view {
@@ -80,6 +81,7 @@ Status add_glb(const std::string& path, std::vector<std::byte> bytes, Files& fil
     glb.animations.push_back(animation.name);
     glb.rates.push_back(chosen->sampling.rate);
   }
+  glb.animation = std::max(0, best_animation(*scene).animation);
   files.glbs.push_back(std::move(glb));
   return {};
 }

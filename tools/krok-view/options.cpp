@@ -52,8 +52,8 @@ void declare(CommandOptions& command, Options& options) {
                      "mesh (.gltf, .glb, .obj), or " +
                          std::string(terrain::kSpecForms));
   command.add_option("--clip NAME", options.clip,
-                     "Animation of glTF files that plays first; default: the first. All others can "
-                     "be chosen on the page");
+                     "Animation of glTF files that plays first [the one that moves most joints]. All "
+                     "others can be chosen on the page");
   add_prints_option(command, options.prints,
                     "Show footprints (formats/prints/SPEC.md) on the ground, as krok-walk "
                     "--save-prints writes them; those that a foot stands on are marked");

@@ -18,7 +18,7 @@ struct Options {
   BodyChoice body = BodyChoice::automatic;
   KeysChoice keys = KeysChoice::automatic;
   bool difference = false;
-  std::string clip;    // an animation of glTF files; empty: the first
+  std::string clip;    // an animation of glTF files; empty: best_animation()
   std::string goals;   // a goal file, or empty
   std::string ground;  // what io::open_terrain() takes; empty: none
   std::string prints;  // a file of footprints, or empty

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "nodes/moving.h"
 
 namespace krok::cli {
 
@@ -42,21 +45,61 @@ Result<int> find_animation(const nodes::Scene& scene, const std::string& wanted,
       .in_file(file);
 }
 
+void report_animation(const nodes::Scene& scene, const ChosenAnimation& chosen, const char* code,
+                      const char* hint, const std::string& file, ToolContext& context) {
+  if (scene.animations.size() < 2) return;
+  const std::string name = shown(animation_name(scene, static_cast<std::size_t>(chosen.animation)));
+  Diagnostic warning =
+      make_warning(code,
+                   fmt::format("using {} of {} animations, {}; available: {}", name,
+                               scene.animations.size(), chosen.why, animation_list(scene)),
+                   hint);
+  warning.where.file = file;
+  context.diagnose(std::move(warning));
+}
+
+ChosenAnimation best_animation(
+    const nodes::Scene& scene, const char* what,
+    const std::function<std::size_t(const nodes::Animation& animation)>& count) {
+  ChosenAnimation best;
+  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+    const std::size_t here = count(scene.animations[i]);
+    best.moving += here > 0 ? 1 : 0;
+    if (i > 0 && here <= best.count) continue;
+    best.animation = static_cast<int>(i);
+    best.count = here;
+  }
+  const std::string most = counted(static_cast<long long>(best.count), what);
+  best.why = scene.animations.size() == 1 ? "the only one"
+             : best.moving == 0           ? fmt::format("the first, since none moves a {}", what)
+             : best.moving == 1
+                 ? fmt::format("the only one that moves a {}: {}", what, most)
+                 : fmt::format("it moves {}, the most of {} that move any", most, best.moving);
+  return best;
+}
+
+ChosenAnimation best_animation(const nodes::Scene& scene) {
+  const ChosenAnimation best =
+      best_animation(scene, "node", [&](const nodes::Animation& animation) {
+        return std::ranges::count(nodes::moved_nodes(scene, animation), 1);
+      });
+  return best.count > 0 ? best : best_animation(scene, "morph target", nodes::target_count);
+}
+
+ChosenAnimation best_animation(const nodes::Scene& scene, std::span<const int> joints) {
+  return best_animation(scene, "joint", [&](const nodes::Animation& animation) {
+    return nodes::moved_count(scene, animation, joints);
+  });
+}
+
 Result<int> choose_animation(const nodes::Scene& scene, const std::string& wanted,
                              const std::string& file, ToolContext& context) {
   if (!wanted.empty()) return find_animation(scene, wanted, file);
   if (scene.animations.empty()) return -1;
-  if (scene.animations.size() > 1) {
-    Diagnostic warning =
-        make_warning("clip-first",
-                     fmt::format("the first of {} animations is used, {}; available: {}",
-                                 scene.animations.size(), shown(animation_name(scene, 0)),
-                                 animation_list(scene)),
-                     "select another with --clip NAME or NUMBER");
-    warning.where.file = file;
-    context.diagnose(std::move(warning));
-  }
-  return 0;
+  const ChosenAnimation chosen = best_animation(scene);
+  report_animation(scene, chosen, "clip-choice", "select another with --clip NAME or NUMBER", file,
+                   context);
+  return chosen.animation;
 }
 
 }  // namespace krok::cli

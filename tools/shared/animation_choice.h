@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
 
 #include "core/result.h"
@@ -21,8 +23,30 @@ std::string animation_list(const nodes::Scene& scene);
 Result<int> find_animation(const nodes::Scene& scene, const std::string& wanted,
                            const std::string& file);
 
-// The same, where an empty `wanted` is the first, with a warning (code clip-first) if there are
-// others; -1 for a scene without any, unless one is wanted.
+// An animation, and for messages why it was chosen: "it moves 41 joints, the most of 3 that move
+// any".
+struct ChosenAnimation {
+  int animation = -1;      // -1 for a scene without animations
+  std::size_t count = 0;   // what it moves
+  std::size_t moving = 0;  // animations that move something
+  std::string why;
+};
+// The animation for which `count` is largest, of equals the first; the first if all are 0. `what`
+// is counted: "joint".
+ChosenAnimation best_animation(
+    const nodes::Scene& scene, const char* what,
+    const std::function<std::size_t(const nodes::Animation& animation)>& count);
+// The one that moves most nodes, else most morph targets.
+ChosenAnimation best_animation(const nodes::Scene& scene);
+// By nodes::moved_count().
+ChosenAnimation best_animation(const nodes::Scene& scene, std::span<const int> joints);
+
+// If there are several: a warning that `chosen` is used and why, with a list of all.
+void report_animation(const nodes::Scene& scene, const ChosenAnimation& chosen, const char* code,
+                      const char* hint, const std::string& file, ToolContext& context);
+
+// find_animation(), where an empty `wanted` is best_animation(), with a warning (code clip-choice)
+// if there are others; -1 for a scene without any, unless one is wanted.
 Result<int> choose_animation(const nodes::Scene& scene, const std::string& wanted,
                              const std::string& file, ToolContext& context);
 

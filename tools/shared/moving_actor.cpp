@@ -419,9 +419,9 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
 }  // namespace
 
 void add_clip_option(CommandOptions& command, std::string& clip) {
-  command.add_option(
-      "--clip NAME", clip,
-      "Animation of a glTF file that has several: name or number from 0 [the first]");
+  command.add_option("--clip NAME", clip,
+                     "Animation of a glTF file that has several: name or number from 0 [the one "
+                     "that moves most joints]");
 }
 
 namespace {

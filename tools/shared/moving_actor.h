@@ -36,7 +36,8 @@ struct MovingActor {
 struct ActorOptions {
   BodyChoice body = BodyChoice::automatic;
   SkinMethod method = SkinMethod::linear;  // of motions; glTF files are skinned as in viewers
-  std::string clip;  // of glTF files with animations: a name or an index; empty: the first
+  std::string
+      clip;  // of glTF files with animations: a name or an index; empty: the one that moves most
 };
 
 // --clip.

@@ -23,6 +23,7 @@
 #include "captures/paired.h"
 #include "core/file.h"
 #include "core/hash.h"
+#include "support/this_build.h"
 
 namespace {
 
@@ -80,8 +81,8 @@ bool print_table(const std::string& title, const std::vector<Row>& rows, int rou
 
 // The corpus's, where it is at hand; otherwise the project's own.
 std::string default_capture() {
-  const std::string corpus = std::string(KROK_CORPUS_DIR) + "/bvh/assimp_testmodels/01_01.bvh";
-  return fs::exists(corpus) ? corpus : std::string(KROK_SOURCE_DIR) + "/samples/captures/walk.bvh";
+  const std::string corpus = test::corpus_folder() + "/bvh/assimp_testmodels/01_01.bvh";
+  return fs::exists(corpus) ? corpus : test::source_folder() + "/samples/captures/walk.bvh";
 }
 
 struct Folder {
@@ -97,7 +98,7 @@ struct Folder {
 };
 
 std::string tool(const char* name) {
-  return std::string(KROK_BIN_DIR) + "/" + name;
+  return test::tools_folder() + "/" + name;
 }
 
 bool print_batches(const std::string& title, const fs::path& from, const fs::path& folder,
@@ -118,13 +119,13 @@ bool print_batches(const std::string& title, const fs::path& from, const fs::pat
 }
 
 int run(const std::string& capture, int rounds) {
-  const Folder folder(KROK_BIN_DIR);
+  const Folder folder(test::tools_folder());
   if (folder.path.empty()) {
-    fmt::print("no folder can be made in {}\n", KROK_BIN_DIR);
+    fmt::print("no folder can be made in {}\n", test::tools_folder());
     return 1;
   }
   const auto in = [&](const char* name) { return (folder.path / name).string(); };
-  const std::string parts = KROK_BENCH_PARTS_DIR;
+  const std::string parts = test::bench_parts();
   for (const auto& [frames, name] :
        {std::pair(kLongFrames, "long.bvh"), std::pair(kShortFrames, "short.bvh")}) {
     if (Status status = bench::write_long_capture(capture, frames, in(name)); !status) {

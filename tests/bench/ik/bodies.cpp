@@ -19,6 +19,7 @@
 #include "ik/solver.h"
 #include "roles/roles.h"
 #include "support/test_scenes.h"
+#include "support/this_build.h"
 
 namespace krok::bench {
 namespace {
@@ -67,7 +68,7 @@ void add_body(std::string name, Clip clip, std::vector<Body>& bodies) {
 std::vector<Body> all_bodies() {
   std::vector<Body> bodies;
   namespace fs = std::filesystem;
-  const fs::path corpus = fs::path(KROK_CORPUS_DIR) / "bvh";
+  const fs::path corpus = fs::path(test::corpus_folder()) / "bvh";
   std::vector<fs::path> files;
   for (const char* folder : {"animated_drawings", "ipi_smartbody", "pybvh", "20tab_bvh-python"}) {
     if (!fs::exists(corpus / folder)) continue;

@@ -22,6 +22,7 @@
 #include "plant/plant_feet.h"
 #include "support/foot_skate.h"
 #include "support/planted_measures.h"
+#include "support/this_build.h"
 
 namespace {
 
@@ -114,7 +115,7 @@ void compare(const char* title, const std::vector<Sample>& samples, bool details
 
 std::vector<Sample> corpus() {
   std::vector<Sample> samples;
-  const std::filesystem::path folder = KROK_CORPUS_DIR "/bvh";
+  const std::filesystem::path folder = test::corpus_folder() + "/bvh";
   if (!std::filesystem::exists(folder)) return samples;
   std::vector<std::string> names = {"pybvh/cmu_12_01_walk.bvh",
                                     "optitrack_arena_bvh-matlab/walk.bvh",

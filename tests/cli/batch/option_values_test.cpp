@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "batch_fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -137,7 +138,7 @@ INSTANTIATE_TEST_SUITE_P(Tools, OptionValues, testing::ValuesIn(values()),
 // A new tool that takes many files must be in the list above.
 TEST_F(BatchTest, EveryToolThatTakesManyHasItsValuesChecked) {
   std::size_t found = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(KROK_SOURCE_DIR "/tools")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/tools")) {
     const std::string name = entry.path().filename().string();
     if (!name.starts_with("krok-")) continue;
     const std::string help = get((entry.path() / "README.md").string());

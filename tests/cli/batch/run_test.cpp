@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 
 #include "cli/batch/batch_fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -332,9 +333,7 @@ class Memory : public BatchRun {
 };
 
 TEST_F(Memory, DoesNotGrowWithTheNumberOfFiles) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
-#endif
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
   for (int i = 0; i < 400; ++i) {
     put_capture("many/" + number(i) + ".bvh", 500);
     if (i < 40) put_capture("few/" + number(i) + ".bvh", 500);

@@ -7,6 +7,7 @@
 #include "cli/fixture.h"
 #include "core/file.h"
 #include "formats/anim/anim.h"
+#include "support/this_build.h"
 #include "unit/blend/rigged_walks.h"
 
 namespace krok::test {
@@ -16,8 +17,8 @@ class RigsThroughTools : public CliTest {
  protected:
   Clip result(const std::string& rig) const {
     const auto walk = [&](const std::string& name, const std::vector<std::string>& more) {
-      std::vector<std::string> command = {KROK_MAKE_WALK, "-q", "--rig", rig,
-                                          "--steps",      "6",  "-o",    path(name)};
+      std::vector<std::string> command = {test::make_walk(), "-q", "--rig", rig,
+                                          "--steps",         "6",  "-o",    path(name)};
       command.insert(command.end(), more.begin(), more.end());
       EXPECT_EQ(run(command).exit_code, 0);
     };

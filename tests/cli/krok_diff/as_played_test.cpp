@@ -13,6 +13,7 @@
 #include "support/glb_builder.h"
 #include "support/run_tool.h"
 #include "support/small_images.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -26,7 +27,7 @@ class KrokDiffAsPlayed : public FolderTest {
   ToolRun diff(std::vector<std::string> arguments) {
     ToolOptions options;
     options.folder = folder_.string();
-    arguments.insert(arguments.begin(), KROK_BIN_DIR "/krok-diff");
+    arguments.insert(arguments.begin(), test::tools_folder() + "/krok-diff");
     return run(arguments, options);
   }
   nlohmann::json report_of(std::vector<std::string> arguments) {

@@ -8,6 +8,7 @@
 #include "cli/kept_files.h"
 #include "formats/model/model_format.h"
 #include "support/glb_builder.h"
+#include "support/this_build.h"
 #include "unit/gltf/glb.h"
 
 namespace krok::test {
@@ -95,7 +96,7 @@ TEST_F(KrokDiffHeatmap, ColoursModels) {
 }
 
 TEST_F(KrokDiffHeatmap, TheKhronosValidatorFindsNothing) {
-  const fs::path tests = fs::path(KROK_SOURCE_DIR) / "tests";
+  const fs::path tests = fs::path(test::source_folder()) / "tests";
   if (!fs::exists(tests / "node_modules" / "gltf-validator")) {
     GTEST_SKIP() << "skipped: no gltf-validator in tests/node_modules; run npm ci in tests/";
   }

@@ -15,6 +15,7 @@
 #include "formats/anim/anim.h"
 #include "math/quaternion.h"
 #include "support/glb_builder.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -37,8 +38,8 @@ class KrokDiff : public testing::Test {
 
   // Runs the tool in the test's folder.
   Outcome run(const std::string& arguments) {
-    const std::string command = "cd '" + folder_.string() + "' && '" KROK_BIN_DIR "/krok-diff' " +
-                                arguments + " > out.txt 2> err.txt";
+    const std::string command = "cd '" + folder_.string() + "' && '" + test::tools_folder() +
+                                "/krok-diff' " + arguments + " > out.txt 2> err.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of("out.txt"), text_of("err.txt")};
   }

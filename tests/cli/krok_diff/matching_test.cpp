@@ -16,6 +16,7 @@
 #include "support/folder_test.h"
 #include "support/glb_builder.h"
 #include "support/run_tool.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -25,7 +26,7 @@ class KrokDiffMatching : public test::FolderTest {
   test::ToolRun run(const std::string& tool, std::vector<std::string> arguments) {
     test::ToolOptions options;
     options.folder = folder_.string();
-    arguments.insert(arguments.begin(), KROK_BIN_DIR "/" + tool);
+    arguments.insert(arguments.begin(), test::tools_folder() + "/" + tool);
     return test::run(arguments, options);
   }
   test::ToolRun diff(std::vector<std::string> arguments) {

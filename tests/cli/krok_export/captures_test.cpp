@@ -4,13 +4,14 @@
 #include <filesystem>
 
 #include "cli/fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
 class ExportCapture : public CliTest {
  protected:
-  static std::string tool(const char* name) { return std::string(KROK_BIN_DIR) + "/" + name; }
+  static std::string tool(const char* name) { return test::tools_folder() + "/" + name; }
 
   ToolRun export_to(const std::string& input, const std::string& output,
                     const std::string& option = "-v") const {
@@ -81,7 +82,7 @@ TEST_F(ExportCapture, RefusesASkeletonWithoutAMotion) {
 }
 
 TEST_F(ExportCapture, TakesAnAcclaimMotionWithItsSkeletonBeside) {
-  const std::string folder = std::string(KROK_CORPUS_DIR) + "/other/asf_amc_cmu";
+  const std::string folder = test::corpus_folder() + "/other/asf_amc_cmu";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no corpus at " << folder;
   std::string amc;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

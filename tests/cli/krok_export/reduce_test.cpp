@@ -3,13 +3,14 @@
 #include <cmath>
 
 #include "cli/fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
 class ExportReduced : public CliTest {
  protected:
-  static std::string tool(const char* name) { return std::string(KROK_BIN_DIR) + "/" + name; }
+  static std::string tool(const char* name) { return test::tools_folder() + "/" + name; }
   ToolRun export_as(const std::string& output, const std::vector<std::string>& options) const {
     std::vector<std::string> line = {tool("krok-export"), path("walk.bvh"), "-o", path(output)};
     line.insert(line.end(), options.begin(), options.end());

@@ -59,6 +59,12 @@ TEST_F(AxesOfTakes, MayComeFromAnotherTake) {
   EXPECT_GT(along(alone).y(), 0.9F);  // taken for standing
   const Clip sibling = imported({"--axes-from", "walk.bvh"});
   EXPECT_LT((along(sibling) - along(lying)).norm(), 1e-3F);
+  // In one batch they agree by themselves, whichever comes first.
+  const ToolRun batch = run_here(
+      "krok-import", {"lying.bvh", "walk.bvh", "--out-dir", "together", "--json=report.json"});
+  EXPECT_EQ(batch.exit_code, 0) << batch.err;
+  EXPECT_LT((along(read("together/lying.anim")) - along(lying)).norm(), 1e-3F);
+  EXPECT_LT((along(read("together/walk.anim")) - along(walk)).norm(), 1e-3F);
   const ToolRun both = run_here(
       "krok-import", {"lying.bvh", "-o", "no.anim", "--axes-from", "walk.bvh", "--up", "y"});
   EXPECT_EQ(both.exit_code, 2);

@@ -7,6 +7,7 @@
 #include "formats/model/model_format.h"
 #include "imported.h"
 #include "support/glb_builder.h"
+#include "support/this_build.h"
 #include "unit/assimp/sample_md5.h"
 
 namespace krok::test {
@@ -95,6 +96,61 @@ TEST_F(SceneImportTest, ACameraIsAsLongAsItsAnimation) {
   EXPECT_LT((camera->positions[0] - Vec3f(0, 1, 2)).norm(), 1e-6f);
 }
 
+// As programs write that make an animation of each object: the camera's goes before the joints'.
+class AnimationsOfObjectsTest : public SceneImportTest {
+ protected:
+  void SetUp() override {
+    GlbBuilder builder = character();
+    auto& json = builder.json;
+    json["nodes"][2].erase("children");
+    json["scenes"][0]["nodes"].push_back(3);
+    const int times = builder.add(std::vector<float>{0, 3}, "SCALAR");
+    const int places = builder.add(std::vector<float>{0, 0, 2, 3, 0, 2}, "VEC3");
+    json["animations"][1] = {
+        {"name", "Dolly"},
+        {"samplers", {{{"input", times}, {"output", places}}}},
+        {"channels", {{{"sampler", 0}, {"target", {{"node", 3}, {"path", "translation"}}}}}}};
+    std::swap(json["animations"][0], json["animations"][1]);
+    put_glb("in.glb", builder);
+  }
+  CameraTrack camera() const {
+    const auto file = InputFile::open(path("a.cam"));
+    auto track = cam::read(file->bytes());
+    EXPECT_TRUE(track.ok());
+    return *std::move(track);
+  }
+};
+
+TEST_F(AnimationsOfObjectsTest, ThatOfTheSkeletonIsTakenWithTheReason) {
+  const ToolRun run = import({"-o", path("a.anim"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(has_code(run.err, "import-clips")) << run.err;
+  EXPECT_FALSE(has_code(run.err, "import-still")) << run.err;
+  const Json clip = Json::parse(run.out)["result"]["clip"];
+  EXPECT_EQ(clip["name"], "Bend");
+  EXPECT_EQ(clip["reason"], "the only one that moves a joint: 1 joint");
+  EXPECT_NE(run.err.find("using Bend of 2 animations, the only one"), std::string::npos) << run.err;
+  const ToolRun given = import({"-o", path("a.anim"), "--clip", "Dolly"});
+  EXPECT_TRUE(has_code(given.err, "import-still")) << given.err;
+}
+
+TEST_F(AnimationsOfObjectsTest, ACameraAloneHasItsOwn) {
+  ASSERT_EQ(import({"--cam", path("a.cam")}).exit_code, 0);
+  EXPECT_EQ(camera().frame_count(), 91);
+  EXPECT_FLOAT_EQ(camera().positions[90].x(), 3);
+  const ToolRun given = import({"--cam", path("a.cam"), "--clip", "Bend"});
+  EXPECT_TRUE(has_code(given.err, "import-camera-clip")) << given.err;
+  EXPECT_FLOAT_EQ(camera().positions[30].x(), 0);
+}
+
+TEST_F(AnimationsOfObjectsTest, ACameraBesideAMotionHasTheTimeOfTheMotion) {
+  const ToolRun run = import({"-o", path("a.anim"), "--cam", path("a.cam"), "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json::parse(run.out)["result"]["camera"]["clip"]["name"], "Dolly");
+  EXPECT_EQ(camera().frame_count(), 31);
+  EXPECT_FLOAT_EQ(camera().positions[30].x(), 1);
+}
+
 TEST_F(SceneImportTest, OfSeveralAnimationsTheFirstWithAWarning) {
   put_glb("in.glb", character());
   const ToolRun first = import({"-o", path("a.anim")});
@@ -175,7 +231,7 @@ TEST_F(SceneImportTest, OptionsForCapturesAreRefused) {
 
 // A capture with a rest pose put before it, by way of a character's file.
 TEST_F(SceneImportTest, ARestFrameBeforeTheMotionIsTold) {
-  std::string text = get(KROK_SOURCE_DIR "/samples/captures/walk.bvh");
+  std::string text = get(test::source_folder() + "/samples/captures/walk.bvh");
   const std::size_t line = text.find('\n', text.find("Frame Time:")) + 1;
   std::size_t channels = 0;
   for (std::size_t at = text.find("CHANNELS "); at != std::string::npos;

@@ -14,11 +14,12 @@
 #include "core/file.h"
 #include "golden/samples/samples.h"
 #include "support/human_skeleton.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
-const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
+const std::string kFrozen = test::source_folder() + "/tests/golden/v1/";
 
 struct Outcome {
   int exit_code = -1;
@@ -41,7 +42,7 @@ class KrokInfo : public testing::Test {
   }
 
   Outcome run(const std::string& arguments) const {
-    const std::string command = std::string(KROK_BIN_DIR) + "/krok-info " + arguments + " >'" +
+    const std::string command = test::tools_folder() + "/krok-info " + arguments + " >'" +
                                 path("out") + "' 2>'" + path("err") + "'";
     Outcome result;
     const int status = std::system(command.c_str());

@@ -8,6 +8,7 @@
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -34,7 +35,8 @@ class KrokKeys : public CliTest {
 
 TEST_F(KrokKeys, FindsTheSamplesKnownEvents) {
   ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
-  const json truth = json::parse(get(KROK_SOURCE_DIR "/samples/captures/walk.contacts.json"));
+  const json truth =
+      json::parse(get(test::source_folder() + "/samples/captures/walk.contacts.json"));
   std::size_t events = 0;
   for (const auto& [name, times] : truth["keytimes"].items()) {
     for (std::size_t i = 0; i < times.size(); ++i, ++events) {

@@ -8,11 +8,12 @@
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
-const std::string kTurn = KROK_SOURCE_DIR "/samples/captures/turn.bvh";
+const std::string kTurn = test::source_folder() + "/samples/captures/turn.bvh";
 
 class KrokPlot : public CliTest {
  protected:

@@ -12,6 +12,7 @@
 #include "formats/anim/anim.h"
 #include "samples/generator/rise.h"
 #include "samples/generator/walk.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -152,7 +153,7 @@ TEST_F(RagdollFiles, SavedBodiesGiveTheSameFall) {
   result({"walk.anim", "--at", "1s", "--duration", "1s", "--save-bodies", "bodies.glb", "-o",
           "a.anim"});
   const auto judged =
-      test::run({"/usr/bin/env", "node", KROK_SOURCE_DIR "/tests/golden/validate_gltf.mjs",
+      test::run({"/usr/bin/env", "node", test::source_folder() + "/tests/golden/validate_gltf.mjs",
                  path("bodies.glb")});
   EXPECT_EQ(judged.exit_code, 0) << judged.out << judged.err;
   refused({"walk.anim", "--bodies", "x.ragdoll.json", "--mass", "80kg", "-o", "c.anim"}, "--mass",

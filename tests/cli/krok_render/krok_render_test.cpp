@@ -3,6 +3,7 @@
 #include "cli/motion_fixture.h"
 #include "core/fed_program.h"
 #include "render/png.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -136,7 +137,7 @@ TEST_F(KrokRender, FilmsAreWhatTheirNamesSay) {
 
 TEST_F(KrokRender, WithoutFfmpegItSaysSoBeforeRendering) {
   const ToolRun run =
-      test::run({"/usr/bin/env", "PATH=/nowhere", std::string(KROK_BIN_DIR) + "/krok-render",
+      test::run({"/usr/bin/env", "PATH=/nowhere", test::tools_folder() + "/krok-render",
                  path("walk.anim"), "-o", path("w.mp4")});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_TRUE(has_code(run.err, "film-ffmpeg")) << run.err;
@@ -145,7 +146,7 @@ TEST_F(KrokRender, WithoutFfmpegItSaysSoBeforeRendering) {
   put("ffmpeg", "#!/bin/sh\necho no such codec >&2\nexit 3\n");
   std::filesystem::permissions(path("ffmpeg"), std::filesystem::perms::owner_all);
   const ToolRun broken = test::run({"/usr/bin/env", "PATH=" + folder_.string() + ":/usr/bin:/bin",
-                                    std::string(KROK_BIN_DIR) + "/krok-render", path("walk.anim"),
+                                    test::tools_folder() + "/krok-render", path("walk.anim"),
                                     "--body", "none", "--size", "96x64", "-o", path("w.mp4")});
   EXPECT_EQ(broken.exit_code, 2);
   EXPECT_TRUE(has_code(broken.err, "program-failed")) << broken.err;

@@ -16,6 +16,7 @@
 #include "support/human_skeleton.h"
 #include "support/skeleton_text.h"
 #include "support/test_scenes.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -373,7 +374,7 @@ TEST_F(KrokRetarget, ASecondRunGivesTheSameBytesWhateverTheThreads) {
 }
 
 TEST_F(KrokRetarget, CapturesAreTakenAsTheyAre) {
-  const std::string capture = KROK_SOURCE_DIR "/samples/captures/walk.bvh";
+  const std::string capture = test::source_folder() + "/samples/captures/walk.bvh";
   write("hero.model", test::tube_model(test::human_skeleton(1.2)));
   const auto run = retarget({capture, "--onto", "hero.model", "-o", "out.anim"});
   EXPECT_EQ(run.exit_code, 0) << run.err;

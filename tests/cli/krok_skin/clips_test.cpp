@@ -121,7 +121,7 @@ TEST_F(SkinClips, MeshesKeepTheirNames) {
 TEST_F(SkinClips, ClipsAreChosenByNameInImages) {
   tool("krok-skin", {"hero.character", "in.anim", "run.anim", "-o", "hero.glb"});
   const ToolRun first = tool("krok-plot", {"hero.glb", "--sheet", "a.png", "--moments", "1"});
-  EXPECT_THAT(first.err, AllOf(HasSubstr("0 (in), 1 (run)"), HasSubstr("[clip-first]")));
+  EXPECT_THAT(first.err, AllOf(HasSubstr("0 (in), 1 (run)"), HasSubstr("[clip-choice]")));
   const ToolRun run = tool("krok-plot", {"hero.glb", "--clip", "run", "--sheet", "b.png",
                                          "--moments", "0s,0.3s", "--json"});
   EXPECT_EQ(json::parse(run.out)["issues"].size(), 0U);

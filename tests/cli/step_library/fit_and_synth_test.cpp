@@ -9,6 +9,7 @@
 
 #include "cli/step_library/library_fixture.h"
 #include "formats/steps/steps.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -289,7 +290,7 @@ TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
 // nothing can be inserted. Exit code 0 alone would mean that the tolerance is met.
 TEST_F(StepLibrary, SaysWhyRefinementCouldNotGoOn) {
   for (int seed = 1; seed <= 8; ++seed) {
-    const ToolRun made = run({KROK_MAKE_WALK,
+    const ToolRun made = run({test::make_walk(),
                               "--steps",
                               "6",
                               "--step-length",

@@ -8,6 +8,7 @@
 
 #include "cli/fixture.h"
 #include "core/file.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 
@@ -22,9 +23,9 @@ class StepLibrary : public CliTest {
     }
   }
   void make_walk(const std::string& length, const std::string& rise) const {
-    const ToolRun made =
-        run({KROK_MAKE_WALK, "--steps", "4", "--step-length", length + "cm", "--rise", rise + "cm",
-             "--ground", "slope", "-q", "-o", path("walk_" + length + "_" + rise + ".bvh")});
+    const ToolRun made = run({test::make_walk(), "--steps", "4", "--step-length", length + "cm",
+                              "--rise", rise + "cm", "--ground", "slope", "-q", "-o",
+                              path("walk_" + length + "_" + rise + ".bvh")});
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   void describe(const std::string& more = R"("examples": [{"clip": "walk_*.bvh"}])") const {

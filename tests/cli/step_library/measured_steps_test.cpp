@@ -2,6 +2,7 @@
 // how good it is.
 
 #include "cli/step_library/library_fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -57,8 +58,8 @@ TEST_F(StepLibrary, DurationsAreExact) {
 
 TEST_F(StepLibrary, CellsOfATableMayHaveUnits) {
   for (const char* turn : {"0", "20"}) {
-    ASSERT_EQ(run({KROK_MAKE_WALK, "--steps", "4", "--turn", std::string(turn) + "deg", "-q", "-o",
-                   path(std::string("bend_") + turn + ".bvh")})
+    ASSERT_EQ(run({test::make_walk(), "--steps", "4", "--turn", std::string(turn) + "deg", "-q",
+                   "-o", path(std::string("bend_") + turn + ".bvh")})
                   .exit_code,
               0);
   }

@@ -3,6 +3,7 @@
 // pose lies.
 
 #include "cli/step_library/library_fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -17,7 +18,7 @@ class StepLibraryOfRig : public StepLibrary, public testing::WithParamInterface<
       for (const char* rise : {"-12", "0", "12"}) {
         const std::string name = std::string("walk_") + length + "_" + rise + ".bvh";
         const ToolRun made =
-            run({KROK_MAKE_WALK, "--rig", GetParam(), "--steps", "6", "--step-length",
+            run({test::make_walk(), "--rig", GetParam(), "--steps", "6", "--step-length",
                  std::string(length) + "cm", "--rise", std::string(rise) + "cm", "--ground",
                  "slope", "-q", "-o", path(name)});
         ASSERT_EQ(made.exit_code, 0) << made.err;

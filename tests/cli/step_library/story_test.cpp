@@ -12,24 +12,29 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "cli/made_once.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kStory = KROK_SOURCE_DIR "/samples/step_library/";
+const std::string kStory = test::source_folder() + "/samples/step_library/";
 
-class StepLibraryStory : public CliTest {
+class StepLibraryStory : public testing::Test {
  protected:
-  ToolRun story(const std::string& arguments) {
-    ToolOptions options;
-    options.folder = folder_.string();
-    options.timeout = 600;
-    return run({"/bin/sh", "-c",
-                "KROK_BIN='" KROK_BIN_DIR "' SAMPLES_BIN='" KROK_SAMPLES_BIN "' '" + kStory +
-                    "run.sh' " + arguments},
-               options);
+  // In "a folder", once for all tests.
+  static Made story() {
+    return made_once("step library", kStory, [](const fs::path& folder) {
+      ToolOptions options;
+      options.folder = folder.string();
+      options.timeout = 600;
+      return run({"/bin/sh", "-c",
+                  "KROK_BIN='" + test::tools_folder() + "' SAMPLES_BIN='" +
+                      test::sample_programs() + "' '" + kStory + "run.sh' 'a folder'"},
+                 options);
+    });
   }
   // The errors before and after of a parameter, from the lines of the refined libraries.
   static std::pair<double, double> printed(const std::string& text, int row) {
@@ -52,9 +57,9 @@ double largest(const json& actors, const char* name) {
 }
 
 TEST_F(StepLibraryStory, HoldsWhatItsReadmeTells) {
-  const ToolRun run = story("'a folder'");
+  const auto [folder, run] = story();
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const fs::path out = folder_ / "a folder";
+  const fs::path out = folder / "a folder";
   for (const char* made :
        {"walking.steps", "turning.steps", "step.anim", "step.keys.json", "step_right.anim",
         "bend.anim", "sheet/step_5.anim", "steps.png", "charts/errors.svg", "charts/weights.svg",
@@ -101,9 +106,10 @@ TEST_F(StepLibraryStory, HoldsWhatItsReadmeTells) {
 // as the best of all that was tried, and better than weights that reproduce each step; the page's
 // figures are those.
 TEST_F(StepLibraryStory, ChoosesWeightsForStepsThatContradictEachOther) {
-  const ToolRun run = story("out");
+  const auto [folder, run] = story();
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const json report = json::parse(text_of(folder_ / "out/fit_captured.json"))["result"];
+  const fs::path out = folder / "a folder";
+  const json report = json::parse(text_of(out / "fit_captured.json"))["result"];
   const json tried = report["clips_left_out"];
   EXPECT_GE(tried["examples"], 30);
   EXPECT_GE(tried["clips"], 8);
@@ -127,7 +133,7 @@ TEST_F(StepLibraryStory, ChoosesWeightsForStepsThatContradictEachOther) {
     EXPECT_NE(readme.find(text), std::string::npos) << "the page has no " << text;
   }
   // Consistent steps are reproduced.
-  const json exact = json::parse(text_of(folder_ / "out/fit.json"))["result"];
+  const json exact = json::parse(text_of(out / "fit.json"))["result"];
   EXPECT_EQ(exact["kernel"], "cubic");
   EXPECT_EQ(exact["smoothing"], 0);
 }
@@ -135,15 +141,17 @@ TEST_F(StepLibraryStory, ChoosesWeightsForStepsThatContradictEachOther) {
 // Published for a prototype of the method: 2 mm at 20 inserted points and 0.3 mm at 80 with two
 // parameters; 5 mm at 40, 1 mm and 0.1 degrees at 160 with three.
 TEST_F(StepLibraryStory, ErrorsAreWithinTheTargets) {
-  ASSERT_EQ(story("out").exit_code, 0);
-  const json two = json::parse(text_of(folder_ / "out/fit.json"))["result"];
+  const auto [folder, run] = story();
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const fs::path out = folder / "a folder";
+  const json two = json::parse(text_of(out / "fit.json"))["result"];
   EXPECT_LE(two["inserted"].get<int>(), 20);
   const json& two_last = two["polished"]["after"];
   for (const char* name : {"length", "height"}) EXPECT_LT(largest(two_last, name), 0.3e-3);
   EXPECT_GT(two_last["least_weight"].get<double>(), -0.15);
   EXPECT_LT(two_last["roughness"].get<double>(), 1.1 * two["before"]["roughness"].get<double>());
 
-  const json three = json::parse(text_of(folder_ / "out/fit_turns.json"))["result"];
+  const json three = json::parse(text_of(out / "fit_turns.json"))["result"];
   EXPECT_LE(three["inserted"].get<int>(), 160);
   const json& three_last = three["polished"]["after"];
   for (const char* name : {"length", "height"}) {

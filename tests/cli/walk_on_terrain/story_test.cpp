@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/story_test.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -47,12 +48,13 @@ TEST_F(WalkOnTerrain, HoldsWhatItsReadmeTells) {
       << "the page shows another line than the tool prints";
   // The prints that were planned are walked again when they are given back.
   const fs::path again = out / "again.anim";
-  const ToolRun walked = run({KROK_BIN_DIR "/krok-walk", "-q", (out / "walking.steps").string(),
-                              "--prints", (out / "prints.csv").string(), "--ground",
-                              (out / "hill.obj").string(), "-o", again.string()});
+  const ToolRun walked =
+      run({test::tools_folder() + "/krok-walk", "-q", (out / "walking.steps").string(), "--prints",
+           (out / "prints.csv").string(), "--ground", (out / "hill.obj").string(), "-o",
+           again.string()});
   EXPECT_EQ(walked.exit_code, 0) << walked.err;
-  EXPECT_EQ(run({KROK_BIN_DIR "/krok-diff", "-q", (out / "hill.anim").string(), again.string(),
-                 "--tolerance", "0.1mm"})
+  EXPECT_EQ(run({test::tools_folder() + "/krok-diff", "-q", (out / "hill.anim").string(),
+                 again.string(), "--tolerance", "0.1mm"})
                 .exit_code,
             0);
 }

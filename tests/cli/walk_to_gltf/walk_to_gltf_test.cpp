@@ -7,8 +7,10 @@
 #include <fstream>
 
 #include "cli/fixture.h"
+#include "cli/made_once.h"
 #include "support/folder_test.h"
 #include "support/run_tool.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -16,6 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 
 using test::ToolRun;
+
+const std::string kStory = test::source_folder() + "/samples/walk_to_gltf";
 
 class WalkToGltf : public test::FolderTest {
  protected:
@@ -26,14 +30,28 @@ class WalkToGltf : public test::FolderTest {
     return test::run({"/bin/sh", "-c", command}, options);
   }
   ToolRun demo(const std::string& arguments) {
-    return shell("KROK_BIN='" KROK_BIN_DIR "' '" KROK_SOURCE_DIR "/samples/walk_to_gltf/run.sh' " +
-                 arguments);
+    return shell("KROK_BIN='" + test::tools_folder() + "' '" + test::source_folder() +
+                 "/samples/walk_to_gltf/run.sh' " + arguments);
   }
-  void expect_result(const std::string& base) {
+  // A long capture whose name, and its folder's, have spaces, once for all tests.
+  static Made long_capture() {
+    return made_once("long capture", kStory, [](const fs::path& folder) {
+      test::ToolOptions options;
+      options.folder = folder.string();
+      options.timeout = 600;
+      return test::run(
+          {"/bin/sh", "-c",
+           "'" + test::make_walk() + "' --steps 40 --rate 120 -o 'my long take.bvh' && KROK_BIN='" +
+               test::tools_folder() + "' '" + kStory +
+               "/run.sh' 'my long take.bvh' 'a folder/of mine'"},
+          options);
+    });
+  }
+  static void expect_result(const fs::path& base) {
     for (const char* end :
          {".anim", ".model", "_rig.glb", "_clip.glb", "_motion.csv", "_motion.bvh", "_motion.glb",
           ".html", ".svg", "_sheet.png", "_strip.png"}) {
-      const fs::path result = folder_ / (base + end);
+      const fs::path result = base.string() + end;
       ASSERT_TRUE(fs::exists(result)) << result;
       EXPECT_GT(fs::file_size(result), 1000u) << result;
     }
@@ -41,7 +59,7 @@ class WalkToGltf : public test::FolderTest {
 
   // Every glTF below `base` before the Khronos validator, which `make test` installs.
   void expect_valid(const std::string& base) {
-    const fs::path tests = fs::path(KROK_SOURCE_DIR) / "tests";
+    const fs::path tests = fs::path(test::source_folder()) / "tests";
     if (!fs::exists(tests / "node_modules/gltf-validator")) {
       GTEST_SKIP() << "skipped: no gltf-validator in " << tests << "; run npm ci there";
     }
@@ -54,27 +72,24 @@ class WalkToGltf : public test::FolderTest {
 TEST_F(WalkToGltf, RunsOnTheSampleWithoutArguments) {
   const ToolRun run = demo("");
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  expect_result("out/demo/walk");
+  expect_result(folder_ / "out/demo/walk");
   EXPECT_THAT(run.out, HasSubstr("out/demo/walk_rig.glb"));
   EXPECT_THAT(run.out, HasSubstr("the same within 0.01 mm"));
   expect_valid("out/demo/walk");
 }
 
 TEST_F(WalkToGltf, TakesNamesWithSpaces) {
-  fs::copy(fs::path(KROK_SOURCE_DIR) / "samples/captures/turn.bvh", folder_ / "my first take.bvh");
-  const ToolRun run = demo("'my first take.bvh' 'a folder/of mine'");
+  const auto [folder, run] = long_capture();
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  expect_result("a folder/of mine/my first take");
+  expect_result(folder / "a folder/of mine/my long take");
 }
 
 TEST_F(WalkToGltf, ALongCaptureIsBakedInPartAndSaysSo) {
-  ASSERT_EQ(shell("'" KROK_MAKE_WALK "' --steps 40 --rate 120 -o long.bvh").exit_code, 0);
-  const ToolRun run = demo("long.bvh result");
+  const auto [folder, run] = long_capture();
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  expect_result("result/long");
   EXPECT_THAT(run.out, HasSubstr("too long to be baked whole: the first"));
-  EXPECT_TRUE(fs::exists(folder_ / "result/long_rig_part.glb"));
-  expect_valid("result/long");
+  EXPECT_TRUE(fs::exists(folder / "a folder/of mine/my long take_rig_part.glb"));
+  expect_valid("'" + (folder / "a folder/of mine/my long take").string() + "'");
 }
 
 TEST_F(WalkToGltf, TheFirstFailureEndsItWithTheToolsOwnMessage) {
@@ -96,7 +111,8 @@ TEST_F(WalkToGltf, TheFirstFailureEndsItWithTheToolsOwnMessage) {
 }
 
 TEST_F(WalkToGltf, ToolsThatAreNotThereAreNamed) {
-  const ToolRun run = shell("KROK_BIN=/nowhere '" KROK_SOURCE_DIR "/samples/walk_to_gltf/run.sh'");
+  const ToolRun run =
+      shell("KROK_BIN=/nowhere '" + test::source_folder() + "/samples/walk_to_gltf/run.sh'");
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("no krok-import in /nowhere"));
   EXPECT_THAT(run.err, HasSubstr("hint:"));

@@ -7,9 +7,11 @@
 #include <sstream>
 #include <string>
 
+#include "support/this_build.h"
+
 namespace krok::test {
 
-inline const std::string kBvhFolder = std::string(KROK_CORPUS_DIR) + "/bvh/";
+inline const std::string kBvhFolder = test::corpus_folder() + "/bvh/";
 
 inline std::string text_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

@@ -17,6 +17,7 @@
 #include "formats/anim/anim.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/bvh/bvh_writer.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -31,7 +32,7 @@ struct Listed {
 
 // The corpus's list, with the reading of position channels that it found.
 std::vector<Listed> listed_files() {
-  std::ifstream index(std::string(KROK_CORPUS_DIR) + "/INDEX.tsv");
+  std::ifstream index(test::corpus_folder() + "/INDEX.tsv");
   std::vector<Listed> files;
   std::string line;
   std::getline(index, line);
@@ -126,10 +127,9 @@ TEST_F(Corpus, ImportedFilesAgreeWithIndependentKinematics) {
   for (const Listed& file : files_) {
     SCOPED_TRACE(file.path);
     const std::string path = kBvhFolder + file.path;
-    const std::string command = std::string(KROK_BIN_DIR) + "/krok-import -q --unit m --up y " +
-                                "--forward z --positions " +
-                                (file.additive ? "additive" : "absolute") + " '" + path + "' -o '" +
-                                out + "'";
+    const std::string command =
+        test::tools_folder() + "/krok-import -q --unit m --up y " + "--forward z --positions " +
+        (file.additive ? "additive" : "absolute") + " '" + path + "' -o '" + out + "'";
     ASSERT_EQ(std::system(command.c_str()), 0);
     const auto bytes = InputFile::open(out);
     ASSERT_TRUE(bytes.ok());

@@ -16,6 +16,7 @@
 #include "core/numbers.h"
 #include "formats/bvh/bvh_reader.h"
 #include "roles/roles.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -30,7 +31,7 @@ std::vector<std::string> split(const std::string& line, char separator) {
 }
 
 std::vector<Facts> read_facts() {
-  std::ifstream in(std::string(KROK_SOURCE_DIR) + "/tests/corpus/bvh/facts.tsv");
+  std::ifstream in(test::source_folder() + "/tests/corpus/bvh/facts.tsv");
   std::vector<Facts> facts;
   std::vector<std::string> columns;
   for (std::string line; std::getline(in, line);) {
@@ -99,7 +100,7 @@ void expect_facts(const Facts& facts, const bvh::Capture& capture) {
 }
 
 TEST(Facts, AreWhatTheReaderFinds) {
-  const std::string folder = std::string(KROK_CORPUS_DIR) + "/bvh/";
+  const std::string folder = test::corpus_folder() + "/bvh/";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: no corpus at " << folder;
   const auto all = read_facts();
   ASSERT_EQ(all.size(), 89u);

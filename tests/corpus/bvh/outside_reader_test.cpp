@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "support/run_tool.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 class OutsideReader : public testing::Test {
  protected:
   void SetUp() override {
-    const fs::path three = fs::path(KROK_SOURCE_DIR) / "tests/node_modules/three";
+    const fs::path three = fs::path(test::source_folder()) / "tests/node_modules/three";
     if (!fs::exists(three)) {
       GTEST_SKIP() << "skipped: no " << three.string() << "; run npm ci in tests/";
     }
@@ -32,7 +33,7 @@ class OutsideReader : public testing::Test {
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   static void tool(const std::string& name, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), std::string(KROK_BIN_DIR) + "/" + name);
+    arguments.insert(arguments.begin(), test::tools_folder() + "/" + name);
     const auto done = test::run(arguments);
     ASSERT_EQ(done.exit_code, 0) << done.err;
   }
@@ -47,8 +48,8 @@ class OutsideReader : public testing::Test {
 
   test::ToolRun judge(const std::string& metres, const std::string& tolerance) const {
     return test::run({"/usr/bin/env", "node",
-                      std::string(KROK_SOURCE_DIR) + "/tests/corpus/bvh/three_bvh.mjs",
-                      path("a.bvh"), path("a.csv"), metres, tolerance});
+                      test::source_folder() + "/tests/corpus/bvh/three_bvh.mjs", path("a.bvh"),
+                      path("a.csv"), metres, tolerance});
   }
 
   fs::path folder_;
@@ -91,7 +92,7 @@ TEST_F(OutsideReader, SeesTheSameMotionInEveryOrderAndUnit) {
 }
 
 TEST_F(OutsideReader, SeesTheSameMotionInCaptures) {
-  const fs::path corpus = fs::path(KROK_CORPUS_DIR) / "bvh";
+  const fs::path corpus = fs::path(test::corpus_folder()) / "bvh";
   if (!fs::exists(corpus)) GTEST_SKIP() << "skipped: no corpus at " << corpus.string();
   for (const char* name : {"ipi_smartbody/Center.bvh", "pybvh/bvh_test3.bvh",
                            "makehuman/zombieWalk1.bvh", "iclone_cmu/002_03.bvh"}) {

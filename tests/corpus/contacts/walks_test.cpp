@@ -16,6 +16,7 @@
 #include "contacts/gait_metrics.h"
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -27,9 +28,10 @@ struct Found {
 };
 
 // Skips the test where there is no corpus.
-#define FIND_OR_SKIP(found, name)                                                                  \
-  const std::string path = std::string(KROK_CORPUS_DIR) + "/bvh/" + (name);                        \
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: no corpus at " << KROK_CORPUS_DIR; \
+#define FIND_OR_SKIP(found, name)                                      \
+  const std::string path = test::corpus_folder() + "/bvh/" + (name);   \
+  if (!std::filesystem::exists(path))                                  \
+    GTEST_SKIP() << "skipped: no corpus at " << test::corpus_folder(); \
   const Found found = find(path)
 
 Found find(const std::string& path) {

@@ -9,13 +9,14 @@
 
 #include "cli/fixture.h"
 #include "support/image.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
 using nlohmann::json;
 
-const std::string kCorpus = KROK_CORPUS_DIR "/bvh/";
+const std::string kCorpus = test::corpus_folder() + "/bvh/";
 
 struct Capture {
   const char* exporter;

@@ -9,6 +9,7 @@
 #include "formats/character/character_format.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/material/material_format.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> characters() {
   std::vector<fs::path> found;
-  const fs::path folder = KROK_CORPUS_DIR "/other";
+  const fs::path folder = test::corpus_folder() + "/other";
   if (!fs::exists(folder)) return found;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const std::string end = extension(entry.path().string());
@@ -32,7 +33,7 @@ class CharactersOfTheCorpus : public CliTest {};
 
 TEST_F(CharactersOfTheCorpus, KeepTheirMaterialsAndTextures) {
   const auto files = characters();
-  if (files.empty()) GTEST_SKIP() << "skipped: no corpus in " << KROK_CORPUS_DIR;
+  if (files.empty()) GTEST_SKIP() << "skipped: no corpus in " << test::corpus_folder();
   int textures_compared = 0;
   for (const fs::path& file : files) {
     SCOPED_TRACE(file);

@@ -14,11 +14,12 @@
 #include "formats/assimp/assimp_reader.h"
 #include "formats/gltf/gltf_reader.h"
 #include "nodes/evaluate.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
 
-const std::filesystem::path kFolder = std::string(KROK_CORPUS_DIR) + "/other";
+const std::filesystem::path kFolder = test::corpus_folder() + "/other";
 
 struct SceneFacts {
   const char* path;

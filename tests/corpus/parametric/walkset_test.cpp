@@ -22,11 +22,12 @@
 #include "parametric/synthesise.h"
 #include "parametric/thin_out.h"
 #include "rbf/weight_solver.h"
+#include "support/this_build.h"
 
 namespace krok::parametric {
 namespace {
 
-const std::string kFolder = std::string(KROK_CORPUS_DIR) + "/bvh/walkset_cmu07/";
+const std::string kFolder = test::corpus_folder() + "/bvh/walkset_cmu07/";
 
 struct Captured {
   Clip clip;

@@ -10,6 +10,7 @@
 #include "corpus/bvh/corpus_files.h"
 #include "formats/bvh/bvh_reader.h"
 #include "support/planted_measures.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -18,8 +19,9 @@ class PlantedCaptures : public testing::TestWithParam<const char*> {};
 
 TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   const std::string name = GetParam();
-  const std::string path = KROK_CORPUS_DIR "/bvh/" + name;
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: no corpus at " << KROK_CORPUS_DIR;
+  const std::string path = test::corpus_folder() + "/bvh/" + name;
+  if (!std::filesystem::exists(path))
+    GTEST_SKIP() << "skipped: no corpus at " << test::corpus_folder();
   const auto file = InputFile::open(path);
   ASSERT_TRUE(file.ok());
   const auto capture = bvh::read(file->text(), path, {});

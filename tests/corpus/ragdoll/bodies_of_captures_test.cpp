@@ -14,6 +14,7 @@
 #include "ik/anatomical_limits.h"
 #include "ragdoll/simulate.h"
 #include "retarget/stance.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -51,7 +52,7 @@ class BodiesOfCaptures : public testing::TestWithParam<std::size_t> {};
 
 TEST_P(BodiesOfCaptures, FillTheMeshAndFall) {
   const auto files = captures();
-  if (files.empty()) GTEST_SKIP() << "skipped: no corpus at " << KROK_CORPUS_DIR;
+  if (files.empty()) GTEST_SKIP() << "skipped: no corpus at " << test::corpus_folder();
   int persons = 0;
   std::set<std::vector<std::string>> known;
   for (std::size_t i = GetParam(); i < files.size(); i += kParts) {

@@ -12,6 +12,7 @@
 #include "formats/bvh/bvh_reader.h"
 #include "ik/anatomical_limits.h"
 #include "ragdoll/simulate.h"
+#include "support/this_build.h"
 
 namespace krok::ragdoll {
 namespace {
@@ -20,8 +21,9 @@ class PoweredCaptures : public testing::TestWithParam<const char*> {};
 
 // Within 5 degrees RMS with the root animated, and also where it is only held to the motion.
 TEST_P(PoweredCaptures, FollowTheMotion) {
-  const std::string path = std::string(KROK_CORPUS_DIR "/bvh/") + GetParam();
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: no corpus at " << KROK_CORPUS_DIR;
+  const std::string path = std::string(test::corpus_folder() + "/bvh/") + GetParam();
+  if (!std::filesystem::exists(path))
+    GTEST_SKIP() << "skipped: no corpus at " << test::corpus_folder();
   const auto file = InputFile::open(path);
   ASSERT_TRUE(file.ok());
   const auto capture = bvh::read(file->text(), path, {});

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
 #include "roles/roles.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -125,8 +126,9 @@ class CorpusRoles : public testing::TestWithParam<Truth> {};
 
 TEST_P(CorpusRoles, AreWhatAPersonSees) {
   const Truth& truth = GetParam();
-  const std::string path = std::string(KROK_CORPUS_DIR) + "/bvh/" + truth.file;
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "skipped: no corpus at " << KROK_CORPUS_DIR;
+  const std::string path = test::corpus_folder() + "/bvh/" + truth.file;
+  if (!std::filesystem::exists(path))
+    GTEST_SKIP() << "skipped: no corpus at " << test::corpus_folder();
   const auto file = InputFile::open(path);
   ASSERT_TRUE(file.ok());
   const auto capture = bvh::read(file->text(), path, {});

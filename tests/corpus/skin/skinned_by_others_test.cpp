@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cli/fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -21,14 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::string kPython = "/usr/bin/python3";  // Debian's, for it is Debian's numpy
-const std::string kScripts = KROK_SOURCE_DIR "/tests/corpus/skin/";
-const fs::path kTests = KROK_SOURCE_DIR "/tests";
-const fs::path kFbx = KROK_CORPUS_DIR "/other/assimp/animation_with_skeleton.fbx";
+const std::string kScripts = test::source_folder() + "/tests/corpus/skin/";
+const fs::path kTests = test::source_folder() + "/tests";
+const fs::path kFbx = test::corpus_folder() + "/other/assimp/animation_with_skeleton.fbx";
 
 // The glTF files of the corpus that have a skin and an animation.
 std::vector<fs::path> skinned_gltf() {
   std::vector<fs::path> result;
-  const fs::path folder = KROK_CORPUS_DIR "/other";
+  const fs::path folder = test::corpus_folder() + "/other";
   if (!fs::exists(folder)) return result;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".gltf" && entry.path().extension() != ".glb") continue;

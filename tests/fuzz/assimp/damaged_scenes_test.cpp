@@ -13,6 +13,7 @@
 #include <random>
 #include <sstream>
 
+#include "support/this_build.h"
 #include "unit/assimp/reading.h"
 #include "unit/assimp/sample_files.h"
 
@@ -21,11 +22,7 @@ namespace {
 
 using namespace test;
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kRounds = 8;
-#else
-constexpr std::size_t kRounds = 28;
-#endif
+const std::size_t kRounds = sanitized() ? 8 : 28;
 
 class DamagedScenes : public testing::Test {
  protected:
@@ -122,7 +119,7 @@ TEST_F(DamagedScenes, Md5Motion) {
 }
 
 TEST_F(DamagedScenes, FilesOfTheCorpus) {
-  const std::filesystem::path corpus = std::string(KROK_CORPUS_DIR) + "/other/assimp";
+  const std::filesystem::path corpus = test::corpus_folder() + "/other/assimp";
   if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "skipped: no corpus at " << corpus;
   for (const char* name : {"huesitos.fbx", "SimpleCube.md5mesh"}) {
     std::ifstream in(corpus / name, std::ios::binary);

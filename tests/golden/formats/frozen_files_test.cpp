@@ -18,6 +18,7 @@
 #include "golden/samples/samples.h"
 #include "rbf/weight_evaluator.h"
 #include "skin/skin.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -25,7 +26,7 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAreArray;
 
-const std::string kFrozen = KROK_SOURCE_DIR "/tests/golden/v1/";
+const std::string kFrozen = test::source_folder() + "/tests/golden/v1/";
 constexpr auto kXyzw = OrientationEncoding::xyzw;
 
 InputFile open(const std::string& path) {
@@ -240,7 +241,7 @@ bool has_python() {
 
 // What a script of this folder prints as JSON; null where it fails.
 json run_python(const std::string& call) {
-  const std::string command = "python3 '" KROK_SOURCE_DIR "'/tests/golden/" + call;
+  const std::string command = "python3 '" + test::source_folder() + "'/tests/golden/" + call;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return {};
   std::string text;

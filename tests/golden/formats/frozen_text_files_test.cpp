@@ -7,12 +7,13 @@
 #include "formats/character/character_format.h"
 #include "formats/material/material_format.h"
 #include "golden/samples/samples.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
 
 std::string frozen(const std::string& name) {
-  const auto file = InputFile::open(KROK_SOURCE_DIR "/tests/golden/v1/" + name);
+  const auto file = InputFile::open(test::source_folder() + "/tests/golden/v1/" + name);
   EXPECT_TRUE(file.ok()) << name;
   return file ? std::string(file->text()) : std::string();
 }

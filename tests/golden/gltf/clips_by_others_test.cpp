@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/judged_test.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -49,8 +50,8 @@ TEST_F(ClipsByOthers, BlenderImportsThemByName) {
   for (const auto& [file, tolerance] : {std::pair("hero.glb", "0.01"), {"small.glb", "0.2"}}) {
     const ToolRun run =
         test::run({kBlender, "-b", "--factory-startup", "--python-exit-code", "3", "--python",
-                   KROK_SOURCE_DIR "/tests/golden/blender_clips.py", "--", path(file), tolerance,
-                   "walk=" + path("walk.csv"), "other=" + path("other.csv")});
+                   test::source_folder() + "/tests/golden/blender_clips.py", "--", path(file),
+                   tolerance, "walk=" + path("walk.csv"), "other=" + path("other.csv")});
     EXPECT_EQ(run.exit_code, 0) << file << "\n" << run.out << run.err;
     EXPECT_THAT(run.out, HasSubstr("OK"));
   }

@@ -13,6 +13,7 @@
 
 #include "formats/anim/anim.h"
 #include "formats/model/model_format.h"
+#include "support/this_build.h"
 
 // Tests that write files and have others judge them: the Khronos validator and three.js.
 
@@ -36,7 +37,7 @@ inline Outcome run_command(const std::string& command, const fs::path& folder) {
 class GltfJudges : public testing::Test {
  protected:
   void SetUp() override {
-    const fs::path modules = fs::path(KROK_SOURCE_DIR) / "tests/node_modules";
+    const fs::path modules = fs::path(test::source_folder()) / "tests/node_modules";
     for (const char* needed : {"gltf-validator", "three"}) {
       if (!fs::exists(modules / needed)) {
         GTEST_SKIP() << "skipped: no " << (modules / needed).string() << "; run npm ci in tests/";
@@ -85,13 +86,14 @@ class GltfJudges : public testing::Test {
 
   void tool(const std::string& arguments, int exit_code = 0) {
     const auto outcome = run_command(
-        fmt::format("cd '{}' && {}/{}", folder_.string(), KROK_BIN_DIR, arguments), folder_);
+        fmt::format("cd '{}' && {}/{}", folder_.string(), test::tools_folder(), arguments),
+        folder_);
     EXPECT_EQ(outcome.exit_code, exit_code) << arguments << "\n" << outcome.text;
   }
   void judge(const std::string& script, const std::string& arguments, int exit_code = 0) {
     const auto outcome =
         run_command(fmt::format("cd '{}' && node '{}/tests/golden/{}' {}", folder_.string(),
-                                KROK_SOURCE_DIR, script, arguments),
+                                test::source_folder(), script, arguments),
                     folder_);
     EXPECT_EQ(outcome.exit_code, exit_code) << arguments << "\n" << outcome.text;
   }

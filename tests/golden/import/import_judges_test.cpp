@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
@@ -16,7 +17,7 @@ class ImportJudges : public CliTest {
  protected:
   void SetUp() override {
     const std::filesystem::path modules =
-        std::filesystem::path(KROK_SOURCE_DIR) / "tests/node_modules/three";
+        std::filesystem::path(test::source_folder()) / "tests/node_modules/three";
     if (!std::filesystem::exists(modules)) {
       GTEST_SKIP() << "skipped: no " << modules.string() << "; run npm ci in tests/";
     }
@@ -27,15 +28,15 @@ class ImportJudges : public CliTest {
     ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   }
   void judge(const std::string& a, const std::string& b, const std::string& tolerance) const {
-    const ToolRun run_it = run({"/usr/bin/env", "node",
-                                std::string(KROK_SOURCE_DIR) + "/tests/golden/three_bounds.mjs", a,
-                                "--against", b, "--every", "1", "--tolerance", tolerance});
+    const ToolRun run_it =
+        run({"/usr/bin/env", "node", test::source_folder() + "/tests/golden/three_bounds.mjs", a,
+             "--against", b, "--every", "1", "--tolerance", tolerance});
     EXPECT_EQ(run_it.exit_code, 0) << run_it.out << run_it.err;
   }
 };
 
 TEST_F(ImportJudges, AForeignRigShowsTheSameVertices) {
-  const std::string source = std::string(KROK_CORPUS_DIR) + "/other/gltf/rigged_simple.gltf";
+  const std::string source = test::corpus_folder() + "/other/gltf/rigged_simple.gltf";
   if (!std::filesystem::exists(source)) GTEST_SKIP() << "skipped: no corpus at " << source;
   tool("krok-import", {source, "-o", path("a.anim"), "--model", path("a.model")});
   tool("krok-skin", {path("a.model"), path("a.anim"), "--as", "rig", "-o", path("a.glb")});

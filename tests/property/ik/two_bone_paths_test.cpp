@@ -10,12 +10,12 @@
 
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
-#include "support/sanitized.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
 
-constexpr int kPaths = test::kSanitized ? 20'000 : 1'000'000;
+const int kPaths = test::sanitized() ? 20'000 : 1'000'000;
 constexpr int kSteps = 3;       // of a path
 constexpr double kStep = 1e-4;  // of the chain's length, and radians of the pole
 constexpr double kAllowed = 1.5;

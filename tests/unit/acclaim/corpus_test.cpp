@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "formats/acclaim/acclaim_reader.h"
+#include "support/this_build.h"
 #include "unit/acclaim/naive_kinematics.h"
 
 namespace {
@@ -19,7 +20,7 @@ using krok::acclaim::Capture;
 constexpr double kCmuUnit = 0.0254 / 0.45;
 
 std::string corpus(const std::string& path) {
-  return std::string(KROK_CORPUS_DIR) + "/" + path;
+  return krok::test::corpus_folder() + "/" + path;
 }
 
 std::string content(const std::string& path) {

@@ -364,6 +364,15 @@ TEST(Fbx, PivotsAndPreAndPostRotations) {
   }
 }
 
+// Also of joints that no mesh is weighted to and no curve moves, of which Assimp keeps no mark.
+TEST(Fbx, JointsAreKnown) {
+  const Folder folder;
+  const auto scene = read_or_fail(folder.add("body.fbx", FbxSample().text()));
+  for (const nodes::Node& node : scene.nodes) {
+    EXPECT_EQ(node.bone, node.name == "Hips" || node.name == "Spine") << node.name;
+  }
+}
+
 TEST(Fbx, LayersThatAreBlendedAreWarnedOf) {
   std::string text = FbxSample().text();
   const Folder folder;

@@ -8,14 +8,14 @@
 #include <thread>
 
 #include "formats/assimp/scene_transfer.h"
-#include "support/sanitized.h"
+#include "support/this_build.h"
 #include "unit/assimp/reading.h"
 #include "unit/assimp/sample_files.h"
 
 namespace krok {
 namespace {
 
-using test::kSanitized;
+using test::sanitized;
 
 using namespace test;
 
@@ -46,7 +46,7 @@ TEST(Isolation, TimeIsLimited) {
 }
 
 TEST(Isolation, MemoryIsLimited) {
-  if (kSanitized) GTEST_SKIP() << "skipped: sanitizers reserve more address space than any limit";
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers reserve more address space than any limit";
   // SMD: the number of a bone decides how many there are.
   const Folder folder;
   const std::string path = folder.add(
@@ -100,7 +100,7 @@ TEST(Isolation, SeveralThreadsReadAtOnce) {
   const assimp::ReadOptions patient = {.most_seconds = 200};
   std::atomic<int> right{0};
   std::vector<std::thread> threads;
-  for (int t = 0; t < (kSanitized ? 2 : 6); ++t) {
+  for (int t = 0; t < (sanitized() ? 2 : 6); ++t) {
     threads.emplace_back([&] {
       for (int i = 0; i < 5; ++i) {
         if (assimp::read_file(good, patient).ok()) ++right;
@@ -146,7 +146,7 @@ TEST(Transfer, EveryTruncationIsAnError) {
 TEST(Transfer, ChangedBytesNeverBreakWhatASceneIs) {
   const auto bytes = packed_sample();
   std::size_t survived = 0;
-  for (std::size_t i = 0; i < bytes.size(); i += kSanitized ? 7 : 1) {
+  for (std::size_t i = 0; i < bytes.size(); i += sanitized() ? 7 : 1) {
     for (const int value : {0x00, 0x01, 0x7F, 0xFF}) {
       auto changed = bytes;
       changed[i] = static_cast<std::byte>(value);

@@ -9,6 +9,7 @@
 
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
+#include "support/this_build.h"
 #include "unit/body/mesh_checks.h"
 
 namespace krok {
@@ -30,14 +31,10 @@ std::string joint_names(std::string_view text) {
 }
 
 // A body takes ten times as long under a sanitizer, so there every fifth skeleton has to do.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::size_t kEvery = 5;
-#else
-constexpr std::size_t kEvery = 1;
-#endif
+const std::size_t kEvery = test::sanitized() ? 5 : 1;
 
 TEST(CorpusBody, EverySkeletonGetsAValidBody) {
-  const fs::path root = fs::path(KROK_CORPUS_DIR) / "bvh";
+  const fs::path root = fs::path(test::corpus_folder()) / "bvh";
   if (!fs::exists(root)) GTEST_SKIP() << "skipped: no corpus at " << root;
   std::set<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(root)) {

@@ -61,6 +61,59 @@ TEST(GeneralBody, OfADog) {
   EXPECT_GT(leg, 0.005);
 }
 
+// A dog over a root on the ground, with IK targets in front of it and eyes: none of them shows.
+TEST(GeneralBody, HasNoFleshOnBonesThatAreNoPartOfIt) {
+  Skeleton rig;
+  const int root = add(rig, "reference", -1, Vec3::Zero());
+  const Skeleton own = dog();
+  for (int j = 0; j < own.joint_count(); ++j) {
+    const auto at = static_cast<std::size_t>(j);
+    rig.add(own.names[at], own.parents[at] < 0 ? root : own.parents[at] + 1, own.reference[at],
+            own.end_sites[at] != 0);
+  }
+  const int target = add(rig, "PoleTargetL", root, {0.1, 0.5, 1.5});
+  add(rig, "PoleTargetL_end", target, {0, 0.2, 0}, true);
+  add(rig, "IK_foot", root, {0.3, 0, 0.9});
+  for (const double side : {1.0, -1.0}) {
+    add(rig, side > 0 ? "eye_l" : "eye_r", rig.find("skull"), {0.12 * side, 0.12, 0.05});
+  }
+  const Body with = build_low(rig), without = build_low(own);
+  expect_valid_body(with);
+  EXPECT_NEAR(with.volume / without.volume, 1, 0.02);
+  const auto size = [](const Body& body) {
+    Eigen::AlignedBox3f box;
+    for (const Vec3f& p : body.model.positions) box.extend(p);
+    return box;
+  };
+  EXPECT_LT((size(with).min() - size(without).min()).norm(), 0.01);
+  EXPECT_LT((size(with).max() - size(without).max()).norm(), 0.01);
+}
+
+// A tree's trunk and a crane's post stand on the ground, too, and are what the rest hangs on.
+TEST(GeneralBody, HasFleshOnTrunksAndPosts) {
+  const auto thickness_at = [](const Body& body, float height) {
+    float widest = 0;
+    for (const Vec3f& p : body.model.positions) {
+      if (std::abs(p.y() - height) < 0.1f && std::abs(p.x()) < 0.5f)
+        widest = std::max(widest, std::abs(p.z()));
+    }
+    return widest;
+  };
+  Skeleton tree, crane;
+  const int crown = add(tree, "crown", add(tree, "trunk", -1, Vec3::Zero()), {0, 2, 0});
+  for (const double x : {-1.0, 0.0, 1.0})
+    add(tree, "twig" + std::to_string(x), crown, {x, 0.8, 0}, true);
+  const int post = add(crane, "post", add(crane, "base", -1, Vec3::Zero()), {0, 2, 0});
+  const int wrist = add(crane, "wrist", add(crane, "boom", post, {2, 0, 0}), {0, -1.5, 0});
+  for (const double z : {-0.2, 0.2})
+    add(crane, "grip" + std::to_string(z), wrist, {0, -0.4, z}, true);
+  for (const Skeleton& skeleton : {tree, crane}) {
+    const Body body = build_low(skeleton);
+    expect_valid_body(body);
+    EXPECT_GT(thickness_at(body, 1), 0.03f);
+  }
+}
+
 TEST(GeneralBody, OfAChainBelongsToTheJointAtEachBonesStart) {
   Skeleton chain;
   int parent = -1;

@@ -124,6 +124,41 @@ TEST(HumanBody, IsNearlyMirrorSymmetric) {
   EXPECT_LT(sum / static_cast<double>(tried), 0.0005);
 }
 
+// Hands with fingers and, at the wrist, joints of bones without length, as props have them: these
+// hold no flesh, and no vertex beyond the middle follows a joint of the other side.
+TEST(HumanBody, IsBoundToBonesOfItsOwnSide) {
+  Skeleton skeleton = human_skeleton();
+  for (const auto& [side, sign] : {std::pair("Left", 1.0), std::pair("Right", -1.0)}) {
+    const int hand = skeleton.find(std::string(side) + "Hand");
+    const auto add = [&](const std::string& name, int parent, const Vec3& offset,
+                         bool end = false) {
+      Transform place = skeleton.reference[static_cast<std::size_t>(parent)];
+      place.position += Vec3(sign * offset.x(), offset.y(), offset.z());
+      return skeleton.add(side + name, parent, place, end);
+    };
+    for (int finger = 0; finger < 4; ++finger) {
+      const std::string name = "HandFinger" + std::to_string(finger);
+      const int knuckle = add(name, hand, {0.09, 0, 0.03 - 0.02 * finger});
+      add(name + "_end", add(name + "b", knuckle, {0.03, 0, 0}), {0.025, 0, 0}, true);
+    }
+    const int still = add("Hand_x", hand, Vec3::Zero());
+    add("Hand_x_end", still, Vec3::Zero(), true);
+  }
+  const Body body = build(skeleton, {.detail = BodyDetail::low});
+  expect_valid_body(body);
+  ASSERT_TRUE(body.human);
+  for (std::size_t v = 0; v < body.model.positions.size(); ++v) {
+    double other = 0;
+    const float x = body.model.positions[v].x();
+    for (std::size_t k = 4 * v; k < 4 * v + 4; ++k) {
+      const std::string& name = skeleton.names[body.model.influence_joints[k]];
+      if (name.starts_with(x > 0 ? "Right" : "Left")) other += body.model.influence_weights[k];
+      EXPECT_EQ(name.find("Hand_x"), std::string::npos);
+    }
+    EXPECT_LT(other, std::abs(x) > 0.1f ? 1e-6 : 0.5) << body.model.positions[v].transpose();
+  }
+}
+
 TEST(HumanBody, EachPartFollowsItsOwnJoint) {
   const Skeleton skeleton = human_skeleton();
   const Model& model = usual().model;

@@ -80,15 +80,30 @@ TEST(FarValues, APositionBeyondSenseIsToldOnceWithItsPlace) {
 }
 
 TEST(FarValues, WhatMayBeIsNotToldOf) {
-  // A dancer's 2,700 turns; a figure at the far side of a town.
-  const Capture capture =
-      read_ok(damaged_rows(50, {{7, 3, "972000"}, {8, 4, "-999999"}, {9, 0, "29000"}}));
+  // A dancer's 2,700 turns, far from the origin of a town; a jump of 300 m.
+  std::vector<Damage> town = {{7, 3, "972000"}, {8, 4, "-999999"}};
+  for (int row = 0; row < 50; ++row) town.push_back({row, 0, "29000"});
+  EXPECT_EQ(warnings(read_ok(damaged_rows(50, town))), 0);
+  const Capture capture = read_ok(damaged_rows(50, {{9, 0, "300"}}));
   EXPECT_EQ(warnings(capture), 0);
+}
+
+// Six frames a kilometre away, in a capture that is read as a stream otherwise.
+TEST(FarValues, ARootAwayForSomeFramesIsReported) {
+  std::vector<Damage> away;
+  for (int row = 140; row < 146; ++row) away.push_back({row, 0, "1460"});
+  const Capture capture = read_ok(damaged_rows(200, away));
+  EXPECT_EQ(warnings(capture), 1);
+  const Diagnostic* told = find(capture.diagnostics, "bvh-far-position");
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(told->frame, 140);
+  EXPECT_NE(told->message.find("for most of the time; 6 frames"), std::string::npos)
+      << told->message;
 }
 
 TEST(FarValues, FarIsMeasuredByTheSkeleton) {
   // 30 km is much for an arm of 3 m, as 40 km would not be for one of 5 m.
-  std::string large = damaged_rows(5, {{2, 0, "40000"}});
+  std::string large = damaged_rows(5, {{1, 0, "40000"}, {2, 0, "40000"}, {3, 0, "40000"}});
   EXPECT_EQ(warnings(read_ok(large)), 1);
   large.replace(large.find("OFFSET 2 0 0"), 12, "OFFSET 4 0 0");
   EXPECT_EQ(warnings(read_ok(large)), 0);

@@ -180,7 +180,6 @@ TEST(Hierarchy, FaultsAreToldWithTheirPlace) {
       {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\n}\n" + rest, "bvh-syntax", 6, 1},
       {"HIERARCHY\nROOT a\n{\nEnd Site\n{\nJOINT b\n{\n}\n}\n}\n" + rest, "bvh-syntax", 6, 1},
       {"HIERARCHY\n" + rest, "bvh-syntax", 2, 1},
-      {"HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\n}\n", "bvh-no-motion", 6, 1},
       {kArm + "MOTION\n", "bvh-syntax", 17, 1},
       {kArm + "MOTION\nFrames: x\n", "bvh-frame-count", 17, 9},
       {kArm + "MOTION\nFrames: -1\nFrame Time: 1\n", "bvh-frame-count", 17, 9},
@@ -196,6 +195,18 @@ TEST(Hierarchy, FaultsAreToldWithTheirPlace) {
     EXPECT_EQ(error.where.column, broken.column) << broken.text << "\n" << error.message;
     EXPECT_EQ(error.where.file, "test.bvh");
   }
+}
+
+TEST(Hierarchy, WithoutMotionIsASkeleton) {
+  const Capture capture = read_ok(kArm);
+  EXPECT_EQ(capture.clip.frame_count(), 0);
+  EXPECT_EQ(capture.clip.skeleton.names, read_ok(kArm + motion(0, "")).clip.skeleton.names);
+  const Diagnostic* warning = find(capture.diagnostics, "bvh-no-motion");
+  ASSERT_NE(warning, nullptr);
+  EXPECT_EQ(warning->severity, Severity::warning);
+  ReadOptions strict = plain_options();
+  strict.strictness = Strictness::strict;
+  EXPECT_EQ(read_error(kArm, strict).code, "bvh-no-motion");
 }
 
 TEST(Hierarchy, FaultsThatAHandCanMendComeWithAHint) {

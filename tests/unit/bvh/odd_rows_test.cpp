@@ -89,6 +89,35 @@ TEST(OddRows, TheHintTellsWhatDividesValues) {
   EXPECT_NE(hint("-nan(ind)").find("--repair"), std::string::npos);
 }
 
+// As exporters write that put no blank before a sign. In one row only, in all, and in an OFFSET;
+// the other rows have as many words as the hierarchy has channels.
+TEST(OddRows, NumbersWithoutABlankBetweenAreNamedAndSplitByRepair) {
+  const std::string good = "0 1.5 0 0 0 0 0 0 0\n", glued = "0 1.5 0.0-7.5094748 0 0 0 1e-1-2\n";
+  for (const auto& [rows, line] : std::vector<std::pair<std::string, int>>{
+           {glued + glued, 19}, {good + glued, 20}, {glued + good, 19}}) {
+    for (const Strictness strictness : {Strictness::normal, Strictness::strict}) {
+      const Error error = read_error(kArm + motion(2, rows), with(strictness));
+      EXPECT_EQ(error.code, "bvh-number");
+      EXPECT_EQ(error.where.line, line);
+      EXPECT_EQ(error.where.column, 7);
+      EXPECT_NE(error.message.find("'0.0-7.5094748' is 2 numbers"), std::string::npos);
+      EXPECT_NE(error.hint.find("--repair splits"), std::string::npos);
+    }
+  }
+  std::string hierarchy = kArm;
+  hierarchy.replace(hierarchy.find("OFFSET 1 0 0"), 12, "OFFSET 1-2.5 0");
+  EXPECT_NE(read_error(hierarchy + motion(1, good)).hint.find("--repair splits"),
+            std::string::npos);
+  const Capture capture = read_ok(hierarchy + motion(2, glued + glued), with(Strictness::repair));
+  const Capture apart = read_ok(kArm + motion(1, "0 1.5 0.0 -7.5094748 0 0 0 1e-1 -2\n"));
+  EXPECT_EQ(capture.clip.skeleton.reference[1].position, Vec3(1, -2.5, 0));
+  EXPECT_EQ(capture.clip.frame_count(), 2);
+  ASSERT_EQ(capture.repairs.size(), 1u);
+  EXPECT_EQ(find(capture.diagnostics, "bvh-repair")->where.line, 8);
+  EXPECT_TRUE(capture.clip.frame_orientations(1)[1].coeffs() ==
+              apart.clip.frame_orientations(0)[1].coeffs());
+}
+
 TEST(OddRows, DecimalCommasAreReadByRepair) {
   const std::string rows = "0,5 0 0 0 0 0 0 0 0\n1,5 1 1 1 1 1 1 1 -1,25E+1\n";
   std::string hierarchy = kArm;

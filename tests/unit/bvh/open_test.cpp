@@ -7,6 +7,7 @@
 #include "core/file.h"
 #include "formats/bvh/motion_rows.h"
 #include "scene/frame_source.h"
+#include "support/this_build.h"
 #include "unit/bvh/bvh_text.h"
 
 namespace krok::bvh {
@@ -136,7 +137,7 @@ TEST(Open, TellsWhichTextIsDone) {
 }
 
 TEST(Open, GivesTheFramesOfReadForTheCorpus) {
-  const std::string corpus = std::string(KROK_CORPUS_DIR) + "/bvh";
+  const std::string corpus = test::corpus_folder() + "/bvh";
   if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "skipped: no corpus at " << corpus;
   int files = 0, opened = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(corpus)) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "math/quaternion.h"
+#include "support/this_build.h"
 #include "unit/bvh/bvh_text.h"
 
 namespace krok::bvh {
@@ -160,7 +161,7 @@ TEST(ReferenceAxes, TheHipsFaceWhereTheActorDoesThoughTheReferencePoseFolds) {
 TEST(ReferenceAxes, CapturesStandUprightAndFollowTheirBones) {
   int found = 0;
   for (const char* name : {"bvh_test3", "bvh_test4"}) {
-    const std::string path = std::string(KROK_CORPUS_DIR) + "/bvh/pybvh/" + name + ".bvh";
+    const std::string path = test::corpus_folder() + "/bvh/pybvh/" + name + ".bvh";
     if (!std::filesystem::exists(path)) continue;
     ++found;
     std::ifstream in(path, std::ios::binary);
@@ -175,7 +176,7 @@ TEST(ReferenceAxes, CapturesStandUprightAndFollowTheirBones) {
     EXPECT_EQ(again.up, Direction::plus_y) << name;
     EXPECT_EQ(again.forward, Direction::plus_z) << name;
   }
-  if (found == 0) GTEST_SKIP() << "skipped: no corpus at " << KROK_CORPUS_DIR;
+  if (found == 0) GTEST_SKIP() << "skipped: no corpus at " << test::corpus_folder();
 }
 
 }  // namespace

@@ -166,7 +166,10 @@ TEST(BvhWriter, RootOffsetIsZeroUnlessAskedFor) {
   EXPECT_NE(written(clip).find("OFFSET 0.000000 0.000000 0.000000"), std::string::npos);
   WriteOptions options;
   options.root_offset = true;
-  const Clip back = read_back(written(clip, options)).clip;
+  const Capture capture = read_back(written(clip, options));
+  EXPECT_EQ(capture.positions.choice, "absolute");
+  EXPECT_EQ(capture.positions.confidence, Confidence::certain);
+  const Clip back = capture.clip;
   EXPECT_TRUE(back.skeleton.reference[0].position.isApprox(Vec3(0, 1, 0)));
   expect_same_motion(clip, back);
 }

@@ -101,6 +101,7 @@ TEST(Exporter, ItsAxesReplaceGuesses) {
   EXPECT_EQ(lying.up, Direction::plus_y);
   EXPECT_EQ(lying.forward, Direction::plus_z);
   EXPECT_EQ(lying.forward_confidence, Confidence::likely);
+  EXPECT_EQ(lying.up_confidence, Confidence::guess);  // what the take shows is another axis
   apply_exporter(known, converted);
   EXPECT_EQ(converted.up, Direction::plus_z);
   EXPECT_EQ(converted.forward, Direction::minus_y);

@@ -140,6 +140,76 @@ TEST(Joints, WithoutSkinsWhatMoves) {
   EXPECT_EQ(choose(scene).names, (Names{"World", "Hips", "Spine", "Head", "Head_end"}));
 }
 
+nodes::Animation turning(const std::vector<int>& nodes) {
+  nodes::Animation animation;
+  for (const int node : nodes) {
+    add_channel(animation, node, nodes::Path::rotation, 4, {0, 1}, {0, 0, 0, 1, 0, 0, 1, 0});
+  }
+  return animation;
+}
+
+// Legs that no skin has, under a parent that none has either.
+TEST(Joints, AnimatedPartsBesideTheSkinAndTheirParentAreTaken) {
+  nodes::Scene scene;
+  const int root = add_node(scene, "Scene", -1);
+  const int body = add_node(scene, "Body", root);
+  const int spine = add_node(scene, "Spine", body);
+  const int leg = add_node(scene, "Leg", body);
+  const int foot = add_node(scene, "Foot", leg);
+  const int ball = add_mesh(scene, "Ball", root, -1);
+  add_node(scene, "Anchor", root);
+  add_mesh(scene, "Skin", root, add_skin(scene, "Skin", {spine}));
+  EXPECT_EQ(choose(scene).names, (Names{"Spine"}));
+  scene.animations.push_back(turning({body, leg, foot, ball}));
+  const Chosen chosen = choose(scene);
+  EXPECT_EQ(chosen.names, (Names{"Body", "Spine", "Leg", "Foot"}));
+  Names left_out;
+  for (const Diagnostic& one : chosen.diagnostics) {
+    if (one.code == "scene-left-out") left_out.push_back(one.message);
+  }
+  ASSERT_EQ(left_out.size(), 2u);
+  EXPECT_NE(left_out[0].find("1 animated node outside of the skeleton, left out: node 5 (Ball)"),
+            std::string::npos)
+      << left_out[0];
+  EXPECT_NE(left_out[1].find("(Anchor)"), std::string::npos) << left_out[1];
+  // A constant channel, as exporters write for every object, moves nothing.
+  for (nodes::Channel& channel : scene.animations[0].channels) {
+    channel.values = shared<float>({0, 0, 0, 1, 0, 0, 0, -1});
+  }
+  EXPECT_EQ(choose(scene).names, (Names{"Spine"}));
+}
+
+TEST(Joints, RootsThatStandStillAreTakenByNameOrAsTheFileCallsThem) {
+  nodes::Scene scene;
+  const int world = add_node(scene, "World", -1);
+  const int first = add_node(scene, "mixamorig:Hips", world);
+  const int spine = add_node(scene, "Spine", first);
+  add_node(scene, "Leg", first);
+  scene.animations.push_back(turning({spine}));
+  EXPECT_EQ(choose(scene).names, (Names{"mixamorig:Hips", "Spine", "Leg"}));
+  scene.nodes[static_cast<std::size_t>(first)].name = "Base";
+  EXPECT_EQ(choose(scene).names, (Names{"Spine"}));
+  scene.nodes[static_cast<std::size_t>(first)].bone = true;
+  EXPECT_EQ(choose(scene).names, (Names{"Base", "Spine", "Leg"}));
+}
+
+TEST(Joints, AnotherSkeletonUnderTheSameNodeIsNoPart) {
+  nodes::Scene scene;
+  const int stage = add_node(scene, "Stage", -1);
+  const int man = add_node(scene, "Man", stage);
+  const int arm = add_node(scene, "Arm", man);
+  const int cat = add_node(scene, "Cat", stage);
+  const int tail = add_node(scene, "Tail_end", cat);
+  const int cat_skin = add_skin(scene, "CatSkin", {cat});
+  add_mesh(scene, "ManMesh", stage, add_skin(scene, "ManSkin", {man, arm}));
+  add_mesh(scene, "CatMesh", stage, cat_skin);
+  scene.animations.push_back(turning({stage, man, cat, tail}));
+  const Chosen chosen = choose(scene);
+  EXPECT_EQ(chosen.names, (Names{"Man", "Arm"}));
+  EXPECT_TRUE(has_code(chosen.diagnostics, "scene-skeletons"));
+  EXPECT_FALSE(has_code(chosen.diagnostics, "scene-left-out"));
+}
+
 TEST(Joints, NothingToTakeIsAnError) {
   nodes::Scene scene;
   EXPECT_EQ(choose(scene).error, "scene-skeleton");

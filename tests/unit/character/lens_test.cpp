@@ -45,6 +45,17 @@ TEST(ImportedLens, IsThatOfItsMomentAndLinearBetween) {
   EXPECT_NEAR(lens_of(zooming(true), 0, 20)[1], 0.7f, 1e-6f);
 }
 
+TEST(ImportedLens, ChannelsOfAnAnimationGoFirst) {
+  nodes::Scene scene = zooming(true);
+  nodes::Animation lens;
+  add_channel(lens, 0, nodes::Path::field_of_view, 1, {0, 2}, {0.5f, 0.7f});
+  scene.animations[0].lenses = lens.channels;
+  const auto at_10 = lens_of(scene, 0, 10);
+  ASSERT_EQ(at_10.size(), 21u);  // as long as its keys
+  EXPECT_NEAR(at_10[5], 0.55f, 1e-6f);
+  EXPECT_EQ(at_10[20], 0.7f);
+}
+
 TEST(ImportedLens, StandsStillWithoutAnimationAndIsNoneOfAnOrthographicCamera) {
   EXPECT_EQ(lens_of(zooming(true), -1, 10)[2], 0.8f);
   EXPECT_NEAR(lens_of(zooming(false), 0, 10)[1], kPi / 4, 1e-6);

@@ -46,6 +46,15 @@ TEST(GaitPlausibility, WhatNobodyDoesIsTold) {
   EXPECT_TRUE(is_told(steady(1.1, 0.95, 0.95), 1.3));
 }
 
+// Missing events only lower the cadence.
+TEST(GaitPlausibility, TooFastHintsAtTheFrameRate) {
+  const auto hint = [](double cycle, double stance) {
+    return check_gait(gait_metrics(steady(cycle, stance, stance)), 1.3, 0.86).at(0).hint;
+  };
+  EXPECT_NE(hint(0.28, 0.6).find("--fps"), std::string::npos);
+  EXPECT_EQ(hint(1.1, 0.95).find("--fps"), std::string::npos);
+}
+
 // Found in the motion as well as given.
 TEST(GaitPlausibility, GeneratedWalksAreNotQuestioned) {
   for (const double length : {0.35, 0.7, 0.9}) {

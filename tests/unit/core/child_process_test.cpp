@@ -19,12 +19,12 @@
 #include <stdexcept>
 #include <thread>
 
-#include "support/sanitized.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
 
-using test::kSanitized;
+using test::sanitized;
 
 using Bytes = std::vector<std::byte>;
 
@@ -135,7 +135,7 @@ TEST_F(ChildProcess, AHangIsStoppedInTime) {
 }
 
 TEST_F(ChildProcess, MemoryIsBounded) {
-  if (kSanitized) GTEST_SKIP() << "skipped: sanitizers reserve more address space than any limit";
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers reserve more address space than any limit";
   ChildLimits limits;
   limits.memory_bytes = 64 << 20;
   const auto eat = [](std::size_t size) {
@@ -176,8 +176,8 @@ TEST_F(ChildProcess, NothingCanBeOpenedAndNothingIsPrinted) {
   const auto report = run_in_child([&] {
     std::string found;
     // Sanitizers must be able to.
-    if (!kSanitized && ::open("/dev/null", O_RDONLY) >= 0) found += "file ";
-    if (!kSanitized && socket(AF_INET, SOCK_STREAM, 0) >= 0) found += "socket ";
+    if (!sanitized() && ::open("/dev/null", O_RDONLY) >= 0) found += "file ";
+    if (!sanitized() && socket(AF_INET, SOCK_STREAM, 0) >= 0) found += "socket ";
     if (::write(ends[1], "x", 1) == 1) found += "pipe ";
     char byte = 0;
     if (::read(STDIN_FILENO, &byte, 1) != 0) found += "input ";
@@ -231,7 +231,7 @@ TEST_F(ChildProcess, WorksWhereChildrenAreIgnored) {
 
 TEST_F(ChildProcess, ManyThreadsAtOnce) {
   // Under a sanitizer a lock of its allocator may be taken while another thread forks.
-  constexpr int kThreads = kSanitized ? 2 : 8;
+  const int kThreads = sanitized() ? 2 : 8;
   std::atomic<int> right{0};
   std::vector<std::thread> threads;
   for (int t = 0; t < kThreads; ++t) {

@@ -15,12 +15,12 @@
 
 #include "core/hash.h"
 #include "support/folder_test.h"
-#include "support/sanitized.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
 
-using test::kSanitized;
+using test::sanitized;
 
 namespace fs = std::filesystem;
 
@@ -336,7 +336,7 @@ class SignalTest : public FileTest, public testing::WithParamInterface<int> {
 };
 
 TEST_P(SignalTest, RemovesTheTemporaryFileAndKeepsTheOldOne) {
-  if (kSanitized && (GetParam() == SIGBUS || GetParam() == SIGSEGV)) {
+  if (sanitized() && (GetParam() == SIGBUS || GetParam() == SIGSEGV)) {
     GTEST_SKIP() << "skipped: a sanitizer answers to this signal itself";
   }
   put("out", "old");

@@ -18,10 +18,12 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
 
+// ThreadSanitizer, with which the tests, too, are compiled.
 #if defined(__SANITIZE_THREAD__)
 constexpr bool kWatchesThreads = true;
 #else
@@ -30,11 +32,7 @@ constexpr bool kWatchesThreads = false;
 
 // The sanitizers' own allocators, unlike the system's, are not made ready for a fork: a child of a
 // process whose other threads allocate at that moment finds a lock that nobody will open.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kForksAmidThreads = false;
-#else
-constexpr bool kForksAmidThreads = true;
-#endif
+const bool kForksAmidThreads = !test::sanitized();
 
 // Of this process, sleeping ones too.
 std::size_t threads_alive() {

@@ -1,6 +1,7 @@
 // If these fail, work is skipped or done twice, or results and errors depend on the number of
 // threads.
 #include "core/parallel.h"
+#include "support/this_build.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -129,9 +130,7 @@ TEST(OnThreads, WhatIsThrownIsThrownOnOnceAllAreDone) {
 
 // Of a thousand threads the system gives only a few here, for each takes 8 MB of address space.
 TEST(OnThreads, GoesOnWithTheThreadsThatThereAre) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
-#endif
+  if (test::sanitized()) GTEST_SKIP() << "skipped: a sanitizer's memory has no limits";
   const pid_t child = fork();
   if (child == 0) {
     rlimit limit{std::size_t{300} << 20, std::size_t{300} << 20};

@@ -8,6 +8,7 @@
 
 #include "formats/gltf/gltf_reader.h"
 #include "nodes/evaluate.h"
+#include "support/this_build.h"
 
 namespace krok {
 namespace {
@@ -21,7 +22,7 @@ struct Known {
 };
 
 TEST(GltfCorpus, VerticesStandWhereThreeJsPutsThem) {
-  const std::string corpus = std::string(KROK_CORPUS_DIR) + "/other/";
+  const std::string corpus = test::corpus_folder() + "/other/";
   if (!std::filesystem::exists(corpus)) GTEST_SKIP() << "skipped: no corpus at " << corpus;
   const Known known[] = {
       {"gltf/rigged_simple.gltf",

@@ -383,6 +383,38 @@ TEST(GltfReader, ChannelsOfUnknownPathsAreLeftAsideWithAWarning) {
   EXPECT_EQ(asset.diagnostics[0].code, "gltf-animation-path");
 }
 
+TEST(GltfReader, AnimationPointersToNodesAndFieldsOfViewAreRead) {
+  GlbBuilder builder = test::rig();
+  const int angles = builder.add(std::vector<float>{0.8f, 0.4f, 0.6f}, "SCALAR");
+  auto& animation = builder.json["animations"][0];
+  const int times = animation["samplers"][0]["input"];
+  animation["samplers"].push_back({{"input", times}, {"output", angles}});
+  const auto pointer = [](int sampler, const char* to) {
+    return nlohmann::ordered_json{
+        {"sampler", sampler},
+        {"target",
+         {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", to}}}}}}}};
+  };
+  animation["channels"] = {
+      pointer(0, "/nodes/2/rotation"), pointer(1, "/cameras/0/perspective/yfov"),
+      pointer(1, "/materials/0/emissiveFactor"), pointer(1, "/cameras/7/perspective/yfov"),
+      pointer(9, "/cameras/0/perspective/yfov")};
+  builder.json["cameras"] = {
+      {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 1}}}}};
+  builder.json["extensionsRequired"] = {"KHR_animation_pointer"};
+  const nodes::Scene asset = read_good(builder);
+  ASSERT_EQ(asset.animations.at(0).channels.size(), 1u);
+  EXPECT_EQ(asset.animations[0].channels[0].node, 2);
+  EXPECT_EQ(asset.animations[0].channels[0].path, nodes::Path::rotation);
+  ASSERT_EQ(asset.animations[0].lenses.size(), 1u);
+  EXPECT_EQ(asset.animations[0].lenses[0].node, 0);
+  EXPECT_THAT(*asset.animations[0].lenses[0].values, ElementsAre(0.8f, 0.4f, 0.6f));
+  ASSERT_EQ(asset.diagnostics.size(), 1u);
+  EXPECT_EQ(asset.diagnostics[0].code, "gltf-animation-pointer");
+  EXPECT_NE(asset.diagnostics[0].message.find("3 animated properties are left out: /materials/0"),
+            std::string::npos);
+}
+
 TEST(GltfReader, ImagesMaterialsAndExtrasDoNotMatter) {
   GlbBuilder builder = test::square();
   builder.json["images"] = {{{"bufferView", 77}}, {{"uri", "nowhere.png"}}, 5};

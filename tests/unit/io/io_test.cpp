@@ -10,6 +10,7 @@
 #include "formats/io/formats.h"
 #include "formats/io/open_scene.h"
 #include "support/folder_test.h"
+#include "support/this_build.h"
 #include "unit/acclaim/small_files.h"
 
 namespace krok::io {
@@ -31,7 +32,7 @@ class RecordedInputs : public PlainInputs {
 };
 
 std::string capture() {
-  return KROK_SOURCE_DIR "/samples/captures/walk.bvh";
+  return test::source_folder() + "/samples/captures/walk.bvh";
 }
 
 using OpenFiles = test::FolderTest;

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "support/this_build.h"
 #include "support/told_mistakes.h"
 
 namespace krok::keys {
@@ -211,7 +212,7 @@ TEST(Keys, DamagedTextIsAnError) {
 
 // The schema file must name every key that is written, and be JSON itself.
 TEST(Keys, TheSchemaKnowsWhatIsWritten) {
-  std::ifstream file(KROK_SOURCE_DIR "/formats/keys/keys.schema.json");
+  std::ifstream file(test::source_folder() + "/formats/keys/keys.schema.json");
   const auto schema = nlohmann::json::parse(file);
   Sidecar sidecar{walk(), {1, 1}, {1, 1, 1}, true, 2};
   const auto written = nlohmann::json::parse(write_sidecar(sidecar, feet()));

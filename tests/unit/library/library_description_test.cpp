@@ -10,6 +10,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "support/this_build.h"
 #include "support/told_mistakes.h"
 
 namespace krok::library {
@@ -116,7 +117,7 @@ TEST(LibraryDescription, WhatIsLeftOutHasItsDefault) {
 
 // The page must not promise what the reader refuses.
 TEST(LibraryDescription, ReadsTheExamplesOfItsPage) {
-  std::ifstream file(KROK_SOURCE_DIR "/formats/library/SPEC.md");
+  std::ifstream file(test::source_folder() + "/formats/library/SPEC.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   int examples = 0;
   for (std::size_t at = page.find("```json"); at != std::string::npos;

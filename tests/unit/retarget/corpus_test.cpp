@@ -8,6 +8,7 @@
 
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
+#include "support/this_build.h"
 #include "tests/unit/retarget/actors.h"
 
 namespace krok {
@@ -15,7 +16,7 @@ namespace {
 
 using namespace test;
 
-const std::string kCorpus = KROK_CORPUS_DIR "/bvh/";
+const std::string kCorpus = test::corpus_folder() + "/bvh/";
 
 Clip load(const std::string& name) {
   const auto file = InputFile::open(kCorpus + name);

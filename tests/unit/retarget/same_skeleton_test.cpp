@@ -107,6 +107,27 @@ TEST(SameSkeleton, OneLongerBoneMakesAnotherSkeleton) {
   EXPECT_FALSE(retarget::same_skeleton(skeleton, renamed).has_value());
 }
 
+// Under other names only if the bones show it and no role says otherwise.
+TEST(SameSkeleton, UnderOtherNamesItMustBeThatOfTheSameBody) {
+  const Skeleton skeleton = with_turned_joints(human_skeleton());
+  Skeleton renamed = skeleton;
+  for (std::string& name : renamed.names) name = "other:" + name;
+  const RoleMap roles = find_roles(skeleton);
+  const auto same = [&](const Skeleton& target, const RoleMap& target_roles) {
+    return retarget::same_body(skeleton, roles, target, target_roles);
+  };
+  ASSERT_TRUE(same(renamed, roles).has_value());
+  EXPECT_NEAR(same(scaled(renamed, 0.5), roles)->scale, 0.5, 1e-9);
+  RoleMap sides = roles;
+  std::swap(sides.roles[at(skeleton.find("LeftArm"))], sides.roles[at(skeleton.find("RightArm"))]);
+  EXPECT_FALSE(same(renamed, sides).has_value());
+  Skeleton twisted = renamed;
+  Quat& end = twisted.reference[at(skeleton.find("LeftHand"))].orientation;
+  end = end * from_rotation_vector(Vec3(0.01, 0, 0));
+  EXPECT_FALSE(same(twisted, roles).has_value());
+  EXPECT_FALSE(same(renamed, RoleMap{std::vector<Role>(roles.roles.size()), {}}).has_value());
+}
+
 TEST(SameSkeleton, SkeletonsWithoutLengthsAreTheSameAtScaleOne) {
   Skeleton point;
   point.add("a", -1, {});

@@ -81,6 +81,40 @@ TEST(Retarget, TheReferencePoseDoesNotMatter) {
   }
 }
 
+// Collars that are raised with the arms are turned back with them: the shoulders stay as wide as
+// they are. A collar that points elsewhere under arms that do not is build, and stays.
+TEST(Retarget, CollarsRiseWithArmsOnly) {
+  const Skeleton skeleton = human_skeleton();
+  const Clip clip = lively_clip(skeleton);
+  const auto collars = [&](double up, double arms) {
+    Skeleton result = skeleton;
+    for (const auto& [side, sign] : {std::pair("Left", 1.0), std::pair("Right", -1.0)}) {
+      const auto turn = [sign](double angle) {
+        return from_rotation_vector(Vec3(0, 0, sign * angle));
+      };
+      result = posed(result, std::string(side) + "Shoulder", turn(up));
+      result = posed(result, std::string(side) + "Arm", turn(arms - up));
+    }
+    return result;
+  };
+  const auto width = [](const Clip& of, const std::string& prefix) {
+    const auto positions = of.frame_positions(3);
+    return static_cast<double>((positions[at(of.skeleton.find(prefix + "LeftArm"))] -
+                                positions[at(of.skeleton.find(prefix + "RightArm"))])
+                                   .norm());
+  };
+  const Skeleton raised = with_other_axes(collars(1.4, 1.5), 8);
+  const auto onto = transfer(clip, raised);
+  ASSERT_TRUE(onto.ok());
+  EXPECT_LT(largest_distance(onto->clip, clip), 1e-5);
+  const auto back = transfer(onto->clip, skeleton);
+  ASSERT_TRUE(back.ok());
+  EXPECT_LT(largest_distance(back->clip, clip), 1e-5);
+  const auto build = transfer(clip, with_other_axes(collars(1.0, 0), 8));
+  ASSERT_TRUE(build.ok());
+  EXPECT_LT(width(build->clip, "rig:"), 0.8 * width(clip, ""));
+}
+
 // Random reference poses of all limbs, on both sides of the transfer.
 TEST(Retarget, RandomReferencePosesGiveTheSameMotion) {
   std::mt19937 random(7);

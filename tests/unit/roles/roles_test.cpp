@@ -90,6 +90,34 @@ TEST(Roles, AHandThatHangsUnderNoArmIsNotTheHand) {
   EXPECT_EQ(joint_name(skeleton, map, Role::left_hand), "LeftHand2");
 }
 
+// Names that give a leg one joint short: the one above, a helper by its name, has a thigh's length.
+// Where its bone is short (CMU's) or the leg is whole without it, it stays a helper.
+TEST(Roles, AHelperWithTheLengthOfAThighIsOne) {
+  Skeleton skeleton = skeleton_from_text(
+      "Hips .LHipJoint ..LLeg ...LFoot .RHipJoint ..RLeg ...RFoot .Spine ..LArm ...LForeArm "
+      "....LHand ..RArm ...RForeArm ....RHand ..Head");
+  const auto lengths = [&](double thigh) {
+    for (const char side : {'L', 'R'}) {
+      const Vec3 hip(side == 'L' ? 0.1 : -0.1, 0.9, 0), knee = hip - Vec3(0, thigh, 0);
+      const auto place = [&](const char* name) -> Vec3& {
+        return skeleton.reference[static_cast<std::size_t>(skeleton.find(side + std::string(name)))]
+            .position;
+      };
+      place("HipJoint") = hip;
+      place("Leg") = knee;
+      place("Foot") = knee - Vec3(0, 0.4, 0);
+    }
+  };
+  lengths(0.42);
+  const RoleMap map = find_roles(skeleton);
+  EXPECT_TRUE(map.humanoid) << table(skeleton, map);
+  EXPECT_EQ(joint_name(skeleton, map, Role::left_upper_leg), "LHipJoint");
+  EXPECT_EQ(joint_name(skeleton, map, Role::left_lower_leg), "LLeg");
+  EXPECT_EQ(joint_name(skeleton, map, Role::right_foot), "RFoot");
+  lengths(0.05);
+  EXPECT_EQ(joint_name(skeleton, find_roles(skeleton), Role::left_upper_leg), "-");
+}
+
 TEST(Roles, PartOfAPersonKeepsItsRoles) {
   const Skeleton skeleton = skeleton_from_text(
       "Hips .Spine ..Neck ...Head ..LeftShoulder ...LeftArm ....LeftForeArm .....LeftHand "

@@ -2,6 +2,7 @@
 // where a mistake is.
 
 #include "formats/timeline/timeline_file.h"
+#include "support/this_build.h"
 
 #include <gtest/gtest.h>
 
@@ -40,7 +41,7 @@ std::string layers(const std::string& list) {
 }
 
 TEST(TimelineFile, TheSpecificationsExampleReads) {
-  std::ifstream file(KROK_SOURCE_DIR "/formats/timeline/SPEC.md");
+  std::ifstream file(test::source_folder() + "/formats/timeline/SPEC.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   const std::size_t begin = page.find("```json\n") + 8;
   const Document document = good(page.substr(begin, page.find("```", begin) - begin));

@@ -16,6 +16,7 @@
 #include "samples/generator/noise.h"
 #include "samples/generator/walk.h"
 #include "support/test_scenes.h"
+#include "support/this_build.h"
 #include "tracks/sample_keys.h"
 
 namespace krok {
@@ -268,7 +269,7 @@ TEST(ReduceKeys, RefusesTolerancesThatAreNone) {
 }
 
 TEST(ReduceKeys, OfRealCapturesLeavesAFewKeysWithinTheTolerance) {
-  const std::filesystem::path root = std::filesystem::path(KROK_CORPUS_DIR) / "bvh";
+  const std::filesystem::path root = std::filesystem::path(test::corpus_folder()) / "bvh";
   if (!std::filesystem::exists(root)) GTEST_SKIP() << "skipped: no corpus at " << root;
   // At a millimetre: the keys that stay, at most, of a hundred.
   for (const auto& [name, most] : {std::pair{"pybvh/cmu_12_01_walk.bvh", 16.0},

@@ -16,13 +16,14 @@
 #include "core/numbers.h"
 #include "formats/bvh/bvh_reader.h"
 #include "measure.h"
+#include "support/this_build.h"
 
 namespace krok::samples {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kCaptures = fs::path(KROK_SOURCE_DIR) / "samples/captures";
+const fs::path kCaptures = fs::path(krok::test::source_folder()) / "samples/captures";
 const char* const kNames[] = {"walk", "stairs", "turn"};
 
 std::string text_of(const fs::path& path) {
@@ -40,7 +41,7 @@ class Captures : public testing::Test {
 
   void make_anew(const std::string& sub_folder) {
     const std::string command =
-        "MAKE_WALK='" KROK_MAKE_WALK "' '" + (kCaptures / "make.sh").string() + "' '" +
+        "MAKE_WALK='" + krok::test::make_walk() + "' '" + (kCaptures / "make.sh").string() + "' '" +
         (folder_ / sub_folder).string() + "' 2> '" + (folder_ / "log.txt").string() + "'";
     const int status = std::system(command.c_str());
     ASSERT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << text_of(folder_ / "log.txt");
