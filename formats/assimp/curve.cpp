@@ -114,16 +114,28 @@ void measure(const Frames& frames, CurveSet& set) {
     });
   }
   for (const auto& turns : set.rotations) {
+    const auto check = [&](double a, double b) {
+      const double edge = beside(b);  // off the jumps of other axes
+      if (b - a < std::max(4 * edge, frames.rate > 0 ? 0.0 : frames.longest)) return;
+      const Quat begin = rotation(set, turns, a + edge), end = rotation(set, turns, b - edge);
+      for (const double part : parts) {
+        const Quat own = rotation(set, turns, std::lerp(a, b, part));
+        const double off = angle_between(slerp(begin, end, part), own) / kRadiansPerDegree;
+        set.result.degrees = std::max(set.result.degrees, off);
+      }
+    };
     for (const Turn& turn : turns) {
       if (turn.curve < 0) continue;
       frames.for_each(set.curves[static_cast<std::size_t>(turn.curve)], [&](double a, double b) {
-        const double edge = beside(b);  // off the jumps of other axes
-        const Quat begin = rotation(set, turns, a + edge), end = rotation(set, turns, b - edge);
-        for (const double part : parts) {
-          const Quat own = rotation(set, turns, std::lerp(a, b, part));
-          const double off = angle_between(slerp(begin, end, part), own) / kRadiansPerDegree;
-          set.result.degrees = std::max(set.result.degrees, off);
+        std::vector<double> times = {a, b};  // and the keys of the other axes
+        for (const Turn& other : turns) {
+          if (other.curve < 0) continue;
+          const auto& keys = set.curves[static_cast<std::size_t>(other.curve)].times;
+          times.insert(times.end(), std::ranges::upper_bound(keys, a),
+                       std::ranges::lower_bound(keys, b));
         }
+        std::ranges::sort(times);
+        for (std::size_t k = 1; k < times.size(); ++k) check(times[k - 1], times[k]);
       });
     }
   }
@@ -194,6 +206,7 @@ void resample(CurveSet& set) {
   while (frames.new_keys(set) > kMaxKeys) frames.rate /= 2;
   const double lowest = frames.rate;
   for (const double factor : {0, 1, 2, 4, 8}) {
+    if (factor == 0 && set.pivots) continue;
     const Frames finer{.start = frames.start, .rate = factor * lowest, .longest = frames.longest};
     if (factor > 1 && finer.new_keys(set) > kMaxKeys) break;
     frames = finer;

@@ -51,6 +51,7 @@ struct Resampling {
 struct CurveSet {
   std::vector<Curve> curves{};
   std::vector<std::vector<Turn>> rotations{};
+  bool pivots = false;  // rotations about other points than joints: they move these along arcs
   Resampling result{};
 };
 

@@ -135,7 +135,8 @@ Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& inputs, const Capt
     return opened;
   }
   const Conventions& alone = opened->capture->conventions;
-  if (alone.up_confidence == Confidence::certain) return opened;
+  // What is no person shows no axes in other takes either.
+  if (alone.up_confidence == Confidence::certain || !opened->capture->roles.humanoid) return opened;
   const auto axes = inputs.takes->axes_for(file.text());
   if (!axes) return opened;
   // The result depends on the takes asked, and on which takes there are.
