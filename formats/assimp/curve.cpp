@@ -13,6 +13,7 @@ namespace {
 
 // The parameter at which a Bezier curve from 0 to 1 with inner points a and b, in [0, 1], is at x.
 double bezier_parameter(double a, double b, double x) {
+  if (std::abs(a - 1.0 / 3) + std::abs(b - 2.0 / 3) < 1e-6) return x;
   double low = 0, high = 1;
   for (int i = 0; i < 40; ++i) {
     const double s = (low + high) / 2, r = 1 - s;
@@ -95,24 +96,46 @@ Quat rotation(const CurveSet& set, const std::vector<Turn>& turns, double time) 
   return product;
 }
 
-// Of what linear interpolation gives in the middle of each frame.
+// Of what linear interpolation gives, in the middle of each frame; of a whole gap, if there are no
+// frames, also beside it, where curves of the shape of an S deviate.
 void measure(const Frames& frames, CurveSet& set) {
   set.result = {.rate = frames.rate, .gap = set.result.gap};
+  const auto parts = frames.rate > 0 ? std::vector{0.5} : std::vector{0.25, 0.5, 0.75};
   for (const Curve& curve : set.curves) {
-    if (curve.metres == 0) continue;
+    // Of weights and scales it is enough to know whether they deviate at all.
+    const double metres = curve.metres > 0 || frames.rate > 0 ? curve.metres : 1;
+    if (metres == 0 || curve.turns) continue;
     frames.for_each(curve, [&](double a, double b) {
-      const double off = (curve.at(a) + curve.at(b)) / 2 - curve.at((a + b) / 2);
-      set.result.metres = std::max(set.result.metres, curve.metres * std::abs(off));
+      for (const double part : parts) {
+        const double off =
+            std::lerp(curve.at(a), curve.at(b), part) - curve.at(std::lerp(a, b, part));
+        set.result.metres = std::max(set.result.metres, metres * std::abs(off));
+      }
     });
   }
   for (const auto& turns : set.rotations) {
+    const auto check = [&](double a, double b) {
+      const double edge = beside(b);  // off the jumps of other axes
+      if (b - a < std::max(4 * edge, frames.rate > 0 ? 0.0 : frames.longest)) return;
+      const Quat begin = rotation(set, turns, a + edge), end = rotation(set, turns, b - edge);
+      for (const double part : parts) {
+        const Quat own = rotation(set, turns, std::lerp(a, b, part));
+        const double off = angle_between(slerp(begin, end, part), own) / kRadiansPerDegree;
+        set.result.degrees = std::max(set.result.degrees, off);
+      }
+    };
     for (const Turn& turn : turns) {
       if (turn.curve < 0) continue;
       frames.for_each(set.curves[static_cast<std::size_t>(turn.curve)], [&](double a, double b) {
-        const double edge = beside(b);  // off the jumps of other axes
-        const Quat begin = rotation(set, turns, a + edge), end = rotation(set, turns, b - edge);
-        const double off = angle_between(slerp(begin, end, 0.5), rotation(set, turns, (a + b) / 2));
-        set.result.degrees = std::max(set.result.degrees, off / kRadiansPerDegree);
+        std::vector<double> times = {a, b};  // and the keys of the other axes
+        for (const Turn& other : turns) {
+          if (other.curve < 0) continue;
+          const auto& keys = set.curves[static_cast<std::size_t>(other.curve)].times;
+          times.insert(times.end(), std::ranges::upper_bound(keys, a),
+                       std::ranges::lower_bound(keys, b));
+        }
+        std::ranges::sort(times);
+        for (std::size_t k = 1; k < times.size(); ++k) check(times[k - 1], times[k]);
       });
     }
   }
@@ -158,7 +181,7 @@ double Curve::at(double time) const {
 }
 
 void resample(CurveSet& set) {
-  constexpr double kMaxKeys = 1e6, kMaxFactor = 8;
+  constexpr double kMaxKeys = 1e6;
   std::vector<double> times;
   for (Curve& curve : set.curves) {
     if (is_usable(curve)) {
@@ -181,10 +204,14 @@ void resample(CurveSet& set) {
   Frames frames{.start = times.front(), .rate = character::common_grid(times).value_or(60)};
   frames.longest = 1.5 / frames.rate;
   while (frames.new_keys(set) > kMaxKeys) frames.rate /= 2;
-  for (double factor = 1; frames.new_keys(set) > 0; factor *= 2, frames.rate *= 2) {
+  const double lowest = frames.rate;
+  for (const double factor : {0, 1, 2, 4, 8}) {
+    if (factor == 0 && set.pivots) continue;
+    const Frames finer{.start = frames.start, .rate = factor * lowest, .longest = frames.longest};
+    if (factor > 1 && finer.new_keys(set) > kMaxKeys) break;
+    frames = finer;
     measure(frames, set);
-    const bool holds = set.result.degrees <= kCurveDegrees && set.result.metres <= kCurveMetres;
-    if (holds || factor == kMaxFactor || 2 * frames.new_keys(set) > kMaxKeys) break;
+    if (set.result.degrees <= kCurveDegrees && set.result.metres <= kCurveMetres) break;
   }
   for (Curve& curve : set.curves) add_keys(frames, curve);
 }

@@ -51,13 +51,14 @@ struct Resampling {
 struct CurveSet {
   std::vector<Curve> curves{};
   std::vector<std::vector<Turn>> rotations{};
+  bool pivots = false;  // rotations about other points than joints: they move these along arcs
   Resampling result{};
 };
 
 // Equal one metre from a joint.
 inline constexpr double kCurveDegrees = 0.02, kCurveMetres = 3.5e-4;
 
-// Adds keys where linear interpolation, or slerp of a rotation, deviates from the curves, on the
+// Adds keys if linear interpolation, or slerp of a rotation, deviates from the curves, on the
 // frames of 1, 2, 4 or 8 times the rate on whose frames the keys are (60 for uneven ones): the
 // lowest that holds both tolerances and takes at most a million keys. A step gets a key beside its
 // jump. Keys less than 1.5 frames apart are baked and stay as they are. Curves whose times do not

@@ -112,6 +112,7 @@ struct FbxCurves {
   std::map<std::string_view, Node> nodes;    // by the id of the AnimationCurveNode
   std::map<std::string_view, int> order_of;  // rotation order of a model
   double metres = 0.01;                      // per unit of length
+  bool pivots = false;
 };
 
 FbxCurves find_curves(const FbxElements& file) {
@@ -130,6 +131,8 @@ FbxCurves find_curves(const FbxElements& file) {
       found.lists.back().emplace(element.name, e);
     } else if (element.name == "P" && is_named(element.value(0), "RotationOrder")) {
       found.order_of[object] = static_cast<int>(file.number(element.value(4)));
+    } else if (element.name == "P" && is_named(element.value(0), "RotationPivot")) {
+      for (std::size_t v = 4; v < 7; ++v) found.pivots |= file.number(element.value(v)) != 0;
     } else if (element.name == "P" && is_named(element.value(0), "UnitScaleFactor")) {
       found.metres = file.number(element.value(4)) / 100;
     } else if (element.name == "C") {
@@ -174,7 +177,7 @@ Curve read_curve(const FbxElements& file, const std::map<std::string_view, std::
 }
 
 CurveSet read_curves(const FbxElements& file, const FbxCurves& found) {
-  CurveSet set;
+  CurveSet set{.pivots = found.pivots};
   for (const auto& lists : found.lists) {
     set.curves.push_back(read_curve(file, lists, set.result.gap));
   }

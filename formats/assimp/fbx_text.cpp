@@ -12,8 +12,9 @@ std::vector<double> fbx_target_weights(std::string_view text) {
   const auto elements = fbx_elements(text);
   for (std::size_t e = 0; elements && e < elements->list.size(); ++e) {
     const FbxElement& element = elements->list[e];
-    if (element.name == "DeformPercent")
+    if (element.name == "DeformPercent") {
       weights.push_back(elements->number(element.value(0)) / 100);
+    }
   }
   return weights;
 }
@@ -25,25 +26,16 @@ std::size_t fbx_object_count(std::string_view text, std::string_view kind) {
 }
 
 std::set<std::string> fbx_limb_names(std::string_view text) {
-  constexpr std::string_view kAscii = "\"Model::";
-  constexpr std::string_view kBinary("\0\1Model", 7);
-  constexpr std::size_t kHeader = 5;  // of a text in a binary file: a letter and its length
   std::set<std::string> names;
   const auto elements = fbx_elements(text);
   for (std::size_t e = 0; elements && e < elements->list.size(); ++e) {
     const FbxElement& element = elements->list[e];
-    std::string_view name = element.value(1);
-    if (element.name != "Model" || element.value(2).find("LimbNode") == std::string_view::npos) {
-      continue;
-    }
-    if (name.starts_with(kAscii) && name.ends_with('"')) {
-      name = name.substr(kAscii.size(), name.size() - kAscii.size() - 1);
-    } else if (name.size() >= kHeader + kBinary.size() && name.ends_with(kBinary)) {
-      name = name.substr(kHeader, name.size() - kHeader - kBinary.size());
-    } else {
-      continue;
-    }
-    names.insert(to_utf8(name));
+    const std::string_view title = element.value(1), kind = element.value(2);
+    if (element.name != "Model" || kind.find("LimbNode") == std::string_view::npos) continue;
+    // ASCII: "Model::Hips"; binary: a letter, a length, Hips, two bytes, Model.
+    const std::size_t begin = elements->word == 0 ? title.find("::") + 2 : 5;
+    if (begin > title.size()) continue;
+    names.insert(to_utf8(title.substr(begin, title.find_first_of({"\"\0", 2}, begin) - begin)));
   }
   return names;
 }

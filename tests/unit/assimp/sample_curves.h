@@ -134,7 +134,8 @@ inline FbxTree turning_bone(const std::vector<TurnCurve>& curves) {
   using S = std::string;
   const auto id = [](int number) { return std::int64_t{number}; };
   const auto property = [](const char* name, auto value) {
-    return FbxTree{"P", {S(name), S("int"), S("Integer"), S(), value}, {}};
+    const bool whole = std::is_same_v<decltype(value), int>;
+    return FbxTree{"P", {S(name), S(whole ? "int" : "double"), S("Number"), S(), value}, {}};
   };
   const auto model = [&](int number, const char* name, double height) {
     const FbxTree place = {
