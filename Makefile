@@ -10,7 +10,7 @@ CMAKE_FLAGS ?=
 BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev libfast-float-dev \
   nlohmann-json3-dev libxxhash-dev libhwy-dev libtinygltf-dev libassimp-dev libopenexr-dev \
   libcli11-dev help2man libembree-dev libpng-dev libjpeg-dev libfreetype-dev libceres-dev \
-  libbullet-dev libmeshoptimizer-dev libdraco-dev libzip-dev fonts-dejavu-core
+  libbullet-dev libmeshoptimizer-dev libdraco-dev libzip-dev zlib1g-dev fonts-dejavu-core
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
   chromium openexr python3-jsonschema python3-numpy python3-pandas python3-xxhash liborocos-kdl-dev pkg-config ffmpeg
 LINT_PACKAGES := clang-tidy

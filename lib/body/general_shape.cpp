@@ -96,7 +96,7 @@ class GeneralBuilder {
     // Where the ways to the tips at the root's level part.
     int parting = -1, tips = 0;
     for (int j = fork + 1; j < skeleton_.joint_count(); ++j) {
-      const bool low = (pose_[at(j)].position - pose_[0].position).dot(up) < 0.25 * length;
+      const bool low = (pose_[at(j)].position - pose_[0].position).dot(up) < 0.35 * length;
       const auto way = way_from(fork, j);
       if (!low || !children_[at(j)].empty() || flesh_[at(j)] == 0 || way.empty()) continue;
       ++tips;
