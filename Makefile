@@ -191,7 +191,10 @@ lint: lint-deps headers
 # Every source and header that changed since the newest commit older than three days.
 check-changed: lint-deps
 	@cmake --preset lint > /dev/null
-	@$(call timed,check) python3 tests/arch/check_changed.py . build-lint --jobs $(JOBS)
+	@cmake --preset lint -B build-lint/alone -DKROK_PRECOMPILED_HEADERS=ON > /dev/null
+	@cmake --build build-lint/alone -j $(JOBS) --target krok_precompiled_library krok_precompiled_format \
+	  krok_precompiled_tool krok_precompiled_test > /dev/null
+	@$(call timed,check) python3 tests/arch/check_changed.py . build-lint --alone build-lint/alone --jobs $(JOBS)
 
 # Would not compile if a public header needed another one to be included before it.
 headers: deps

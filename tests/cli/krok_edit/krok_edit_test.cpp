@@ -1,6 +1,7 @@
 // If these fail, krok-edit does another thing than its help says, does steps in another order, or
 // leaves its user without a word about what it did.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
