@@ -31,7 +31,7 @@ WordCheck one_of(std::vector<std::pair<std::string, Value>> words) {
 }
 
 // The same for an option that stores the word itself; case-insensitive.
-inline WordCheck one_of_words(std::vector<std::string> words) {
+inline WordCheck one_of_words(const std::vector<std::string>& words) {
   return {words, [words](std::string& text) {
             for (const std::string& word : words) {
               if (ascii_lower(text) == ascii_lower(word)) return text = word, std::string();

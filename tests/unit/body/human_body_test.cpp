@@ -128,8 +128,9 @@ TEST(HumanBody, IsNearlyMirrorSymmetric) {
 // hold no flesh, and no vertex beyond the middle follows a joint of the other side.
 TEST(HumanBody, IsBoundToBonesOfItsOwnSide) {
   Skeleton skeleton = human_skeleton();
-  for (const auto& [side, sign] : {std::pair("Left", 1.0), std::pair("Right", -1.0)}) {
-    const int hand = skeleton.find(std::string(side) + "Hand");
+  for (const double sign : {1.0, -1.0}) {
+    const std::string side = sign > 0 ? "Left" : "Right";
+    const int hand = skeleton.find(side + "Hand");
     const auto add = [&](const std::string& name, int parent, const Vec3& offset,
                          bool end = false) {
       Transform place = skeleton.reference[static_cast<std::size_t>(parent)];

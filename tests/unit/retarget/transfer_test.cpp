@@ -88,7 +88,8 @@ TEST(Retarget, CollarsRiseWithArmsOnly) {
   const Clip clip = lively_clip(skeleton);
   const auto collars = [&](double up, double arms) {
     Skeleton result = skeleton;
-    for (const auto& [side, sign] : {std::pair("Left", 1.0), std::pair("Right", -1.0)}) {
+    for (const double sign : {1.0, -1.0}) {
+      const char* const side = sign > 0 ? "Left" : "Right";
       const auto turn = [sign](double angle) {
         return from_rotation_vector(Vec3(0, 0, sign * angle));
       };
