@@ -150,7 +150,7 @@ ResampledFile resample_collada(std::string_view text) {
     add("OUTPUT", curve.values);
     const std::string_view tag = elements[c].substr(0, elements[c].find('>') + 1);
     replaced[static_cast<std::size_t>(elements[c].data() - text.data())] =
-        sources + std::string(tag) + inputs + std::string(kEndOfSampler);
+        sources.append(tag).append(inputs).append(kEndOfSampler);
   }
   std::size_t taken = 0;
   for (const auto& [place, element] : replaced) {

@@ -200,7 +200,7 @@ void resample(CurveSet& set) {
     }
   }
   std::ranges::sort(times);
-  times.erase(std::ranges::unique(times).begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   Frames frames{.start = times.front(), .rate = character::common_grid(times).value_or(60)};
   frames.longest = 1.5 / frames.rate;
   while (frames.new_keys(set) > kMaxKeys) frames.rate /= 2;

@@ -31,7 +31,7 @@ struct ViewKind {
   int component = 0, type = 0;  // of the accessor; 0: not of an accessor (an image)
   Filter filter = Filter::none;
 
-  auto operator<=>(const ViewKind&) const = default;
+  auto operator<=>(const ViewKind&) const = default;  // NOLINT(modernize-use-nullptr): of its own 0
 };
 
 struct ViewGroup {

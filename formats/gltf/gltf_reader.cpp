@@ -250,7 +250,8 @@ void report_unread(const ParsedJson& parsed, Scene& scene) {
   std::map<std::string, long long> unread;
   for (const tinygltf::Mesh& mesh : parsed.model.meshes) {
     for (const tinygltf::Primitive& primitive : mesh.primitives) {
-      for (const auto& [name, accessor] : primitive.attributes) {
+      for (const auto& attribute : primitive.attributes) {
+        const std::string& name = attribute.first;
         const bool read =
             std::ranges::find(kRead, name) != kRead.end() ||
             std::ranges::any_of(kReadSets, [&](const char* set) { return name.starts_with(set); });

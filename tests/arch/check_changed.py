@@ -2,7 +2,7 @@
 older than three days, those changed last first.
 
 Usage: check_changed.py SOURCE_FOLDER LINT_BUILD [--alone BUILD] [--base COMMIT] [--jobs N] [--seconds N]
-                        [--syntax-only]
+                        [--syntax-only | --lint-only]
 
 LINT_BUILD is configured with the preset lint: no unity, no precompiled headers, warnings are errors;
 BUILD is the same with precompiled headers of other libraries, which take two thirds of the time. A header is compiled by itself with the options of a source beside it. A benchmark counts as changed if a
@@ -113,6 +113,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--seconds", type=float, default=300, help="that clang-tidy may take")
     parser.add_argument("--syntax-only", action="store_true")
+    parser.add_argument("--lint-only", action="store_true")
     arguments = parser.parse_args()
     folder, build = arguments.folder.resolve(), arguments.build.resolve()
     base = arguments.base or git(folder, "rev-list", "-1", "--before=3 days ago", "HEAD").strip()
@@ -129,7 +130,7 @@ def main():
                 print(f"{what}:\n{output}", flush=True)
                 failed.append(what)
 
-    alone = with_benchmarks(folder, list(changed))
+    alone = [] if arguments.lint_only else with_benchmarks(folder, list(changed))
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         judge(pool.map(lambda path: compile_alone(folder, alone_options, path), alone))
         print(f"compiled alone: {len(alone)} sources and headers changed since {base[:9]}, {len(failed)} failed", flush=True)
