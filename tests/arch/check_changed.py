@@ -93,14 +93,18 @@ def compile_alone(folder, options, path):
     return path, done.returncode == 0, done.stderr
 
 
-def lint(folder, options, build, unit, sources):
+def lint(folder, options, build, unit, sources, seconds):
+    """None where it takes longer."""
     file = build / "changed" / f"UnifiedSource_{unit}.cpp"  # by this word the analyzer follows what is included
     file.parent.mkdir(exist_ok=True)
     file.write_text("".join(f'#include "{folder / source}"\n' for source in sources))
     command = ["clang-tidy", "--quiet", "--checks=-bugprone-suspicious-include", str(file), "--",
                *options.of(sources[0])[1:]]
     command = [a for a in command if not a.startswith(("-fpch-", "--param", "-Wno-restrict", "-Wno-stringop"))]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=folder)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=seconds)
+    except subprocess.TimeoutExpired:
+        return None
     return ", ".join(sources), done.returncode == 0, done.stdout + done.stderr
 
 
@@ -143,10 +147,11 @@ def main():
         until, unreached = time.monotonic() + arguments.seconds, []
 
         def lint_in_time(unit):
-            if time.monotonic() > until:
+            left = until - time.monotonic()
+            found = lint(folder, options, build, unit, units[unit], left) if left > 0 else None
+            if found is None:
                 unreached.extend(units[unit])
-                return unit, True, ""
-            return lint(folder, options, build, unit, units[unit])
+            return found or (unit, True, "")
 
         judge(pool.map(lint_in_time, units))
     linted = sum(map(len, units.values())) - len(unreached)
