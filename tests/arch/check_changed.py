@@ -115,7 +115,7 @@ def main():
     parser.add_argument("--alone", type=pathlib.Path)
     parser.add_argument("--base")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--seconds", type=float, default=200, help="that clang-tidy may take")
+    parser.add_argument("--seconds", type=float, default=60, help="that clang-tidy may take")
     parser.add_argument("--syntax-only", action="store_true")
     parser.add_argument("--lint-only", action="store_true")
     arguments = parser.parse_args()
