@@ -1,7 +1,7 @@
 #pragma once
 
-// Embree 3 and Embree 4 by the same calls. KROK_EMBREE_MAJOR comes from the build, which takes what is
-// installed. Rays and results are Embree's own structs, which both versions share.
+// Embree 3 and Embree 4 by the same calls. KROK_EMBREE_MAJOR comes from the build, which takes what
+// is installed. Rays and results are Embree's own structs, which both versions share.
 
 #if KROK_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -15,7 +15,9 @@ namespace krok::embree {
 // What a callback of a user geometry or a filter is handed through.
 using Context = RTCRayQueryContext;
 
-inline void init(Context& context) { rtcInitRayQueryContext(&context); }
+inline void init(Context& context) {
+  rtcInitRayQueryContext(&context);
+}
 
 // The nearest hit. `coherent`: the next rays are much like this one, which is faster if true.
 inline void intersect(RTCScene scene, Context& context, RTCRayHit& ray, bool coherent = false) {
@@ -36,7 +38,9 @@ inline void occluded(RTCScene scene, Context& context, RTCRay& ray) {
 #else
 using Context = RTCIntersectContext;
 
-inline void init(Context& context) { rtcInitIntersectContext(&context); }
+inline void init(Context& context) {
+  rtcInitIntersectContext(&context);
+}
 
 inline void intersect(RTCScene scene, Context& context, RTCRayHit& ray, bool coherent = false) {
   if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
