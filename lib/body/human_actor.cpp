@@ -79,19 +79,22 @@ std::vector<double> stature_estimates(std::span<const Transform> pose, const Hum
   return statures;
 }
 
-// Whether a level trunk stands on hanging legs and arms, as an animal's whose joints have a
-// person's names.
+// Whether legs and arms all point one way across the trunk, as an animal's whose joints have a
+// person's names. Whichever way the pose lies: readers stand such animals up.
 bool is_on_four_legs(std::span<const Transform> pose, const HumanActor& actor, const Vec3& trunk) {
-  if (std::abs(trunk.y()) > 0.5 * trunk.norm()) return false;
-  const auto hangs = [&](int from, int to) {
-    const Vec3 limb =
-        pose[static_cast<std::size_t>(to)].position - pose[static_cast<std::size_t>(from)].position;
-    return limb.y() < -0.7 * limb.norm();
-  };
-  return std::ranges::all_of(std::array{0, 1}, [&](int side) {
-    const auto& arm = actor.arms[static_cast<std::size_t>(side)];
-    const auto& leg = actor.legs[static_cast<std::size_t>(side)];
-    return hangs(arm.shoulder, arm.wrist) && hangs(leg.hip, leg.ankle);
+  std::array<Vec3, 4> limbs;
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < limbs.size(); ++i) {
+    const auto& arm = actor.arms[i / 2];
+    const auto& leg = actor.legs[i / 2];
+    const auto from = static_cast<std::size_t>(i % 2 == 0 ? arm.shoulder : leg.hip);
+    const auto to = static_cast<std::size_t>(i % 2 == 0 ? arm.wrist : leg.ankle);
+    limbs[i] = (pose[to].position - pose[from].position).stableNormalized();
+    sum += limbs[i];
+  }
+  const Vec3 down = sum.stableNormalized(), along = trunk.stableNormalized();
+  return std::ranges::all_of(limbs, [&](const Vec3& limb) {
+    return limb.dot(down) > 0.8 && std::abs(limb.dot(along)) < 0.5;
   });
 }
 

@@ -160,6 +160,18 @@ TEST(HumanBody, IsBoundToBonesOfItsOwnSide) {
   }
 }
 
+// An animal whose joints have a person's names, on its legs or, as a reader may stand it up, not.
+TEST(HumanBody, IsNotGivenToAnimalsOnFourLegs) {
+  Skeleton animal = human_skeleton();
+  for (const std::string side : {"Left", "Right"}) {
+    turn(animal, side + "UpLeg", from_rotation_vector(Vec3(-kPi / 2, 0, 0)));
+    turn(animal, side + "Arm", shortest_arc(Vec3(side == "Left" ? 1 : -1, 0, 0), Vec3::UnitZ()));
+  }
+  EXPECT_FALSE(build(animal, {.detail = BodyDetail::low}).human);
+  turn(animal, "Hips", from_rotation_vector(Vec3(kPi / 2, 0, 0)));
+  EXPECT_FALSE(build(animal, {.detail = BodyDetail::low}).human);
+}
+
 TEST(HumanBody, EachPartFollowsItsOwnJoint) {
   const Skeleton skeleton = human_skeleton();
   const Model& model = usual().model;
