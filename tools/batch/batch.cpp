@@ -87,6 +87,7 @@ class Batch {
     list_ = list_files(line_, make_spec_, errors);
     tally_ = BatchTally(list_.files.size());
     if (!errors.empty()) return stop(errors);
+    context_.diagnose(list_.left_out);
     if (Status status = prepare(); !status) return stop({status.error()});
     if (Status status = begin_report(); !status) return stop({status.error()});
     do_files();

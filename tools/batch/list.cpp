@@ -13,6 +13,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/batch/check.h"
+#include "tools/cli/folder_inputs.h"
 #include "tools/cli/paths.h"
 
 namespace krok::cli::batch {
@@ -65,18 +66,6 @@ std::string common_folder(const std::vector<std::string>& paths) {
     common = shared;
   }
   return common ? common->string() : std::string();
-}
-
-bool has_extension(const std::string& path, const std::vector<std::string>& extensions) {
-  return std::find(extensions.begin(), extensions.end(), extension(path)) != extensions.end();
-}
-
-std::string words(const std::vector<std::string>& list) {
-  std::string text;
-  for (const std::string& word : list) {
-    text += (text.empty() ? "" : word == list.back() ? " or " : ", ") + word;
-  }
-  return text;
 }
 
 class Lister {
@@ -148,10 +137,10 @@ class Lister {
       paths = find_files_below(argument);
       if (paths) {
         leave_out_results(argument, *paths);
-        std::erase_if(*paths,
-                      [&](const auto& path) { return !has_extension(path, spec_.batch->reads); });
+        const Diagnostics others = keep_inputs(argument, spec_.batch->reads, *paths);
+        list_.left_out.insert(list_.left_out.end(), others.begin(), others.end());
       }
-      nothing = fmt::format("the folder has no {} file", words(spec_.batch->reads));
+      nothing = fmt::format("the folder has no {} file", any_of_words(spec_.batch->reads));
     } else if (has_wildcards(argument) && !fs::exists(argument, missing)) {
       paths = find_files(argument);
       base = fixed_part(argument);

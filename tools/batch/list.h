@@ -27,6 +27,7 @@ struct BatchList {
   std::vector<BatchFile> files;                  // of this shard
   std::size_t total = 0;                         // in all shards
   std::map<FileNumber, std::string> read_files;  // inputs of all shards, maps, the list itself
+  Diagnostics left_out;                          // for each folder, what the tool does not read
 };
 
 // Expands the path in an option that names an output: "{name}" is replaced by BatchFile::name, and

@@ -31,7 +31,7 @@ std::string usable_name(const std::string& name, const std::string& fallback) {
 
 class Adder {
  public:
-  Adder(const CharacterFiles& files, const nodes::Scene& scene, character::Actor& actor,
+  Adder(const CharacterFiles& files, const nodes::Scene& scene, character::SceneActor& actor,
         OutputSet& outputs, NewFolders& folder)
       : files_(files), scene_(scene), actor_(actor), outputs_(outputs), new_folders_(folder) {
     const std::string end = extension(files.path);
@@ -148,7 +148,7 @@ class Adder {
 
   const CharacterFiles& files_;
   const nodes::Scene& scene_;
-  character::Actor& actor_;
+  character::SceneActor& actor_;
   OutputSet& outputs_;
   NewFolders& new_folders_;
   std::string stem_, name_;  // of all files, with and without folder
@@ -161,7 +161,7 @@ class Adder {
 }  // namespace
 
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
-                                     character::Actor& actor, OutputSet& outputs,
+                                     character::SceneActor& actor, OutputSet& outputs,
                                      NewFolders& folder) {
   return Adder(files, scene, actor, outputs, folder).add();
 }

@@ -31,7 +31,7 @@ struct AddedCharacter {
 // Adds the files to `outputs`; `folder` is for the images. Parts of the actor get unique names and
 // the names of the scene's materials. Codes: those of the writers.
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
-                                     character::Actor& actor, OutputSet& outputs,
+                                     character::SceneActor& actor, OutputSet& outputs,
                                      NewFolders& folder);
 
 }  // namespace krok::cli::import

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "capture/rest_frame.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
@@ -39,10 +38,10 @@ Json to_json(const ChosenClip& clip) {
 Status SceneImporter::add_actor() {
   if (!wants_model() && !wants_character() && !wants_morphs()) return {};
   Diagnostics found;
-  auto actor = character::make_actor(scene_, evaluator_, *rig_, conversion_,
+  auto actor = character::make_actor(scene_, evaluator_, *rig_, place_.conversion,
                                      {.with_morphs = wants_morphs() || wants_character()}, found);
   if (!actor) return actor.error();
-  report_all(found);
+  context_.diagnose_in(path_, found);
   actor_ = std::move(*actor);
   if (wants_character() && actor_.model.triangles.empty()) {
     return missing(scene_.meshes.empty() ? "mesh" : "mesh with triangles", "--character",
@@ -59,7 +58,7 @@ Status SceneImporter::add_model() {
   if (!wants_model()) return {};
   Model& model = actor_.model;
   model.provenance = context_.provenance();
-  model.provenance.conversions = conversions_;
+  model.provenance.conversions = place_.conversions;
   report_model();
   return outputs_.add(options_.model, [&](OutputFile& file) {
     return model::write(model, {.orientation = options_.orientation}, file);
@@ -80,7 +79,7 @@ void SceneImporter::report_model() {
 
 Status SceneImporter::add_whole_character() {
   CharacterFiles files{options_.character, options_.orientation, {}, context_.provenance()};
-  files.provenance.conversions = conversions_;
+  files.provenance.conversions = place_.conversions;
   if (!actor_.morphs.names.empty()) {
     auto weights = character::make_weights(actor_, evaluator_, -1, {});
     if (!weights) return weights.error();
@@ -104,7 +103,7 @@ Status SceneImporter::add_morphs() {
   if (morphs.names.empty()) return missing("morph target", option, "");
   result_["morph_targets"] = morphs.names;
   morphs.provenance = context_.provenance();
-  morphs.provenance.conversions = conversions_;
+  morphs.provenance.conversions = place_.conversions;
   if (line_.empty()) {
     line_ = fmt::format("{}: {} of {}", base_name(path_),
                         counted(morphs.target_count(), "morph target"),
@@ -161,18 +160,13 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     }
     Stretches stretches;
     auto clip =
-        character::make_clip(evaluator_, *rig_, conversion_, chosen.animation, sampling->sampling,
-                             context_.jobs, context_.progress, found, &stretches);
+        character::make_motion(evaluator_, *rig_, roles_, place_, chosen.animation, *sampling,
+                               context_.jobs, context_.progress, found, &stretches);
     if (!clip) return clip.error();
-    report_all(found);
-    if (const RestPose rest = find_rest_pose(*clip, roles_); rest.first_frame_is_rest) {
-      warn("import-rest-frame", rest.reason + "; it was kept", "drop it with krok-edit --from 1f");
-    }
+    context_.diagnose_in(path_, std::exchange(found, {}));
+    auto conversions = std::move(clip->provenance.conversions);
     clip->provenance = context_.provenance();
-    clip->provenance.conversions = conversions_;
-    clip->provenance.conversions.push_back(
-        fmt::format("keys sampled at {} frames per second from {} s on",
-                    readable(1 / sampling->sampling.step), readable(sampling->keys_from)));
+    clip->provenance.conversions = std::move(conversions);
     const auto path = clip_path(context_.output, "-o", chosen, clips_.size() > 1, ".anim");
     if (!path) return path.error();
     if (Status status = check_output_kind(*path, "-o", Kind::anim); !status) return status;
@@ -191,7 +185,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     facts["output"] = *path;
     line_ = line_about(path_, frames, roles_);
   }
-  report_all(found);
+  context_.diagnose_in(path_, found);
   facts["source_rate"] = to_json(sampling->rate);
   facts["keys"] = {{"start", sampling->keys_from}, {"end", sampling->keys_to}};
   clip_facts_.push_back(std::move(facts));
@@ -203,12 +197,12 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
                                  const character::ChosenSampling& sampling) {
   Diagnostics found;
   auto track = character::make_camera(
-      scene_, evaluator_, camera_, conversion_, character::rotation_to_apply(scene_.space),
+      scene_, evaluator_, camera_, place_.conversion, character::rotation_to_apply(scene_.space),
       (camera_clip_ ? *camera_clip_ : clip).animation, sampling.sampling, found);
   if (!track) return track.error();
-  report_all(found);
+  context_.diagnose_in(path_, found);
   track->provenance = context_.provenance();
-  track->provenance.conversions = conversions_;
+  track->provenance.conversions = place_.conversions;
   const auto path = clip_path(options_.cam, "--cam", clip, clips_.size() > 1, ".cam");
   if (!path) return path.error();
   if (Status status = check_output_kind(*path, "--cam", Kind::cam); !status) return status;

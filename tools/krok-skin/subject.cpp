@@ -66,9 +66,9 @@ class Loader {
       model.tangents =
           make_tangents(model.positions, model.normals, model.texture_coordinates, model.triangles);
     }
-    subject_.eyes = std::move(loaded->character.eyes);
+    subject_.eyes = std::move(loaded->eyes);
     subject_.morphs = std::move(loaded->morphs);
-    rest_weights_ = std::move(loaded->weights);
+    rest_weights_ = std::move(loaded->rest_weights);
     return {};
   }
 
