@@ -57,7 +57,7 @@ std::vector<std::string> arguments_of(const std::vector<GivenOption>& options) {
 CommandLine::CommandLine(const ToolSpec& spec, Form form)
     : form_(form),
       declare_(spec.declare),
-      app_(spec.summary, spec.name),
+      app_(spec.details.empty() ? spec.summary : spec.summary + "\n\n" + spec.details, spec.name),
       tool_(spec.name),
       takes_many_(spec.batch.has_value()) {
   app_.set_help_flag();

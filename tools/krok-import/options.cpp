@@ -188,6 +188,9 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-import", options, declare, check, run);
   spec.summary = "Converts motion captures and characters to Krok's formats";
+  spec.details =
+      "Captures: BVH, Acclaim. Characters: glTF (meshopt and Draco, too), FBX, COLLADA, SMD, MS3D, "
+      "3DS, ASE, MD5.";
   spec.inputs = "IN";
   spec.needs_output = false;  // --model or --cam alone is enough
   spec.examples = {

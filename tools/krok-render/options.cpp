@@ -156,8 +156,8 @@ Result<Format> format_of(const Options& options, const std::string& output) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-render", arguments, declare, understand, run);
-  spec.summary =
-      "Renders films of motions and characters: mp4, gif and webp by ffmpeg, or PNG frames";
+  spec.summary = "Renders films of motions and characters: mp4, gif, webp, PNG frames";
+  spec.details = "ffmpeg makes mp4, gif and webp.";
   spec.inputs = "IN...";
   spec.examples = {
       {"krok-render walk.anim -o walk.mp4", "a generated body, followed by the camera"},
