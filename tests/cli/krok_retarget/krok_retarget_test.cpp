@@ -57,6 +57,17 @@ class KrokRetarget : public MotionTest {
   Clip walk_;
 };
 
+// Takes of a folder would be left out, and a character would have to be imported first.
+TEST_F(KrokRetarget, TakesAndTargetMayBeScenes) {
+  std::filesystem::create_directory(path("takes"));
+  ASSERT_EQ(run_here("krok-export", {"walk.anim", "-o", "takes/walk.glb"}).exit_code, 0);
+  const ToolRun run = retarget({"takes", "--onto", "takes/walk.glb", "--out-dir", "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Clip clip = read("out/walk.anim");
+  EXPECT_EQ(clip.skeleton.names, walk_.skeleton.names);
+  EXPECT_EQ(clip.frame_count(), walk_.frame_count());
+}
+
 TEST_F(KrokRetarget, OntoItsOwnSkeletonAMotionComesBack) {
   const auto run = retarget({"walk.anim", "--onto", "walk.anim", "-o", "out.anim"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
