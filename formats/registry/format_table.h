@@ -3,7 +3,8 @@
 // The table of file formats, a row each: ROW(kind, group, endings, description, recognises, how).
 //   kind         registry::Kind of the format
 //   group        registry::Group, what kind of format it is for messages
-//   endings      of file names, in lower case without the dot; the first is the kind's name
+//   endings      of file names, in lower case without the dot; the first is the kind's name.
+//                .kanim is for projects with the .anim files of Unity or Maya
 //   description  for messages: "is a BVH text file"
 //   recognises   whether a content is such a file, in registry.cpp; tried in this order
 //   how          members of io::Format: how it is read, in formats/io; none if nothing opens it by

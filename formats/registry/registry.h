@@ -28,9 +28,6 @@ inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
 inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', 'R'};
 inline constexpr Magic kStepsMagic = {'K', 'R', 'O', 'K', 'S', 'T', 'E', 'P'};
 
-// Another extension of motions, for projects with the .anim files of Unity or Maya.
-inline constexpr std::string_view kOtherAnimEnding = ".kanim";
-
 // All file extensions of a kind, with the dot: ".anim", ".kanim". None for Kind::unknown.
 std::vector<std::string> endings_of(Kind kind);
 
