@@ -8,7 +8,6 @@
 #include "core/nearest_name.h"
 #include "core/path_inside.h"
 #include "core/text.h"
-#include "formats/cam/cam.h"
 #include "formats/character/character_format.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/readers_internal.h"
@@ -239,26 +238,10 @@ void apply_rest_weights(Actor& actor) {
   actor.rest_weights.clear();
 }
 
-Result<Actor> read_model(const InputFile& file, Inputs& /*inputs*/) {
-  auto model = model::read(file.bytes());
-  if (!model) return std::move(model.error()).in_file(file.path());
-  Actor actor;
-  actor.model = *std::move(model);
-  return actor;
-}
-
 Result<Actor> read_character(const InputFile& file, Inputs& inputs) {
   auto loaded = open_character(file, inputs);
   if (!loaded) return loaded.error();
   return static_cast<Actor&&>(*std::move(loaded));
-}
-
-Result<Actor> read_camera(const InputFile& file, Inputs& /*inputs*/) {
-  auto track = cam::read(file.bytes());
-  if (!track) return std::move(track.error()).in_file(file.path());
-  Actor actor;
-  actor.cameras.push_back({"", *std::move(track)});
-  return actor;
 }
 
 Result<Actor> open_actor(const InputFile& file, Inputs& inputs, const ActorOptions& options) {

@@ -118,9 +118,6 @@ bool is_smd(std::string_view text) {
   text = text.substr(0, kWindow);
   return next_word(text) == "version" && next_word(text) == "1" && next_word(text) == "nodes";
 }
-bool is_ms3d(std::string_view text) {
-  return text.starts_with("MS3D000000");
-}
 bool is_ase(std::string_view text) {
   return same_word(word_at_start(text), "*3DSMAX_ASCIIEXPORT");
 }
@@ -138,6 +135,18 @@ bool is_text(std::string_view text) {
   });
 }
 
+// The first bytes of a format, in its row.
+template <std::size_t size>
+struct Start {
+  constexpr Start(const char (&given)[size]) {  // NOLINT: implicit, so that a row has a text
+    std::copy(given, given + size, bytes);
+  }
+  char bytes[size];
+};
+template <Start start>
+bool starts(std::string_view content) {
+  return content.starts_with(std::string_view(start.bytes, sizeof(start.bytes) - 1));
+}
 template <const Magic& magic>
 bool begins_with(std::string_view content) {
   return content.starts_with(std::string_view(magic.data(), magic.size()));
@@ -147,15 +156,6 @@ bool is_asf(std::string_view content) {
 }
 bool is_amc(std::string_view content) {
   return acclaim_kind(content) == Kind::amc;
-}
-bool is_pc2(std::string_view content) {
-  return content.starts_with(std::string_view("POINTCACHE2\0", 12));
-}
-bool is_zip(std::string_view content) {
-  return content.starts_with("PK\x03\x04");
-}
-bool is_glb(std::string_view content) {
-  return content.starts_with("glTF");
 }
 bool is_bvh(std::string_view content) {
   return same_word(first_word(content).substr(0, kHierarchy.size()), kHierarchy);

@@ -9,6 +9,7 @@
 
 #include "formats/io/formats.h"
 #include "formats/io/open_scene.h"
+#include "formats/io/readers_internal.h"
 #include "support/folder_test.h"
 #include "support/glb_builder.h"
 #include "support/this_build.h"
@@ -64,18 +65,17 @@ TEST(Formats, EachRowReadsSomethingAndHasAName) {
 }
 
 // A made-up format: "dots", then the height of a single joint in each frame.
-Result<Clip> read_dots(const InputFile& file, Inputs& /*inputs*/,
-                       const MotionOptions& /*options*/) {
+Result<Clip> read_dots(std::string_view content, const std::string& file_name) {
   Clip clip;
   clip.skeleton.add("Dot", -1, {});
-  std::istringstream text{std::string(file.text())};
+  std::istringstream text{std::string(content)};
   std::string word;
   text >> word;
   for (float height = 0; text >> height;) {
     clip.positions.emplace_back(0.0F, height, 0.0F);
     clip.orientations.push_back(Quatf::Identity());
   }
-  if (Status status = check(clip); !status) return std::move(status).error().in_file(file.path());
+  if (Status status = check(clip); !status) return std::move(status).error().in_file(file_name);
   return clip;
 }
 
@@ -92,7 +92,7 @@ TEST_F(OpenFiles, AFormatThatIsAddedIsReadLikeAnyOther) {
                                             content.size())
                         .starts_with("dots");
                   },
-              .read_motion = read_dots});
+              .read_motion = motion_of<read_dots>});
   const auto by_content = open_motion(path("a.txt"), inputs);
   ASSERT_TRUE(by_content) << by_content.error().message;
   EXPECT_EQ(by_content->frame_count(), 3);
