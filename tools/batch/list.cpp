@@ -118,7 +118,8 @@ class Lister {
         std::string absolute = absolute_path(found.input);
         if (!known.insert(absolute).second) continue;
         absolute_.push_back(std::move(absolute));
-        list_.files.push_back({std::move(found.input), {}, {}, {}, *set, {}});
+        list_.files.push_back(
+            {std::move(found.input), {}, {}, {}, *set, {}, found.base.has_value()});
         bases_.push_back(std::move(found.base));
       }
     }

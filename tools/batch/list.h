@@ -20,6 +20,7 @@ struct BatchFile {
   std::string output;       // output path
   std::size_t options = 0;  // index into BatchList::option_sets
   Location line;            // in the manifest; no file without one
+  bool found = false;       // in a folder or by a pattern, not named
 };
 
 struct BatchList {
