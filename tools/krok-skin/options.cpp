@@ -217,6 +217,7 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-skin", options, declare, check, run);
   spec.summary = "Skins a mesh with a motion; writes glTF, a point cache or OBJ files";
+  spec.exit_no = "the file is written, but its error is larger than --reduce allows";
   spec.inputs = "IN.model IN.anim...";
   spec.examples = {
       {"krok-skin body.model walk.anim -o walk.glb", "a rig for a game engine or Blender"},
