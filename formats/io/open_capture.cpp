@@ -216,7 +216,7 @@ Status use_capture(const InputFile& file, Inputs& inputs, const CaptureReading& 
   const Format& format = format_of(file);
   const auto open = [&](bool stream) {
     if (format.open_capture != nullptr) return format.open_capture(file, inputs, reading, stream);
-    if (format.read_motion != nullptr && format.kind == registry::Kind::unknown) {
+    if (format.read_motion != nullptr && format.kind != registry::Kind::anim) {
       return open_as_capture(format, file, inputs, reading);
     }
     return open_bvh(file, inputs, reading, stream);
