@@ -408,13 +408,14 @@ TEST(Nearest, PrefersWhatHangsOnTheSameJoints) {
   const std::vector<float> weights(2 * vertices, 1.0F);
   const auto with_joints = [&](double shift) {
     Scene scene = scene_of(both, [vertices, shift](double time, SceneState& state) {
-      const bool apart = std::abs(time - 0.1) < 1e-9;
+      const bool apart = std::abs(time - 0.03) < 1e-9;
       for (std::uint32_t v = 0; v < 2 * vertices; ++v) {
         state.positions[0][v].z() += shift + (v < vertices ? 0 : apart ? 0.3 : 0.0004);
       }
       state.joints = {{}, {}};
     });
-    scene.animations[0].key_times = {0, 0.1, 0.25, 0.5, 0.75, 1};
+    scene.animations[0].key_times.clear();
+    for (int k = 0; k <= 100; ++k) scene.animations[0].key_times.push_back(0.01 * k);
     scene.joint_names = {"Trunk", "Arm"};
     scene.joint_parents = {-1, 0};
     scene.meshes[0].influences = {1, joints, weights};
