@@ -243,7 +243,7 @@ class ScenePair {
       result.coloured = second_.bones(
           b, colours_of(ScenePart::joints(b), ScenePart::joints(a), key, result.largest), true);
     }
-    if (first_.scene().only_still) return result;
+    if (first_.scene().only_still && second_.scene().only_still) return result;
     const render::Bounds box = render::bounds(result.first);
     const Vec3 place =
         a.joints.empty() ? Vec3(0.5 * (box.low + box.high)) : a.joints.front().position;
@@ -298,7 +298,8 @@ DifferenceSheet sheet_of(const Scene& first, const Scene& second, const compare:
   sheet.largest = found.largest;
   sheet.tolerance = found.tolerance;
   sheet.span.end = pair->duration();
-  if (!first.only_still && found.largest > 0 && found.where.animation <= 0 &&
+  const bool still = first.only_still && second.only_still;
+  if (!still && found.largest > 0 && found.where.animation <= 0 &&
       found.where.time <= sheet.span.end) {
     sheet.worst = ImageMoment{found.where.time, -1};
   }

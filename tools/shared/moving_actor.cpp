@@ -55,17 +55,23 @@ struct Drawn {
     return 0.5 * (box.low + box.high);
   }
 
+  // Of a file's scene in the floats that are drawn.
+  Vec3 carrier_of(const SceneState& state) const {
+    const Vec3& place = state.joints[krok::at(carrier)].position;
+    return skeleton.empty() ? Vec3(place.cast<float>().cast<double>()) : place;
+  }
+
   render::Actor at(double time) const {
     const SceneState state = state_at(time, scene->as_bones());
     render::Actor actor = scene->at(state);
-    actor.centre = state.joints.empty() ? middle(actor) : state.joints[krok::at(carrier)].position;
+    actor.centre = state.joints.empty() ? middle(actor) : carrier_of(state);
     actor.centre.y() = 0;
     return actor;
   }
 
   Vec3 carrier_at(double time) const {
     const SceneState state = state_at(time, true);
-    return state.joints.empty() ? middle(at(time)) : state.joints[krok::at(carrier)].position;
+    return state.joints.empty() ? middle(at(time)) : carrier_of(state);
   }
 
   double heading(double time) const {
