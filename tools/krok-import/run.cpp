@@ -74,6 +74,16 @@ Result<int> import_scene(const InputFile& input, const Options& options, ToolCon
   if ((how->up || how->forward) && character::rotation_to_apply(scene->space) != Mat4::Identity()) {
     scene->space.file_to_krok.reset();
   }
+  // Without an animation, -o takes the pose that the file shows, as a motion of one frame.
+  if (scene->animations.empty() && !scene->skins.empty() && context.one_of_many == nullptr &&
+      !context.output.empty() && options.clip.empty()) {
+    scene->animations.emplace_back().name = "pose";
+    Diagnostic note = make_warning("import-pose",
+                                   "the file has no animation: the pose that it shows "
+                                   "is written as one frame");
+    note.severity = Severity::note;
+    context.diagnose_in(input.path(), {note});
+  }
   auto evaluator = nodes::Evaluator::create(*scene);
   if (!evaluator) return std::move(evaluator.error()).in_file(input.path());
   return SceneImporter(input, options, *how, *scene, *evaluator, context).run();

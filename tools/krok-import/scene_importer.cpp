@@ -110,6 +110,12 @@ Status SceneImporter::find_rig() {
   if (!rig && !needed && rig.error().code != "scene-value") return {};  // a camera needs none
   if (!rig) return rig.error();
   rig_ = std::move(*rig);
+  for (Diagnostic& one : found) {
+    // A model is in its bind pose; the other one would be lost.
+    if (one.code != "scene-pose" || !scene_.animations.empty() || wants_motion()) continue;
+    one.severity = Severity::warning;
+    one.hint = "-o POSE.anim writes the pose that the file shows as a motion of one frame";
+  }
   if (needed) context_.diagnose_in(path_, found);
   auto roles = roles_of(rig_->skeleton, how_);
   if (!roles) return roles.error();

@@ -373,7 +373,8 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
   Json facts = Json::object();
   facts["clip"] = to_json(chosen);
   if (wants_motion()) {
-    if (nodes::moved_count(scene_, animation, rig_->joints.nodes) == 0) {
+    const bool pose = animation.channels.empty();  // of a file without animations
+    if (!pose && nodes::moved_count(scene_, animation, rig_->joints.nodes) == 0) {
       warn("import-still",
            fmt::format("{} does not move any joint of the skeleton", shown(chosen.name)));
     }

@@ -68,6 +68,26 @@ TEST_F(SceneImportTest, MotionAndModelOfAGlb) {
   EXPECT_EQ(model->provenance.sources.at(0).name, "in.glb");
 }
 
+// A T-pose of a character that is bound in an A-pose, say: the model does not have it.
+TEST_F(SceneImportTest, ThePoseOfAFileWithoutAnimationsIsToldAndCanBeKept) {
+  GlbBuilder builder = rig();
+  builder.json.erase("animations");
+  builder.json["nodes"][2]["rotation"] = {0.5, 0, 0, std::sqrt(0.75)};
+  put_glb("in.glb", builder);
+  const ToolRun model = import({"--model", path("a.model")});
+  ASSERT_EQ(model.exit_code, 0) << model.err;
+  EXPECT_NE(model.err.find("warning: without animation"), std::string::npos) << model.err;
+  EXPECT_NE(model.err.find("-o POSE.anim"), std::string::npos) << model.err;
+  const ToolRun pose = import({"--model", path("a.model"), "-o", path("pose.anim")});
+  ASSERT_EQ(pose.exit_code, 0) << pose.err;
+  EXPECT_EQ(pose.err.find("warning"), std::string::npos) << pose.err;
+  const ToolRun skin = run_tool("krok-skin", {path("a.model"), path("pose.anim"), "--as", "pose",
+                                              "--time", "0f", "-o", path("back.glb")});
+  ASSERT_EQ(skin.exit_code, 0) << skin.err;
+  const ToolRun same = run_tool("krok-diff", {path("in.glb"), path("back.glb")});
+  EXPECT_NE(same.out.find("within in all"), std::string::npos) << same.out;
+}
+
 TEST_F(SceneImportTest, OneOutputAloneWillDo) {
   put_glb("in.glb", character());
   for (const auto& [option, name] :
