@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include "core/file.h"
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/gesture.h"
-#include "tools/cli/one_of.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 
@@ -17,30 +17,23 @@ using namespace krok::cli;
 
 struct Arguments {
   samples::GestureOptions gesture;
-  std::string kind = "wave", side = "right", duration;
+  std::string kind = "wave";
+  std::optional<ClipTime> duration;
 };
 
 void declare(CommandOptions& command, Arguments& arguments) {
-  command.add_option("--kind", arguments.kind, "wave, limp or look")
-      .transform(one_of_words({"wave", "limp", "look"}))
-      .type_name("KIND")
-      .capture_default_str()
-      .group("Gesture");
-  command
-      .add_option("--side", arguments.side,
-                  "Side of the waving arm, the limping leg or the look: left or right")
-      .transform(one_of_words({"left", "right"}))
-      .type_name("SIDE")
-      .capture_default_str()
-      .group("Gesture");
-  command.add_option("--duration", arguments.duration, "Duration; one stride for a limp")
-      .type_name("TIME")
-      .default_str("3s")
-      .group("Gesture");
-  command.add_option("--rate", arguments.gesture.rate, "Frames per second")
-      .type_name("N")
-      .capture_default_str()
-      .group("Capture");
+  command.group("Gesture");
+  command.add("--kind KIND", arguments.kind, words({"wave", "limp", "look"}), "wave, limp or look",
+              "wave");
+  command.add(
+      "--side SIDE", arguments.gesture.side,
+      choice<samples::Side>({{"left", samples::Side::left}, {"right", samples::Side::right}}),
+      "Side of the waving arm, the limping leg or the look: left or right", "right");
+  command.add("--duration", arguments.duration, clip_time({}), "Duration; one stride for a limp",
+              "3s");
+  command.group("Capture");
+  command.add("--rate", arguments.gesture.rate, number(), "Frames per second",
+              readable(arguments.gesture.rate));
 }
 
 Result<int> run(ToolContext& context, Arguments& arguments) {
@@ -48,12 +41,7 @@ Result<int> run(ToolContext& context, Arguments& arguments) {
   gesture.gesture = arguments.kind == "limp"   ? samples::Gesture::limp
                     : arguments.kind == "look" ? samples::Gesture::look
                                                : samples::Gesture::wave;
-  gesture.side = arguments.side == "left" ? samples::Side::left : samples::Side::right;
-  if (!arguments.duration.empty()) {
-    const auto duration = parse_clip_time(arguments.duration);
-    if (!duration) return duration.error();
-    gesture.duration = duration->seconds(gesture.rate);
-  }
+  if (arguments.duration) gesture.duration = arguments.duration->seconds(gesture.rate);
   const auto clip = samples::make_gesture(gesture);
   if (!clip) return clip.error();
   const auto write = [&](OutputFile& file) { return bvh::write(*clip, {.decimals = 4}, file); };

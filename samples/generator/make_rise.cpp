@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
 #include "core/file.h"
+#include "core/numbers.h"
 #include "formats/bvh/bvh_writer.h"
 #include "samples/generator/rise.h"
-#include "tools/cli/one_of.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 
@@ -20,23 +21,17 @@ struct Arguments {
 };
 
 void declare(CommandOptions& command, Arguments& arguments) {
-  command.add_option("--from", arguments.from, "Lying on the front, the back or the left side")
-      .transform(one_of_words({"front", "back", "side"}))
-      .type_name("HOW")
-      .capture_default_str()
-      .group("Motion");
-  command.add_option("--pace", arguments.rise.pace, "2: twice as fast")
-      .type_name("N")
-      .capture_default_str()
-      .group("Motion");
-  command.add_option("--stature", arguments.rise.stature, "Metres")
-      .type_name("N")
-      .capture_default_str()
-      .group("Actor");
-  command.add_option("--rate", arguments.rise.rate, "Frames per second")
-      .type_name("N")
-      .capture_default_str()
-      .group("Capture");
+  command.group("Motion");
+  command.add("--from HOW", arguments.from, words({"front", "back", "side"}),
+              "Lying on the front, the back or the left side", "front");
+  command.add("--pace", arguments.rise.pace, number(), "2: twice as fast",
+              readable(arguments.rise.pace));
+  command.group("Actor");
+  command.add("--stature", arguments.rise.stature, number(), "Metres",
+              readable(arguments.rise.stature));
+  command.group("Capture");
+  command.add("--rate", arguments.rise.rate, number(), "Frames per second",
+              readable(arguments.rise.rate));
 }
 
 Result<int> run(ToolContext& context, Arguments& arguments) {

@@ -13,7 +13,6 @@
 #include "core/glob.h"
 #include "core/nearest_name.h"
 #include "core/text.h"
-#include "tools/cli/one_of.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/tool.h"
 
@@ -23,7 +22,7 @@ namespace {
 
 constexpr std::size_t kHelpColumn = 34;
 
-std::string usage(const ToolSpec& spec) {
+std::string usage_lines(const ToolSpec& spec) {
   std::string text =
       fmt::format("Usage: {} [options] {}{}\n", spec.name, spec.inputs,
                   spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "");
@@ -112,7 +111,7 @@ class HelpFormatter : public CLI::Formatter {
 // Sets up the layout of --help: usage, option groups, examples, exit codes.
 void shape_help(CLI::App& app, const ToolSpec& spec) {
   app.footer(footer(spec));
-  app.formatter(std::make_shared<HelpFormatter>(usage(spec)));
+  app.formatter(std::make_shared<HelpFormatter>(usage_lines(spec)));
 }
 
 // The text of --help.
@@ -163,6 +162,7 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
       declare_(spec.declare),
       app_(spec.details.empty() ? spec.summary : spec.summary + "\n\n" + spec.details, spec.name),
       tool_(spec.name),
+      needs_output_(spec.has_output && spec.needs_output),
       takes_many_(spec.batch.has_value()) {
   app_.set_help_flag();
   declare_(options_);
@@ -180,9 +180,8 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
     for (CLI::Option* option : app_.get_options()) {
       if (option->get_positional()) positionals.push_back(option);
     }
-    for (CLI::Option* option : positionals) app_.remove_option(option);
+    for (CLI::Option* option : positionals) options_.remove(option);
   }
-  remember_values();
   if (form == Form::single || form == Form::many) {
     shape_help(app_, spec);
     if (spec.batch) declare_for_many();
@@ -201,7 +200,7 @@ void CommandLine::take_many_inputs() {
   }
   if (last == nullptr) return;
   const std::string type = last->get_type_name();
-  app_.remove_option(last);
+  options_.remove(last);
   inputs_option_ = app_.add_option("inputs", inputs, "")->type_name(type);
 }
 
@@ -211,9 +210,7 @@ void CommandLine::declare_common(const ToolSpec& spec) {
                         "Print the version")
       ->group(kCommon);
   if (spec.has_output) {
-    auto* option =
-        app_.add_option("-o,--output", output, "Output file")->type_name("OUTPUT")->group(kCommon);
-    if (spec.needs_output && form_ == Form::single) option->required();
+    app_.add_option("-o,--output", output, "Output file")->type_name("OUTPUT")->group(kCommon);
     app_.add_flag("--no-clobber", no_clobber, "Do not overwrite existing files")->group(kCommon);
   }
   app_.add_flag("-q,--quiet", quiet, "Print only errors")->group(kCommon);
@@ -223,27 +220,25 @@ void CommandLine::declare_common(const ToolSpec& spec) {
                   "Write a JSON report to standard output, or to FILE with --json=FILE")
       ->type_name("[=FILE]")
       ->group(kCommon);
-  options_.add_option("--progress", style, "Progress display: auto, bar, plain, json or none")
-      .type_name("STYLE")
-      .transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
-                                        {"bar", ProgressStyle::bar},
-                                        {"plain", ProgressStyle::plain},
-                                        {"json", ProgressStyle::json},
-                                        {"none", ProgressStyle::none}}))
-      .default_str("auto")
+  options_
+      .add("--progress STYLE", style,
+           choice<ProgressStyle>({{"auto", ProgressStyle::automatic},
+                                  {"bar", ProgressStyle::bar},
+                                  {"plain", ProgressStyle::plain},
+                                  {"json", ProgressStyle::json},
+                                  {"none", ProgressStyle::none}}),
+           "Progress display: auto, bar, plain, json or none", "auto")
       .group(kCommon);
-  add_whole(options_, "-j,--jobs", jobs, "Number of threads; 0: one per core", 0, 1024)
-      .default_str("0")
+  options_.add("-j,--jobs", jobs, whole(0, 1024), "Number of threads; 0: one per core", "0")
       .group(kCommon);
-  add_number(options_, "--limit-time SECONDS", limit_seconds,
-             "Time for reading a file by another library in a process of its own (FBX, COLLADA and "
-             "others, Draco) [15, and 5 per MiB]")
-      .check([](std::string& text) {
-        return *parse_finite(text) > 0 ? std::string() : "the time must be positive";
-      })
+  options_
+      .add("--limit-time SECONDS", limit_seconds, number(kPositive),
+           "Time for reading a file by another library in a process of its own (FBX, COLLADA and "
+           "others, Draco) [15, and 5 per MiB]")
       .group(kCommon);
-  add_whole(options_, "--limit-memory MIB", limit_mebibytes,
-            "Memory of that process [256, and 64 times the file's size]", 1, 1 << 24)
+  options_
+      .add("--limit-memory MIB", limit_mebibytes, whole(1, 1 << 24),
+           "Memory of that process [256, and 64 times the file's size]")
       .group(kCommon);
 }
 
@@ -273,25 +268,13 @@ void CommandLine::declare_for_many() {
       ->group(kMany);
 }
 
-// The transform added last sees the values first.
-void CommandLine::remember_values() {
-  for (CLI::Option* option : own_options_) {
-    if (is_flag(*option)) continue;
-    option->transform([this, option](const std::string& value) {
-      written_[option].push_back(value);
-      return value;
-    });
-  }
-}
-
 void CommandLine::note_given() {
   for (const CLI::Option* option : own_options_) {
     if (option->count() == 0) continue;
     GivenOption given;
     given.name = option->get_single_name();
-    const auto found = written_.find(option);
     given.is_flag = is_flag(*option);
-    given.values = found == written_.end() ? option->results() : found->second;
+    given.values = option->results();
     if (given.is_flag) {  // "off", "no" and "0" are words for false
       for (std::string& value : given.values) {
         bool on = false;
@@ -322,7 +305,6 @@ Status CommandLine::check_use_of_batch_options() const {
 }
 
 Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arguments) {
-  written_.clear();
   given_.clear();
   fixed_positionals.clear();
   try {
@@ -349,13 +331,23 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   }
   if (Status status = check_use_of_batch_options(); !status) return status.error();
   note_given();
+  if (Status status = options_.take_values(); !status) {
+    Error error = std::move(status).error();
+    if (error.hint.empty()) error.hint = fmt::format("see {} --help", tool_);
+    return error;
+  }
+  if (form_ == Form::single && needs_output_ && output.empty()) return no_output();
+  // Those of a list stand in part on its lines.
+  if (form_ == Form::single || form_ == Form::one_file) {
+    if (Status status = options_.check_conditions(); !status) return status.error();
+  }
   return Wish::run;
 }
 
 // The first word before "--" that looks like an option and is none.
 std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>& arguments) const {
   std::vector<std::string> names;
-  for (const OptionFacts& option : facts_of(app_)) {
+  for (const OptionFacts& option : options_.facts()) {
     names.insert(names.end(), option.names.begin(), option.names.end());
   }
   for (const std::string& argument : arguments) {

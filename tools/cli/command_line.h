@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,7 +52,7 @@ class CommandLine {
   std::vector<std::string> expanded(const std::vector<std::string>& arguments) const;
 
   // What completion in shells needs to know.
-  std::vector<OptionFacts> options() const { return facts_of(app_); }
+  std::vector<OptionFacts> options() const { return options_.facts(); }
 
   // The tool's own options that were given, in declaration order.
   const std::vector<GivenOption>& given() const { return given_; }
@@ -91,7 +90,6 @@ class CommandLine {
   void take_many_inputs();
   void declare_common(const ToolSpec& spec);
   void declare_for_many();
-  void remember_values();
   void note_given();
   Status check_use_of_batch_options() const;
   std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
@@ -103,10 +101,9 @@ class CommandLine {
   CommandOptions options_{app_};
   CLI::Option* inputs_option_ = nullptr;
   std::vector<CLI::Option*> own_options_;
-  // The value of each option as written ("xyzw"), before CLI11 transforms it ("1").
-  std::map<const CLI::Option*, std::vector<std::string>> written_;
   std::vector<GivenOption> given_;
   std::string tool_;
+  bool needs_output_ = false;
   bool takes_many_ = false;
 };
 

@@ -1,167 +1,207 @@
 #include "tools/cli/command_options.h"
 
-#include <CLI/CLI.hpp>
-#include <optional>
-#include <sstream>
-#include <string_view>
+#include <fmt/format.h>
 
-#include "core/nearest_name.h"
-#include "tools/cli/one_of.h"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "tools/cli/option_kinds.h"
+#include "tools/cli/usage.h"
 
 namespace krok::cli {
 
 namespace {
 
-// Begins the name of a validator whose rest is the words that it takes.
-constexpr std::string_view kWordsMark = "words ";
-
-// No description: CLI11 would print it beside the value name in the help.
-CLI::Validator validator(CheckValue check) {
-  return CLI::Validator(std::move(check), "");
-}
-
 // Splits "--from TIME" into the option's name and that of its value.
 template <typename Add>
-CommandOption add_named(const std::string& name, Add add) {
+CLI::Option* add_named(const std::string& name, Add add) {
   const std::size_t space = name.find(' ');
   CLI::Option* option = add(name.substr(0, space));
   if (space != std::string::npos) option->type_name(name.substr(space + 1));
-  return CommandOption(option);
+  return option;
+}
+
+// "--from" or, of a positional, "input".
+std::string name_of(const CLI::Option& option) {
+  return (option.get_positional() ? "" : "--") + option.get_single_name();
+}
+
+bool is_given(const CLI::Option& option) {
+  if (option.count() == 0) return false;
+  bool on = true;  // a flag may be off
+  if (option.get_items_expected_max() == 0) {
+    (void)CLI::detail::lexical_cast(option.results().back(), on);
+  }
+  return on;
+}
+
+// Text alone has no kind but what its name in the help says.
+std::string kind_of_text(const CLI::Option& option) {
+  const std::string& value = option.get_type_name();
+  return value.starts_with("IN")    ? "input"
+         : value.starts_with("OUT") ? "output"
+         : value == "DIR"           ? "folder"
+                                    : "text";
 }
 
 }  // namespace
 
 CommandOption CommandOption::type_name(const std::string& name) const {
-  option_->type_name(name);
+  declared_->option->type_name(name);
   return *this;
 }
 CommandOption CommandOption::default_str(const std::string& text) const {
-  option_->default_str(text);
-  return *this;
-}
-CommandOption CommandOption::capture_default_str() const {
-  option_->capture_default_str();
+  declared_->option->default_str(text);
   return *this;
 }
 CommandOption CommandOption::group(const std::string& name) const {
-  option_->group(name);
+  declared_->option->group(name);
   return *this;
 }
 CommandOption CommandOption::required() const {
-  option_->required();
+  declared_->option->required();
   return *this;
 }
-CommandOption CommandOption::needs(const std::string& other) const {
-  option_->needs(other);
+CommandOption CommandOption::only_with(std::vector<std::string> conditions) const {
+  declared_->only_with.push_back(std::move(conditions));
   return *this;
 }
-CommandOption CommandOption::excludes(CommandOption other) const {
-  option_->excludes(other.option_);
+CommandOption CommandOption::only_with(const char* condition) const {
+  return only_with(std::vector<std::string>{condition});
+}
+CommandOption CommandOption::not_with(std::vector<std::string> conditions) const {
+  declared_->not_with.insert(declared_->not_with.end(), conditions.begin(), conditions.end());
   return *this;
 }
-CommandOption CommandOption::check(CheckValue check) const {
-  option_->check(validator(std::move(check)));
-  return *this;
-}
-CommandOption CommandOption::transform(CheckValue check) const {
-  option_->transform(validator(std::move(check)));
-  return *this;
-}
-CommandOption CommandOption::transform(WordCheck check) const {
-  std::string words;
-  for (const std::string& word : check.words) words += (words.empty() ? "" : " ") + word;
-  option_->transform(validator(std::move(check.check)).name(std::string(kWordsMark) + words));
-  return *this;
+CommandOption CommandOption::not_with(const char* condition) const {
+  return not_with(std::vector<std::string>{condition});
 }
 CommandOption CommandOption::one_each_time() const {
-  option_->expected(1)->take_all();
+  declared_->option->expected(1)->take_all();
   return *this;
 }
 CommandOption CommandOption::delimiter(char between) const {
-  option_->delimiter(between);
+  declared_->option->delimiter(between);
   return *this;
 }
 CommandOption CommandOption::allow_extra_args(bool allowed) const {
-  option_->allow_extra_args(allowed);
+  declared_->option->allow_extra_args(allowed);
   return *this;
 }
 
-template <typename Value>
-CommandOption CommandOptions::add_value(const std::string& name, Value& value,
-                                        const std::string& help) {
-  return add_named(name,
-                   [&](const std::string& bare) { return app_.add_option(bare, value, help); });
+CommandOption CommandOptions::declare(CLI::Option* option, DeclaredOption declared) {
+  declared.option = option;
+  if (!only_with_.empty()) declared.only_with.push_back(only_with_);
+  return CommandOption(&declared_.emplace_back(std::move(declared)));
 }
-template CommandOption CommandOptions::add_value(const std::string&, std::string&,
-                                                 const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, std::vector<std::string>&,
-                                                 const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, int&, const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, std::int64_t&,
-                                                 const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, std::uint64_t&,
-                                                 const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, std::uint32_t&,
-                                                 const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, double&, const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, std::optional<int>&,
-                                                 const std::string&);
-template CommandOption CommandOptions::add_value(const std::string&, std::optional<double>&,
-                                                 const std::string&);
 
-CommandOption CommandOptions::add_number_function(const std::string& name,
-                                                  std::function<void(std::int64_t)> take,
-                                                  const std::string& help) {
-  return add_named(name, [&](const std::string& bare) {
-    return app_.add_option_function<std::int64_t>(
-        bare, [take = std::move(take)](const std::int64_t& number) { take(number); }, help);
-  });
+CommandOption CommandOptions::add_option(const std::string& name, std::string& value,
+                                         const std::string& help) {
+  return declare(
+      add_named(name, [&](const auto& bare) { return app_.add_option(bare, value, help); }), {});
+}
+CommandOption CommandOptions::add_option(const std::string& name, std::vector<std::string>& values,
+                                         const std::string& help) {
+  return declare(
+      add_named(name, [&](const auto& bare) { return app_.add_option(bare, values, help); }), {});
+}
+
+CommandOption CommandOptions::add_read(const std::string& name, bool list, DeclaredOption declared,
+                                       const std::string& value_name, const std::string& help,
+                                       const std::string& preset) {
+  const bool named = name.find(' ') != std::string::npos;
+  // The values are read by take_values().
+  CLI::Option* option =
+      add_named(named ? name : name + " " + value_name, [&](const std::string& bare) {
+        using Texts = std::vector<std::string>;
+        return list ? app_.add_option_function<Texts>(
+                          bare, [](const Texts&) {}, help)
+                    : app_.add_option_function<std::string>(
+                          bare, [](const std::string&) {}, help);
+      });
+  if (list && !option->get_positional()) option->expected(1)->take_all();
+  if (!preset.empty()) option->default_str(preset);
+  return declare(option, std::move(declared));
 }
 
 CommandOption CommandOptions::add_flag(const std::string& name, bool& value,
                                        const std::string& help) {
-  return CommandOption(app_.add_flag(name, value, help));
+  return declare(app_.add_flag(name, value, help), {});
 }
-
-CommandOption CommandOptions::add_option_function(const std::string& name,
-                                                  std::function<void(const std::string&)> take,
-                                                  const std::string& help) {
-  return add_named(name, [&](const std::string& bare) {
-    return app_.add_option_function<std::string>(bare, take, help);
-  });
-}
-CommandOption CommandOptions::add_flag_callback(const std::string& name, std::function<void()> take,
-                                                const std::string& help) {
-  return CommandOption(app_.add_flag_callback(name, std::move(take), help));
+CommandOption CommandOptions::add_no_flag(const std::string& name, bool& value,
+                                          const std::string& help) {
+  return add_flag_function(
+      name, [&value](std::int64_t sign) { value = sign <= 0; }, help);
 }
 CommandOption CommandOptions::add_flag_function(const std::string& name,
                                                 std::function<void(std::int64_t)> take,
                                                 const std::string& help) {
-  return CommandOption(app_.add_flag_function(name, std::move(take), help));
+  return declare(app_.add_flag_function(name, std::move(take), help), {});
 }
 
 void CommandOptions::group(const std::string& name) {
   app_.option_defaults()->group(name);
-}
-
-CommandOption CommandOptions::get_option(const std::string& name) {
-  return CommandOption(app_.get_option(name));
+  only_with_.clear();
 }
 std::size_t CommandOptions::count(const std::string& name) const {
   return app_.count(name);
 }
-std::string not_one_of(const std::string& text, const std::vector<std::string>& words) {
-  std::string list;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    list += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+
+void CommandOptions::remove(CLI::Option* option) {
+  for (DeclaredOption& declared : declared_) {
+    if (declared.option == option) declared.option = nullptr;
   }
-  const std::string near = nearest_name(text, words);
-  return "'" + text + "' is not " + list + (near.empty() ? "" : "; did you mean '" + near + "'?");
+  app_.remove_option(option);
 }
 
-std::vector<OptionFacts> facts_of(const CLI::App& app) {
+Status CommandOptions::take_values() const {
+  for (const DeclaredOption& declared : declared_) {
+    if (declared.option == nullptr || declared.option->count() == 0 || !declared.take) continue;
+    Status status = declared.take(declared.option->results());
+    if (status) continue;
+    Error error = std::move(status).error();
+    error.message = fmt::format("{}: {}", name_of(*declared.option), error.message);
+    return error;
+  }
+  return {};
+}
+
+bool CommandOptions::met(const std::string& condition) const {
+  const std::size_t space = condition.find(' ');
+  const CLI::Option* other = app_.get_option_no_throw(condition.substr(0, space));
+  if (other == nullptr) return false;
+  if (space == std::string::npos) return is_given(*other);
+  const std::string& value =
+      other->count() > 0 ? other->results().back() : other->get_default_str();
+  return value == condition.substr(space + 1);
+}
+
+Status CommandOptions::check_conditions() const {
+  for (const DeclaredOption& declared : declared_) {
+    if (declared.option == nullptr || !is_given(*declared.option)) continue;
+    const std::string name = name_of(*declared.option);
+    const auto is_met = [this](const std::string& condition) { return met(condition); };
+    for (const std::vector<std::string>& of : declared.only_with) {
+      if (std::ranges::any_of(of, is_met)) continue;
+      std::vector<std::string> words = of;  // "action pack", of a positional, is told as "pack"
+      for (std::string& word : words) {
+        if (!word.starts_with('-')) word.erase(0, word.find(' ') + 1);
+      }
+      const std::string others = either_of(words);
+      return usage(fmt::format("{} is for {}", name, others),
+                   fmt::format("add {}, or leave {} out", others, name));
+    }
+    const auto other = std::ranges::find_if(declared.not_with, is_met);
+    if (other == declared.not_with.end()) continue;
+    return usage(fmt::format("{} and {} exclude each other", *other, name),
+                 "leave one of them out");
+  }
+  return {};
+}
+
+std::vector<OptionFacts> CommandOptions::facts() const {
   std::vector<OptionFacts> facts;
-  for (const CLI::Option* option : app.get_options()) {
+  for (const CLI::Option* option : std::as_const(app_).get_options()) {
     OptionFacts one;
     one.positional = option->get_positional();
     for (const std::string& name : option->get_snames()) one.names.push_back("-" + name);
@@ -169,15 +209,11 @@ std::vector<OptionFacts> facts_of(const CLI::App& app) {
     one.takes_value = option->get_items_expected_max() > 0;
     one.value_name = option->get_type_name();
     one.description = option->get_description();
-    // The validators of an option are found by number until there is none.
-    try {
-      for (int i = 0;; ++i) {
-        const std::string& name = const_cast<CLI::Option*>(option)->get_validator(i)->get_name();
-        if (name.rfind(kWordsMark, 0) != 0) continue;
-        std::istringstream words(name.substr(kWordsMark.size()));
-        for (std::string word; words >> word;) one.words.push_back(word);
-      }
-    } catch (const CLI::OptionNotFound&) {
+    one.kind = one.takes_value ? kind_of_text(*option) : "flag";
+    const auto declared = std::ranges::find(declared_, option, &DeclaredOption::option);
+    if (declared != declared_.end() && !declared->kind.empty()) {
+      one.kind = declared->kind;
+      one.words = declared->words;
     }
     facts.push_back(std::move(one));
   }

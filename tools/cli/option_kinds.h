@@ -1,71 +1,112 @@
 #pragma once
 
+#include <initializer_list>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/numbers.h"
+#include "core/quantity.h"
+#include "math/types.h"
 #include "tools/cli/command_options.h"
-#include "tools/cli/one_of.h"
+#include "tools/cli/usage.h"
 
-// Common kinds of options.
+// Kinds of values for CommandOptions::add(). Messages quote the value.
 
 namespace krok::cli {
 
-// `name` with a name for its value, unless it has one: "--rate N".
-inline std::string with_value_name(const std::string& name, const char* value) {
-  return name.find(' ') == std::string::npos ? name + " " + value : name;
+// The numbers that an option takes. `above`: more than `low`.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool above = false;
+};
+inline constexpr Range kNotNegative = {.low = 0};
+inline constexpr Range kPositive = {.low = 0, .above = true};
+
+// Quantities, see core/quantity.h for their units; codes are those of there, and usage beyond the
+// range.
+ValueKind<double> length(Range metres = {});
+ValueKind<double> length_with_unit(Range metres = {});
+ValueKind<double> angle(Range degrees = {});               // radians
+ValueKind<double> seconds(Range seconds = kNotNegative);   // not in frames
+ValueKind<ClipTime> clip_time(Range time = kNotNegative);  // seconds or frames
+ValueKind<double> frequency(Range hertz = kPositive);
+// A finite number; code usage. `unit` may follow it.
+ValueKind<double> number(Range range = {}, const std::string& unit = {});
+// A frame rate in frames per second, from 0.001 to 1000000. Code usage.
+ValueKind<double> rate();
+// A decimal integer. Code usage.
+ValueKind<long long> whole(long long low, long long high);
+
+// Values separated by commas (or `between`): "1m,0,-20cm". `least` is how many there must be. Codes
+// usage, and those of the quantities.
+ValueKind<std::vector<double>> numbers(std::vector<ValueKind<double>> kinds, std::size_t least,
+                                       char between = ',');
+// The same for a T of fixed size, a Vec3 or a std::array; values that may be missing are 0.
+template <typename T>
+ValueKind<T> numbers_as(std::vector<ValueKind<double>> kinds, std::size_t least,
+                        char between = ',') {
+  const auto list = numbers(std::move(kinds), least, between);
+  return {list.name,
+          list.value_name,
+          [read = list.read](const std::string& text) -> Result<T> {
+            const auto values = read(text);
+            if (!values) return values.error();
+            T all{};
+            for (std::size_t i = 0; i < static_cast<std::size_t>(all.size()); ++i) {
+              all[static_cast<decltype(all.size())>(i)] = i < values->size() ? (*values)[i] : 0;
+            }
+            return all;
+          },
+          {}};
+}
+template <typename T>
+ValueKind<T> lengths(char between = ',') {
+  const std::size_t count = static_cast<std::size_t>(T{}.size());
+  return numbers_as<T>(std::vector(count, length()), count, between);
 }
 
-// An option with a fixed list of values.
-template <typename T>
-CommandOption add_choice(CommandOptions& command, const std::string& name, T& value,
-                         std::vector<std::pair<std::string, T>> words,
-                         const std::string& description, const std::string& type_name,
-                         const std::string& default_word) {
-  return command.add_option(name, value, description)
-      .type_name(type_name)
-      .transform(one_of(std::move(words)))
-      .default_str(default_word);
-}
+// "1.5s" or "120f".
+std::string written(const ClipTime& time);
 
-// A decimal integer from `low` to `high`. CLI11 itself reads "010" as 8 and "0x10" as 16.
-template <typename T>
-CommandOption add_whole(CommandOptions& command, const std::string& name, T& value,
-                        const std::string& description, long long low, long long high) {
-  return command.add_option(with_value_name(name, "N"), value, description)
-      .transform([low, high](std::string& text) {
-        const auto number = parse_integer(text);
-        if (!number || *number < low || *number > high) {
-          return "'" + text + "' is not an integer from " + std::to_string(low) + " to " +
-                 std::to_string(high);
-        }
-        text = std::to_string(*number);
-        return std::string();
-      });
-}
+// A file to write, of one of these extensions: ".svg". Code usage.
+ValueKind<std::string> output(std::vector<std::string> endings);
 
-// A finite decimal number. CLI11 itself accepts "nan", "0x10" and " 2".
-template <typename T>
-CommandOption add_number(CommandOptions& command, const std::string& name, T& value,
-                         const std::string& description) {
-  return command.add_option(with_value_name(name, "N"), value, description)
-      .check([](std::string& text) {
-        return parse_finite(text) ? std::string() : "'" + text + "' is not a number";
-      });
-}
+// "a, b or c".
+std::string either_of(const std::vector<std::string>& words);
 
-// A frame rate in frames per second, from 0.001 to 1000000. CLI11 itself accepts "1e999" and "nan".
+// "'dq' is not linear, dual-quaternion or rigid", and which is near.
+std::string not_one_of(const std::string& text, const std::vector<std::string>& words);
+
+// One of a list of words, case-sensitive; messages list them in this order.
 template <typename T>
-CommandOption add_rate(CommandOptions& command, const std::string& name, T& value,
-                       const std::string& description) {
-  return command.add_option(with_value_name(name, "N"), value, description)
-      .check([](std::string& text) {
-        const auto rate = parse_finite(text);
-        return rate && *rate >= 1e-3 && *rate <= 1e6
-                   ? std::string()
-                   : "'" + text + "' is not a frame rate from 0.001 to 1000000";
-      });
+ValueKind<T> choice(std::vector<std::pair<std::string, T>> words) {
+  std::vector<std::string> names;
+  for (const auto& [word, value] : words) names.push_back(word);
+  auto read = [words = std::move(words), names](const std::string& text) -> Result<T> {
+    for (const auto& [word, value] : words) {
+      if (text == word) return value;
+    }
+    return usage(not_one_of(text, names));
+  };
+  return {"choice", "WORD", std::move(read), std::move(names)};
+}
+// The same for the word itself, in any case.
+ValueKind<std::string> words(std::vector<std::string> words);
+
+// `word`, or a value of `kind`: read as none for the word, as by "auto|N".
+template <typename T>
+ValueKind<std::optional<T>> or_word(const std::string& word, const ValueKind<T>& kind) {
+  return {kind.name,
+          word + "|" + kind.value_name,
+          [word, read = kind.read](const std::string& text) -> Result<std::optional<T>> {
+            if (text == word) return std::optional<T>();
+            auto value = read(text);
+            if (!value) return std::move(value).error();
+            return std::optional<T>(*std::move(value));
+          },
+          {}};
 }
 
 }  // namespace krok::cli

@@ -4,6 +4,7 @@
 
 #include "core/file.h"
 #include "core/text.h"
+#include "tools/cli/usage.h"
 
 namespace krok::cli {
 
@@ -34,23 +35,22 @@ std::string maker_of(Kind kind, Kind from) {
 }  // namespace
 
 Status check_output_kind(const std::string& path, const std::string& option, Kind written) {
-  const Kind named = registry::kind_of_name(path);
-  if (named == written) return {};
-  const std::string_view own = registry::kind_name(written);
-  if (named == Kind::unknown) {
+  const auto read = output_of(written).read(path);
+  if (read) return {};
+  return usage(fmt::format("{}: {}", option, read.error().message), read.error().hint);
+}
+
+ValueKind<std::string> output_of(Kind written) {
+  const auto read = [written](const std::string& path) -> Result<std::string> {
+    const Kind named = registry::kind_of_name(path);
     // Devices and names without an extension are taken as they are.
-    const std::string ending = extension(path);
-    if (ending.empty()) return {};
-    return Error(
-        "usage",
-        fmt::format("{} {}: the output is a .{} file, not {}", option, path, own, shown(ending)),
-        fmt::format("use the extension .{}", own));
-  }
-  const std::string maker = maker_of(named, written);
-  return Error("usage",
-               fmt::format("{} {}: the output is a .{} file, not .{}", option, path, own,
-                           registry::kind_name(named)),
-               fmt::format("use the extension .{}{}{}", own, maker.empty() ? "" : "; ", maker));
+    if (named == written || (named == Kind::unknown && extension(path).empty())) return path;
+    const std::string_view own = registry::kind_name(written);
+    const std::string maker = named == Kind::unknown ? std::string() : maker_of(named, written);
+    return usage(fmt::format("the output is a .{} file, not {}", own, shown(path)),
+                 fmt::format("use the extension .{}{}{}", own, maker.empty() ? "" : "; ", maker));
+  };
+  return {"output", "OUT", read, {}};
 }
 
 }  // namespace krok::cli

@@ -4,6 +4,7 @@
 
 #include "core/result.h"
 #include "formats/registry/registry.h"
+#include "tools/cli/command_options.h"
 
 namespace krok::cli {
 
@@ -11,5 +12,8 @@ namespace krok::cli {
 // `option` is the option that gave the path, "-o".
 Status check_output_kind(const std::string& path, const std::string& option,
                          registry::Kind written);
+
+// The same as a kind of value.
+ValueKind<std::string> output_of(registry::Kind written);
 
 }  // namespace krok::cli

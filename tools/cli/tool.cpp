@@ -16,6 +16,7 @@
 #include "core/temporary_files.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/console_progress.h"
+#include "tools/cli/output_kind.h"
 #include "tools/cli/paths.h"
 
 namespace krok::cli {
@@ -165,7 +166,7 @@ int fail_usage(const ToolSpec& spec, const std::vector<std::string>& arguments, 
 }
 
 // A line for each option: names, V if it takes a value, that value's name, words that it must be
-// one of, description; separated by tabs. For krok completion.
+// one of, description, kind of value; separated by tabs. For krok completion.
 int list_options(const ToolSpec& spec) {
   std::string text;
   for (const OptionFacts& option : CommandLine(spec, CommandLine::Form::single).options()) {
@@ -176,8 +177,9 @@ int list_options(const ToolSpec& spec) {
     };
     std::string description = option.description;
     std::ranges::replace(description, '\n', ' ');
-    text += fmt::format("{}\t{}\t{}\t{}\t{}\n", joined(option.names), option.takes_value ? "V" : "",
-                        option.value_name, joined(option.words), description);
+    text +=
+        fmt::format("{}\t{}\t{}\t{}\t{}\t{}\n", joined(option.names), option.takes_value ? "V" : "",
+                    option.value_name, joined(option.words), description, option.kind);
   }
   return print_and_end(spec.name, text);
 }
@@ -257,6 +259,10 @@ std::function<Result<std::string>()> always(std::string ending) {
 }
 
 Result<int> run_guarded(const ToolSpec& spec, ToolContext& context) {
+  if (spec.writes) {
+    Status status = check_output_kind(context.output, "-o", *spec.writes);
+    if (!status) return status.error();
+  }
   try {
     return spec.run(context);
   } catch (const std::exception&) {

@@ -12,6 +12,7 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "formats/io/inputs.h"
+#include "formats/registry/registry.h"
 #include "scene/provenance.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/report.h"
@@ -139,17 +140,18 @@ struct ToolSpec {
     // after the options are parsed; an Error (code usage) if they do not determine it.
     std::function<Result<std::string>()> ending;
   };
-  std::string name;                // "krok-import"
-  std::string summary;             // in a line of 75 characters, no full stop; krok --help has it, too
-  std::string details;             // sentences that follow it in the help, or empty
-  std::string inputs;              // for the usage line: "IN.bvh"
-  std::vector<Example> examples;   // at least two
-  std::string exit_done = "done";  // meaning of exit code 0
-  std::string exit_no;             // meaning of exit code 1; empty if never returned
-  std::string exit_partly;         // meaning of exit code 3 without a Batch, or empty
-  std::string report_name;         // alias of --json, "--report", or empty
-  bool has_output = true;          // has -o
-  bool needs_output = true;        // -o is required
+  std::string name;     // "krok-import"
+  std::string summary;  // in a line of 75 characters, no full stop; krok --help has it, too
+  std::string details;  // sentences that follow it in the help, or empty
+  std::string inputs;   // for the usage line: "IN.bvh"
+  std::vector<Example> examples;         // at least two
+  std::string exit_done = "done";        // meaning of exit code 0
+  std::string exit_no;                   // meaning of exit code 1; empty if never returned
+  std::string exit_partly;               // meaning of exit code 3 without a Batch, or empty
+  std::string report_name;               // alias of --json, "--report", or empty
+  bool has_output = true;                // has -o
+  bool needs_output = true;              // -o is required
+  std::optional<registry::Kind> writes;  // what -o is, if it is always the same
   std::optional<Batch> batch;
 
   // Adds the tool's own options and positionals.
@@ -175,26 +177,6 @@ ToolSpec spec_of(std::string name, const std::shared_ptr<Options>& options,
   spec.declare = [options, declare](CommandOptions& command) { declare(command, *options); };
   if (check != nullptr) spec.check = [options, check] { return check(*options); };
   spec.run = [options, run](ToolContext& context) { return run(*options, context); };
-  return spec;
-}
-
-// The same where `understand` makes of the options as given those that `run` takes.
-template <typename Arguments, typename Options>
-ToolSpec spec_of(std::string name, const std::shared_ptr<Arguments>& arguments,
-                 void (*declare)(CommandOptions&, Arguments&),
-                 Result<Options> (*understand)(const Arguments&),
-                 Result<int> (*run)(const Options&, ToolContext&)) {
-  ToolSpec spec;
-  spec.name = std::move(name);
-  spec.declare = [arguments, declare](CommandOptions& command) { declare(command, *arguments); };
-  spec.check = [arguments, understand]() -> Status {
-    const auto options = understand(*arguments);
-    return options ? Status() : options.error();
-  };
-  spec.run = [arguments, understand, run](ToolContext& context) -> Result<int> {
-    const auto options = understand(*arguments);
-    return options ? run(*options, context) : options.error();
-  };
   return spec;
 }
 

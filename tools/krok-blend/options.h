@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
 #include "tools/cli/tool.h"
+#include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/keys_choice.h"
 
 namespace krok::cli::blend {
@@ -16,7 +17,7 @@ enum class AlignChoice : unsigned char { automatic, root, stance, none };
 enum class WarpChoice : unsigned char { pchip, linear, dtw };
 
 struct Options {
-  std::vector<std::string> inputs;  // PATH:WEIGHT
+  std::vector<WeightedInput> inputs;
   KeysChoice keys = KeysChoice::automatic;
   WarpChoice warp = WarpChoice::pchip;
   AlignChoice align = AlignChoice::automatic;

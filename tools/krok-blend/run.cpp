@@ -14,7 +14,6 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/keys_sidecar.h"
@@ -39,23 +38,21 @@ struct Motion {
 Result<std::vector<Motion>> read_motions(const Options& options, const io::FindRoles& find_roles,
                                          ToolContext& context) {
   std::vector<Motion> motions;
-  for (const std::string& word : options.inputs) {
-    const auto input = parse_weighted_input(word);
-    if (!input) return input.error();
-    auto clip = io::open_motion(input->path, context);
+  for (const WeightedInput& input : options.inputs) {
+    auto clip = io::open_motion(input.path, context);
     if (!clip) return clip.error();
     Motion motion;
-    motion.name = name_of_input(input->path);
+    motion.name = name_of_input(input.path);
     motion.clip = std::move(*clip);
-    if (input->weight) {
-      motion.weight = krok::blend::WeightCurve::constant(*input->weight);
+    if (input.weight) {
+      motion.weight = krok::blend::WeightCurve::constant(*input.weight);
     } else {
-      auto curve = read_weight_curve(input->curve, context);
+      auto curve = read_weight_curve(input.curve, context);
       if (!curve) return curve.error();
       motion.weight = std::move(*curve);
     }
     auto found =
-        choose_keys(options.keys, input->path, motion.name, motion.clip, find_roles, context);
+        choose_keys(options.keys, input.path, motion.name, motion.clip, find_roles, context);
     if (!found) return found.error();
     motion.has_keys = found->has_value();
     if (motion.has_keys) motion.keys = std::move(**found);
@@ -197,9 +194,6 @@ void report(const std::vector<Motion>& motions, const Correspondence& moments,
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   const auto motions = read_motions(options, *find_roles, context);

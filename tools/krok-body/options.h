@@ -8,15 +8,18 @@
 
 namespace krok::cli::body {
 
+// `frame` only for BodyPose::frame.
+struct Pose {
+  BodyPose kind = BodyOptions().pose;
+  int frame = 0;
+};
+
 struct Options {
   std::string input;
   BodyDetail detail = BodyDetail::medium;
-  std::string pose = "auto";  // auto, reference, or a frame
+  Pose pose;
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
-
-// Code usage for an invalid pose.
-Result<BodyOptions> body_options(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

@@ -7,7 +7,6 @@
 #include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 
 namespace krok::cli::body {
@@ -60,19 +59,18 @@ Json result_of(const Body& body) {
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  auto how = body_options(options);
-  if (!how) return how.error();
-  how->jobs = context.jobs;
-  how->progress = context.progress;
+  BodyOptions how;
+  how.detail = options.detail;
+  how.pose = options.pose.kind;
+  how.frame = options.pose.frame;
+  how.jobs = context.jobs;
+  how.progress = context.progress;
 
   auto input = context.open_input(options.input);
   if (!input) return input.error();
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::model); !status) {
-    return status.error();
-  }
   auto clip = read_skeleton(*input, context);
   if (!clip) return clip.error();
-  auto body = make_body(*clip, *how);
+  auto body = make_body(*clip, how);
   if (!body) return std::move(body).error().in_file(input->path());
   context.diagnose(body->diagnostics);
 

@@ -1,133 +1,226 @@
 #include "tools/krok-cam/options.h"
 
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
 #include <memory>
 
+#include "core/numbers.h"
+#include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/cli/option_kinds.h"
 #include "tools/krok-cam/run.h"
-#include "tools/shared/orientation_option.h"
-#include "tools/shared/role_input.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::cam {
 
 namespace {
 
-void declare_subject(CommandOptions& command, Arguments& a) {
+// Options that film a motion.
+const std::vector<std::string> kFilms = {"--follow", "--orbit", "--still"};
+
+// Aspect ratio from "16:9" or "1.78".
+Result<double> parse_aspect(const std::string& text) {
+  const auto parts = numbers({number(kPositive), number(kPositive)}, 1, ':').read(text);
+  const double ratio = !parts ? 0 : (*parts)[0] / (parts->size() > 1 ? (*parts)[1] : 1.0);
+  if (ratio >= 1e-3 && ratio <= 1e3) return ratio;
+  return usage(fmt::format("'{}' is not an aspect ratio", shown(text)), "write 16:9 or 1.78");
+}
+
+// "20s" or "1.5turns".
+Result<Orbit> parse_orbit(const std::string& text) {
+  std::string_view number_of_turns = text;
+  for (const std::string_view unit : {"turns", "turn"}) {
+    if (!number_of_turns.ends_with(unit)) continue;
+    number_of_turns.remove_suffix(unit.size());
+    const auto count = parse_finite(trimmed(number_of_turns));
+    if (count && *count > 0 && *count <= 1e4) return Orbit{.turns = *count};
+    return usage(fmt::format("'{}' is not a number of turns", shown(text)),
+                 "write 20s or 1.5turns");
+  }
+  const auto period = seconds({1e-3}).read(text);
+  if (!period) return period.error();
+  return Orbit{.period = *period};
+}
+
+void declare_subject(CommandOptions& command, Options& o) {
   command.group("Filming a motion");
-  command.add_option("--follow JOINT", a.follow,
-                     "Follow a joint, given by name or role: hips, chest, head, left_hand");
-  command.add_option("--orbit TIME", a.orbit,
-                     "Orbit the character: 20s is the time of one turn, 1.5turns is the number of "
-                     "turns over the whole motion");
-  command.add_flag("--still", a.still, "Static camera that shows the whole motion");
-  add_map_option(command, a.map);
+  command
+      .add_option("--follow JOINT", o.follow,
+                  "Follow a joint, given by name or role: hips, chest, head, left_hand")
+      .not_with({"--orbit", "--still"});
+  command
+      .add("--orbit", o.orbit, ValueKind<Orbit>{"orbit", "TIME", parse_orbit, {}},
+           "Orbit the character: 20s is the time of one turn, 1.5turns is the number of turns over "
+           "the whole motion")
+      .not_with("--still");
+  command.add_flag("--still", o.still, "Static camera that shows the whole motion");
+  add_map_option(command, o.map).only_with(kFilms);
 }
 
-void declare_place(CommandOptions& command, Arguments& a) {
+void declare_place(CommandOptions& command, Options& o) {
   command.group("View direction");
-  add_choice<View>(command, "--view", a.view,
-                   {{"front", View::front},
-                    {"three-quarter", View::three_quarter},
-                    {"left", View::left},
-                    {"right", View::right},
-                    {"back", View::back},
-                    {"top", View::top}},
-                   "front, three-quarter (between the character's front and left), left, right, "
-                   "back or top; an orbit starts there",
-                   "VIEW", "three-quarter");
-  command.add_option("--azimuth ANGLE", a.azimuth,
-                     "The same as an angle: 0 sees the character's front, 90deg its left side");
-  command.add_option("--elevation ANGLE", a.elevation,
-                     "Camera elevation; 90deg looks straight down [10deg]");
-  add_choice<AzimuthFrom>(
-      command, "--facing", a.facing,
-      {{"start", AzimuthFrom::start}, {"actor", AzimuthFrom::actor}, {"world", AzimuthFrom::world}},
-      "What counts as the front: the facing at the start, the facing in each "
-      "frame (actor), or +Z (world)",
-      "WHAT", "start");
-  command.add_flag("--clockwise", a.clockwise, "Orbit clockwise, seen from above");
-  command.add_flag("--fixed-centre", a.fixed_centre,
-                   "Orbit around the middle of the whole motion; by default, the centre moves with "
-                   "the character");
+  command.only_with(kFilms);
+  command.add("--view VIEW", o.view,
+              choice<View>({{"front", View::front},
+                            {"three-quarter", View::three_quarter},
+                            {"left", View::left},
+                            {"right", View::right},
+                            {"back", View::back},
+                            {"top", View::top}}),
+              "front, three-quarter (between the character's front and left), left, right, back or "
+              "top; an orbit starts there",
+              "three-quarter");
+  command.add("--azimuth", o.azimuth, angle(),
+              "The same as an angle: 0 sees the character's front, 90deg its left side");
+  command
+      .add("--elevation", o.elevation, angle({-90, 90}),
+           "Camera elevation; 90deg looks straight down [10deg]")
+      .not_with("--view top");
+  command.add(
+      "--facing WHAT", o.facing,
+      choice<AzimuthFrom>({{"start", AzimuthFrom::start},
+                           {"actor", AzimuthFrom::actor},
+                           {"world", AzimuthFrom::world}}),
+      "What counts as the front: the facing at the start, the facing in each frame (actor), "
+      "or +Z (world)",
+      "start");
+  command.add_flag("--clockwise", o.clockwise, "Orbit clockwise, seen from above")
+      .only_with("--orbit");
+  command
+      .add_flag("--fixed-centre", o.fixed_centre,
+                "Orbit around the middle of the whole motion; by default, the centre moves with "
+                "the character")
+      .only_with("--orbit");
 }
 
-void declare_image(CommandOptions& command, Arguments& a) {
+void declare_image(CommandOptions& command, Options& o) {
   command.group("Framing");
-  add_choice<Framing>(command, "--frame", a.frame,
-                      {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}},
-                      "What to keep in the image in all frames: the full character, the upper body "
-                      "with the arms, or the head",
-                      "PART", "full");
-  add_number(command, "--margin PART", a.margin,
-             "Fraction of height and width kept free at each edge, up to 0.45")
-      .default_str("0.08");
-  command.add_option(
-      "--distance LENGTH", a.distance,
+  command.only_with(kFilms);
+  command.add(
+      "--frame PART", o.frame,
+      choice<Framing>(
+          {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}}),
+      "What to keep in the image in all frames: the full character, the upper body with the "
+      "arms, or the head",
+      "full");
+  command.add("--margin PART", o.margin, number({0, 0.45}),
+              "Fraction of height and width kept free at each edge, up to 0.45", "0.08");
+  command.add(
+      "--distance", o.distance, length({0, 1e4, true}),
       "Distance from the point it looks at; default: the shortest that frames the character");
-  command.add_option("--fov ANGLE", a.fov, "Vertical field of view").default_str(a.fov);
-  add_number(command, "--lens MM", a.lens,
-             "The same as a focal length in millimetres, for an image 24 mm high");
-  command
-      .add_option("--aspect W:H", a.aspect,
-                  "Aspect ratio, width by height, used for framing; written to glTF when filming a "
-                  "motion or if given")
-      .default_str(a.aspect);
+  command.add("--fov", o.fov, angle({0.01, 179.99}), "Vertical field of view", "40deg")
+      .not_with("--lens");
+  command.add("--lens MM", o.lens, number({0.1, 1e5}),
+              "The same as a focal length in millimetres, for an image 24 mm high");
+  command.only_with({});
+  command.add("--aspect", o.aspect, ValueKind<double>{"ratio", "W:H", parse_aspect, {}},
+              "Aspect ratio, width by height, used for framing; written to glTF when filming a "
+              "motion or if given",
+              "16:9");
 }
 
-void declare_movement(CommandOptions& command, Arguments& a) {
+void declare_movement(CommandOptions& command, Options& o) {
   command.group("Movement");
-  command.add_option(
-      "--smooth TIME", a.smooth,
-      "Smoothing time of the path and the facing; 0: no smoothing [0.5s, an orbit 1s]");
-  command.add_option("--dead-zone LENGTH", a.dead_zone,
-                     "Distance the followed joint may move before the camera follows [0]");
+  command.only_with({"--follow", "--orbit"});
+  command.add("--smooth", o.smooth, seconds(),
+              "Smoothing time of the path and the facing; 0: no smoothing [0.5s, an orbit 1s]");
+  command.add("--dead-zone", o.dead_zone, length(kNotNegative),
+              "Distance the followed joint may move before the camera follows [0]");
   command.group("Keys and scenes");
-  add_rate(command, "--rate", a.rate,
-           "Frame rate of the result; default: that of the keys' file or of the scene's keys");
-  command.add_option("--camera NAME", a.camera, "Camera of a scene, by name or index");
-}
-
-void declare_output(CommandOptions& command, Arguments& a) {
-  command.group("Output");
-  add_choice<Format>(command, "--format", a.format, {{"cam", Format::cam}, {"glb", Format::glb}},
-                     "cam or glb; default: from the output's extension", "FORMAT", "")
-      .default_str("");
-  add_orientation_option(command, a.orientation);
-  command.add_option(
-      "--into IN.glb", a.into,
-      "Write this glTF file as GLB, with the camera added to its scene and animation");
-  command.add_option("--name NAME", a.name, "glTF: name of the camera").default_str(a.name);
-  add_whole(command, "--clip", a.clip,
-            "--into a file with several animations: index of the one to add the camera to; "
-            "default: the first",
-            0, 1000000);
-}
-
-}  // namespace
-
-void declare(CommandOptions& command, Arguments& arguments) {
   command
-      .add_option("input IN", arguments.input,
+      .add("--rate", o.rate, rate(),
+           "Frame rate of the result; default: that of the keys' file or of the scene's keys")
+      .not_with(kFilms);
+  command.add_option("--camera NAME", o.camera, "Camera of a scene, by name or index")
+      .not_with(kFilms);
+}
+
+void declare_output(CommandOptions& command, Options& o) {
+  command.group("Output");
+  command.add("--format FORMAT", o.format,
+              choice<Format>({{"cam", Format::cam}, {"glb", Format::glb}}),
+              "cam or glb; default: from the output's extension");
+  add_orientation_option(command, o.orientation);
+  command
+      .add_option("--into IN.glb", o.into,
+                  "Write this glTF file as GLB, with the camera added to its scene and animation")
+      .not_with("--format cam");
+  command.add_option("--name NAME", o.name, "glTF: name of the camera").default_str("camera");
+  command
+      .add("--clip", o.clip, whole(0, 1000000),
+           "--into a file with several animations: index of the one to add the camera to; default: "
+           "the first")
+      .only_with("--into");
+}
+
+void declare(CommandOptions& command, Options& o) {
+  command
+      .add_option("input IN", o.input,
                   "Camera keys (.json, formats/camera_keys/SPEC.md), a .cam file, a glTF file with "
                   "a camera, or a motion: a .anim file or a capture, read as by krok-import with "
                   "default options")
       .required();
-  declare_subject(command, arguments);
-  declare_place(command, arguments);
-  declare_image(command, arguments);
-  declare_movement(command, arguments);
-  declare_output(command, arguments);
-  arguments.given = [&command](const char* option) { return command.count(option) > 0; };
+  declare_subject(command, o);
+  declare_place(command, o);
+  declare_image(command, o);
+  declare_movement(command, o);
+  declare_output(command, o);
+  o.given = [&command](const char* option) { return command.count(option) > 0; };
 }
 
-std::string ending(const Arguments& arguments) {
-  const bool glb = arguments.format == Format::glb || !arguments.into.empty();
+// What the options say of values that they do not name.
+Status check(const Options& o) {
+  if (o.azimuth && o.view != View::top && o.given("--view")) {
+    return usage("--view and --azimuth exclude each other", "leave one of them out");
+  }
+  if (o.still && o.facing == AzimuthFrom::actor) {
+    return usage("--facing actor is for a moving camera");
+  }
+  if (o.name.empty()) return usage("--name is empty");
+  return {};
+}
+
+}  // namespace
+
+std::optional<FilmOptions> film_of(const Options& o) {
+  constexpr double kSensorHeight = 24;  // millimetres
+  constexpr double kUsualElevation = 10 * kRadiansPerDegree;
+  // Seen from the top, the character faces up in the image.
+  constexpr std::array kAzimuths = {0.0, 45.0, 90.0, -90.0, 180.0, 180.0};
+  if (o.follow.empty() && !o.orbit && !o.still) return std::nullopt;
+  FilmOptions film;
+  ActorCamera& camera = film.camera;
+  camera.aspect = o.aspect;
+  camera.azimuth =
+      o.azimuth.value_or(kAzimuths[static_cast<std::size_t>(o.view)] * kRadiansPerDegree);
+  camera.elevation = o.elevation.value_or(o.view == View::top ? kPi / 2 : kUsualElevation);
+  camera.azimuth_from = o.facing;
+  camera.framing = o.frame;
+  camera.margin = o.margin;
+  if (o.distance) camera.distance = *o.distance;
+  camera.field_of_view = o.lens ? 2 * std::atan(kSensorHeight / 2 / *o.lens) : o.fov;
+  if (o.orbit) {
+    const double sign = o.clockwise ? -1 : 1;
+    film.turns = sign * o.orbit->turns;
+    if (o.orbit->period > 0) camera.turning = sign * 2 * kPi / o.orbit->period;
+    camera.smoothing = 1;
+  }
+  if (o.smooth) camera.smoothing = *o.smooth;
+  if (o.dead_zone) camera.dead_zone = *o.dead_zone;
+  film.moving_centre = !o.still && !o.fixed_centre;
+  film.follow = o.follow;
+  return film;
+}
+
+std::string ending(const Options& options) {
+  const bool glb = options.format == Format::glb || !options.into.empty();
   return glb ? ".glb" : ".cam";
 }
 
 ToolSpec make_spec() {
-  const auto arguments = std::make_shared<Arguments>();
-  ToolSpec spec = spec_of("krok-cam", arguments, declare, understand, run);
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-cam", options, declare, check, run);
   spec.summary = "Makes cameras: keyed, following, orbiting or fixed";
   spec.details = "Written as .cam or glTF, apart or added to a character.";
   spec.inputs = "IN.json|IN.cam|IN.glb|IN.anim|IN.bvh|IN.amc";
@@ -141,7 +234,7 @@ ToolSpec make_spec() {
                    {"krok-cam captures/*.bvh --still --view left --out-dir cameras",
                     "one camera per file, framing the whole motion from the left"}};
   spec.batch = {io::motion_endings(),
-                [arguments]() -> Result<std::string> { return ending(*arguments); }};
+                [options]() -> Result<std::string> { return ending(*options); }};
   return spec;
 }
 

@@ -15,37 +15,41 @@ namespace krok::cli::cam {
 enum class Format { from_name, cam, glb };
 enum class View { front, three_quarter, left, right, back, top };
 
-// The options as given on the command line.
-struct Arguments {
-  std::string input;
+// The time of one turn in seconds, or the number of turns over the whole motion.
+struct Orbit {
+  double period = 0, turns = 0;
+};
+
+struct Options {
+  std::string input, map;
   Format format = Format::from_name;
   OrientationEncoding orientation = OrientationEncoding::xyz;
-  std::string map;
   // What the camera films.
-  std::string follow, orbit;
+  std::string follow;
+  std::optional<Orbit> orbit;
   bool still = false;
   // View direction.
   View view = View::three_quarter;
-  std::string azimuth, elevation;
+  std::optional<double> azimuth, elevation;  // radians
   AzimuthFrom facing = AzimuthFrom::start;
   bool clockwise = false, fixed_centre = false;
   // Framing.
   Framing frame = Framing::full;
-  double margin = 0.08;
-  std::string distance;
-  std::string fov = "40deg";
-  std::optional<double> lens;
-  std::string aspect = "16:9";
+  double margin = 0;
+  std::optional<double> distance;  // metres
+  double fov = 0;                  // radians
+  std::optional<double> lens;      // millimetres
+  double aspect = 0;
   // Movement.
-  std::string smooth, dead_zone;
+  std::optional<double> smooth, dead_zone;  // seconds, metres
   std::optional<double> rate;
-  std::string camera;
+  std::string camera;  // which camera of a scene; empty: the first
   // glTF.
   std::string into;
   std::string name = "camera";
   std::optional<int> clip;
 
-  // Whether an option such as "--fov" was given; set by declare().
+  // Whether an option such as "--aspect" was given; set by declare().
   std::function<bool(const char* option)> given;
 };
 
@@ -57,27 +61,11 @@ struct FilmOptions {
   double turns = 0;           // orbit turns over the whole motion, if no turning speed is given
 };
 
-// The parsed options.
-struct Options {
-  std::string input, map;
-  Format format = Format::from_name;
-  OrientationEncoding orientation = OrientationEncoding::xyz;
-  std::optional<FilmOptions> film;
-  std::optional<double> rate;
-  std::string camera;  // which camera of a scene; empty: the first
-  std::string into, name;
-  std::optional<double> aspect;  // if given
-  std::optional<int> clip;
-};
-
-// The arguments keep a reference to `command`.
-void declare(CommandOptions& command, Arguments& arguments);
-
-// Code usage, and those of quantities; messages name the option.
-Result<Options> understand(const Arguments& arguments);
+// Empty if no motion is filmed.
+std::optional<FilmOptions> film_of(const Options& options);
 
 // The output extension that the options imply, ".cam" or ".glb".
-std::string ending(const Arguments& arguments);
+std::string ending(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

@@ -106,7 +106,7 @@ bool is_keys(const InputFile& file, Kind kind) {
 }
 
 Status refuse_film(const Options& options, const char* what) {
-  if (!options.film) return {};
+  if (!film_of(options)) return {};
   return Error("usage",
                fmt::format("--follow, --orbit and --still need a motion; this is {}", what))
       .in_file(options.input);
@@ -207,7 +207,8 @@ std::string_view part_name(Framing framing) {
 }
 
 Result<Shot> from_motion(const Options& options, const InputFile& file, ToolContext& context) {
-  if (!options.film) {
+  const auto filming = film_of(options);
+  if (!filming) {
     return Error("usage", "no camera mode given", "use --follow hips, --orbit 20s or --still")
         .in_file(file.path());
   }
@@ -220,17 +221,17 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
   if (clip->skeleton.empty()) {
     return Error("camera-empty", "the motion has no joints").in_file(file.path());
   }
-  ActorCamera camera = options.film->camera;
-  if (options.film->moving_centre) {
-    const auto joint = options.film->follow.empty()
+  ActorCamera camera = filming->camera;
+  if (filming->moving_centre) {
+    const auto joint = filming->follow.empty()
                            ? Result<int>(carrying_joint(*roles))
-                           : find_joint(options.film->follow, clip->skeleton, *roles);
+                           : find_joint(filming->follow, clip->skeleton, *roles);
     if (!joint) return Error(joint.error()).in_file(file.path());
     camera.joint = *joint;
   }
   const double duration = clip->duration();
-  if (options.film->turns != 0 && duration > 0) {
-    camera.turning = options.film->turns * 2 * kPi / duration;
+  if (filming->turns != 0 && duration > 0) {
+    camera.turning = filming->turns * 2 * kPi / duration;
   }
   auto filmed = film(*clip, *roles, camera);
   if (!filmed) return std::move(filmed).error().in_file(file.path());
@@ -297,8 +298,7 @@ Result<gltf::WithCamera> glb_of(const Options& options, const CameraTrack& track
   gltf::CameraOptions how;
   how.name = options.name;
   how.animation = options.clip;
-  how.aspect = options.aspect;
-  if (!how.aspect && options.film) how.aspect = options.film->camera.aspect;
+  if (options.given("--aspect") || film_of(options)) how.aspect = options.aspect;
   if (options.into.empty()) return gltf::camera_alone(track, how);
   const auto file = context.open_input(options.into);
   if (!file) return file.error();
@@ -359,7 +359,7 @@ void report(const Shot& shot, ToolContext& context) {
 Result<int> run(const Options& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
-  if (*format == Format::cam && options.aspect && !options.film) {
+  if (*format == Format::cam && options.given("--aspect") && !film_of(options)) {
     return Error("usage",
                  "--aspect is for glTF and for filming a motion; a .cam file does not store it");
   }

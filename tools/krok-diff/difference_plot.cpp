@@ -87,13 +87,6 @@ bool differs(const Moments& moments, const compare::SceneDifference& found) {
 
 }  // namespace
 
-Status check_plot_name(const std::string& path) {
-  const std::string ending = extension(path);
-  if (ending.empty() || ending == ".svg") return {};
-  return Error("usage", fmt::format("--plot {}: the output is SVG, not {}", path, shown(ending)),
-               "use the extension .svg");
-}
-
 Result<Plot> plot_of(const PlottedClip& first, const PlottedClip& second,
                      const compare::ClipDifference& found) {
   const RoleMap first_roles = find_roles(first.clip->skeleton);

@@ -18,9 +18,6 @@ struct PlottedClip {
   const Clip* clip = nullptr;
 };
 
-// Error usage if the extension of `path` is not .svg.
-Status check_plot_name(const std::string& path);
-
 struct Plot {
   std::string svg;
   std::size_t left_out = 0;  // animations that differ but are not drawn

@@ -158,8 +158,6 @@ Result<Pictures> make_pictures(const DifferenceSheet& sheet, int jobs) {
 
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
                    ToolContext& context) {
-  const auto sides = parse_sides(options.image);
-  if (!sides) return sides.error();
   const auto moments = moments_of(sheet, options);
   if (!moments) return moments.error();
   const LengthUnit unit = unit_for(sheet.largest);
@@ -173,7 +171,7 @@ Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options,
   for (const Compared& one : compared) pale.push_back(in_grey(one.first));
   render::Sheet image;
   if (sheet.measured) image.key = key;
-  for (const ImageSide& side : *sides) {
+  for (const ImageSide& side : sides_seen(options.image)) {
     add_rows(sheet, side, *moments, compared, pale, unit, image);
   }
   render::SheetOptions how;

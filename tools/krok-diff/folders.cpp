@@ -339,7 +339,7 @@ void declare_folder_options(CommandOptions& command, FolderOptions& options) {
                    "Copy changed and new files from B to A; no file is copied if any cannot be "
                    "read. A need not exist");
   command.add_flag("--prune", options.prune, "With --update: remove files that only A has")
-      .needs("--update");
+      .only_with("--update");
 }
 
 Result<bool> are_folders(const Options& options) {

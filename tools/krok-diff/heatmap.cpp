@@ -87,13 +87,6 @@ std::string legend_of(const DistanceColours& scale, bool within, bool some_not_c
 
 }  // namespace
 
-Status check_heatmap_name(const std::string& path) {
-  const std::string ending = extension(path);
-  if (path.empty() || path == "-" || ending == ".glb" || ending == ".gltf") return {};
-  return Error("usage", fmt::format("--heatmap {}: the output is glTF", path),
-               "use the extension .glb");
-}
-
 Status write_heatmap(const Scene& first, const compare::SceneDifference& found,
                      const std::string& path, ToolContext& context) {
   const bool compared = std::any_of(found.vertex_largest.begin(), found.vertex_largest.end(),

@@ -11,9 +11,6 @@
 
 namespace krok::cli::diff {
 
-// Error usage if the extension of --heatmap is not supported.
-Status check_heatmap_name(const std::string& path);
-
 // Writes the first scene's meshes, in the pose of the max difference, with each vertex coloured by
 // its max distance over all times (`found` must have kept them), and prints the legend. If no mesh
 // was compared: a warning, and no file.

@@ -3,81 +3,42 @@
 #include <memory>
 
 #include "core/file.h"
-#include "tools/krok-diff/difference_plot.h"
-#include "tools/krok-diff/heatmap.h"
 #include "tools/krok-diff/run.h"
-#include "tools/krok-diff/summary_page.h"
 #include "tools/krok-diff/tolerance_options.h"
 
 namespace krok::cli::diff {
 
 namespace {
 
-// The options as given on the command line.
-struct Arguments {
-  std::string first, second;
-  ToleranceArguments tolerance;
-  SheetOptions sheet;
-  std::string plot;
-  std::string heatmap;
-  std::string summary;
-  FolderOptions folders;
-};
-
-Result<Options> parse(const Arguments& arguments) {
-  Options options;
-  options.first = arguments.first;
-  options.second = arguments.second;
-  const auto tolerance = parse_tolerances(arguments.tolerance);
-  if (!tolerance) return tolerance.error();
-  options.tolerance = *tolerance;
-  options.matching = arguments.tolerance.matching;
-  options.materials = arguments.tolerance.materials;
-  options.sheet = arguments.sheet;
-  options.plot = arguments.plot;
-  options.heatmap = arguments.heatmap;
-  options.summary = arguments.summary;
-  options.folders = arguments.folders;
-  if (Status status = check_image_name(options.sheet.path, "--sheet"); !status)
-    return status.error();
-  if (Status status = check_plot_name(options.plot); !status) return status.error();
-  if (Status status = check_heatmap_name(options.heatmap); !status) return status.error();
-  if (Status status = check_summary_name(options.summary); !status) return status.error();
-  return options;
-}
-
-void declare(CommandOptions& command, Arguments& arguments) {
+void declare(CommandOptions& command, Options& o) {
   command
       .add_option(
-          "A", arguments.first,
+          "A", o.first,
           "A motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, .pc2 or .exr file, or a folder")
       .type_name("")
       .required();
   command
-      .add_option("B", arguments.second,
+      .add_option("B", o.second,
                   "A file of the same type (glTF can be compared with motions, models and point "
                   "caches too), or a folder")
       .type_name("")
       .required();
-  declare_tolerances(command, arguments.tolerance);
-  command.add_option(
-      "--sheet OUT.png", arguments.sheet.path,
-      "PNG image of both characters and of their difference; for motions, models and glTF");
-  declare_image_options(command, arguments.sheet.image, kDifferenceMoments);
-  for (const char* name : {"--moments", "--sides", "--elevation", "--size"}) {
-    command.get_option(name).needs("--sheet");
-  }
-  command.add_option("--plot OUT.svg", arguments.plot,
-                     "Charts of the distances and angles over time, as SVG; for motions and glTF");
-  command.add_option("--heatmap OUT.glb", arguments.heatmap,
-                     "A's mesh in the pose of the max difference, with each vertex coloured by its "
-                     "max distance over all times; for glTF and models");
-  command.add_option("--summary OUT.html", arguments.summary,
-                     "A page of the files that are not the same, the worst first, with pictures "
-                     "of both and of their difference; Markdown without pictures if called .md; "
-                     "for CI servers a test case for each file "
-                     "(JUnit) if called .xml");
-  declare_folder_options(command, arguments.folders);
+  declare_tolerances(command, o);
+  command.add("--sheet OUT.png", o.sheet.path, output({".png"}),
+              "PNG image of both characters and of their difference; for motions, models and glTF");
+  command.only_with({"--sheet"});
+  declare_image_options(command, o.sheet.image, kDifferenceMoments);
+  command.only_with({});
+  command.add("--plot OUT.svg", o.plot, output({".svg"}),
+              "Charts of the distances and angles over time, as SVG; for motions and glTF");
+  command.add("--heatmap OUT.glb", o.heatmap, output({".glb", ".gltf"}),
+              "A's mesh in the pose of the max difference, with each vertex coloured by its max "
+              "distance over all times; for glTF and models");
+  command.add("--summary OUT.html", o.summary, output({".html", ".htm", ".md", ".xml"}),
+              "A page of the files that are not the same, the worst first, with pictures of both "
+              "and of their difference; Markdown without pictures if called .md; for CI servers a "
+              "test case for each file (JUnit) if called .xml");
+  declare_folder_options(command, o.folders);
 }
 
 }  // namespace
@@ -87,8 +48,8 @@ bool Options::has_page() const {
 }
 
 ToolSpec make_spec() {
-  const auto arguments = std::make_shared<Arguments>();
-  ToolSpec spec = spec_of("krok-diff", arguments, declare, parse, run);
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of<Options>("krok-diff", options, declare, nullptr, run);
   spec.summary = "Measures the differences of two motions, models, cameras or glTF files";
   spec.details =
       "glTF files are compared as displayed: vertices and joints in world space at the key times "

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "compare/matching.h"
 #include "compare/measure.h"
@@ -15,6 +16,8 @@ struct Options {
   compare::Matching matching = compare::Matching::automatic;
   bool materials = false;  // whether different materials count as a difference
   compare::Tolerance tolerance;
+  std::vector<double>
+      joints;  // those of joints: metres and maybe radians; into `tolerance` by run()
   SheetOptions sheet;
   std::string plot;     // path; empty for none
   std::string heatmap;  // path; empty for none

@@ -6,7 +6,10 @@
 
 namespace krok::cli::diff {
 
-Result<int> run(const Options& options, ToolContext& context) {
+Result<int> run(const Options& given, ToolContext& context) {
+  Options options = given;
+  if (!options.joints.empty()) options.tolerance.joint_positions = options.joints[0];
+  if (options.joints.size() > 1) options.tolerance.joint_orientations = options.joints[1];
   const auto folders = are_folders(options);
   if (!folders) return folders.error();
   if (*folders) return run_folders(options, context);

@@ -320,16 +320,6 @@ std::string junit(const FolderOutcome& outcome, const Options& options) {
 
 }  // namespace
 
-Status check_summary_name(const std::string& path) {
-  const std::string ending = extension(path);
-  if (path.empty() || path == "-" || ending == ".html" || ending == ".htm" || ending == ".md" ||
-      ending == ".xml") {
-    return {};
-  }
-  return Error("usage", fmt::format("--summary {}: the output is HTML, Markdown or JUnit", path),
-               "use the extension .html, .md or .xml");
-}
-
 Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
                      const Options& options, ToolContext& context) {
   if (options.summary.empty()) return {};

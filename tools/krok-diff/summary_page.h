@@ -10,9 +10,6 @@
 
 namespace krok::cli::diff {
 
-// Error usage if the extension of --summary is not supported.
-Status check_summary_name(const std::string& path);
-
 // Writes the page: HTML with pictures and charts inside, which needs no other file, or, by
 // extension, Markdown, or a test case for each file (JUnit) for CI servers. Links to the files
 // compared are relative to the page.

@@ -52,9 +52,9 @@ Diagnostic spike_note(const filter::Spike& spike, const Edit& edit, const std::s
 
 Status remove_spikes(const Options& options, ToolContext& context,
                      std::span<const std::uint8_t> joints, Edit& edit) {
-  if (!options.spike_threshold) return {};
+  if (!options.spikes) return {};
   filter::SpikeOptions finding;
-  finding.threshold = *options.spike_threshold;
+  finding.threshold = options.spike_threshold;
   auto removal = filter::remove_spikes(edit.clip, finding, joints, thread_count(context.jobs));
   if (!removal) return removal.error();
   Json list = Json::array();
@@ -88,22 +88,23 @@ Status remove_spikes(const Options& options, ToolContext& context,
 
 Status filter_jitter(const Options& options, ToolContext& context,
                      std::span<const std::uint8_t> joints, Edit& edit) {
-  if (!options.smoothing) return {};
-  auto smoothed = filter::smooth(edit.clip, *options.smoothing, joints, thread_count(context.jobs));
+  const auto smoothing = options.smoothing();
+  if (!smoothing) return {};
+  auto smoothed = filter::smooth(edit.clip, *smoothing, joints, thread_count(context.jobs));
   if (!smoothed) return smoothed.error();
   std::swap(edit.clip, *smoothed);
   long long count = 0;
   for (const std::uint8_t selected : joints) count += selected;
   Json metrics;
   std::string line;
-  if (const auto* low_pass = std::get_if<filter::Butterworth>(&*options.smoothing)) {
+  if (const auto* low_pass = std::get_if<filter::Butterworth>(&*smoothing)) {
     metrics["kind"] = "butterworth";
     metrics["cutoff"] = low_pass->cutoff;
     metrics["order"] = low_pass->order;
     line = fmt::format("filtered: Butterworth, {} Hz, order {}, zero phase",
                        readable(low_pass->cutoff), low_pass->order);
   } else {
-    const auto& polynomial = std::get<filter::SavitzkyGolay>(*options.smoothing);
+    const auto& polynomial = std::get<filter::SavitzkyGolay>(*smoothing);
     metrics["kind"] = "savgol";
     metrics["window"] = polynomial.window;
     metrics["degree"] = polynomial.degree;

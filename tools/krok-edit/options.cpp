@@ -2,180 +2,233 @@
 
 #include <memory>
 
+#include "core/numbers.h"
 #include "formats/io/formats.h"
-#include "tools/cli/option_kinds.h"
+#include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/run.h"
-#include "tools/shared/orientation_option.h"
-#include "tools/shared/planting.h"
-#include "tools/shared/role_input.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::edit {
 
 namespace {
 
-void declare_cleaning(CommandOptions& command, Arguments& a) {
-  command.group("1. Clean the whole input");
-  command.add_flag(
-      "--spikes", a.spikes,
-      "Replace frames in which a joint jumps away and back (spikes); each is reported");
-  add_number(command, "--spike-threshold TIMES", a.spike_threshold,
-             "Spike threshold, as a multiple of the usual deviation from neighbouring frames")
-      .default_str("6");
-  command
-      .add_option("--filter KIND", a.filter,
-                  "Remove jitter without time shift: butterworth (zero-phase low-pass) or savgol "
-                  "(Savitzky-Golay, preserves peaks better)")
-      .transform(one_of<Arguments::Filter>({{"butterworth", Arguments::Filter::butterworth},
-                                            {"savgol", Arguments::Filter::savgol}}));
-  command.add_option("--cutoff FREQUENCY", a.cutoff, "butterworth: cutoff frequency (half power)")
-      .default_str(a.cutoff);
-  add_whole(command, "--window FRAMES", a.window, "savgol: window size in frames, odd", 1, 1000000)
-      .default_str("9");
-  add_whole(
-      command, "--order N", a.order,
-      "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: polynomial degree [3]",
-      0, 1000000);
-  command
-      .add_option("--joints PATTERN", a.joints,
-                  "Clean only joints with this name; * matches any characters; may be repeated")
-      .one_each_time();
-  command
-      .add_option("--below NAME", a.below,
-                  "Clean only this joint and its descendants; may be repeated")
-      .one_each_time();
-  command.add_flag("--plant", a.plant,
-                   "Remove foot skate: heel and ball stay where they stand, the pelvis is lowered "
-                   "where a leg would be stretched");
-  add_contacts_option(command, a.contacts);
+// A time, or a keytime.
+Result<CutTime> parse_cut_time(const std::string& text) {
+  auto event = parse_event(text);
+  if (!event) return event.error();
+  if (*event) return CutTime{{}, *std::move(event)};
+  const auto time = clip_time().read(text);
+  if (!time) return time.error();
+  return CutTime{*time, {}};
 }
 
-void declare_cut(CommandOptions& command, Arguments& a) {
+// A person's height: metres below 10, and centimetres above, are meant where the unit is missing.
+Result<double> parse_height(const std::string& text) {
+  const auto bare = parse_finite(text);
+  const auto height = parse_length_with_unit(text, bare && *bare < 10 ? "m" : "cm");
+  return height ? length(kPositive).read(text) : height;
+}
+
+void declare_cleaning(CommandOptions& command, Options& o) {
+  const std::vector<std::string> cleaning = {"--spikes", "--filter"};
+  command.group("1. Clean the whole input");
+  command.add_flag(
+      "--spikes", o.spikes,
+      "Replace frames in which a joint jumps away and back (spikes); each is reported");
+  command
+      .add("--spike-threshold TIMES", o.spike_threshold, number(kPositive),
+           "Spike threshold, as a multiple of the usual deviation from neighbouring frames", "6")
+      .only_with("--spikes");
+  command.add("--filter KIND", o.filter,
+              choice<Filter>({{"butterworth", Filter::butterworth}, {"savgol", Filter::savgol}}),
+              "Remove jitter without time shift: butterworth (zero-phase low-pass) or savgol "
+              "(Savitzky-Golay, preserves peaks better)");
+  command
+      .add("--cutoff", o.cutoff, frequency(), "butterworth: cutoff frequency (half power)", "6Hz")
+      .only_with("--filter butterworth");
+  command
+      .add("--window FRAMES", o.window, whole(1, 1000000), "savgol: window size in frames, odd",
+           "9")
+      .only_with("--filter savgol");
+  command
+      .add("--order", o.order, whole(0, 1000000),
+           "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: polynomial "
+           "degree [3]")
+      .only_with("--filter");
+  command
+      .add_option("--joints PATTERN", o.joints.patterns,
+                  "Clean only joints with this name; * matches any characters; may be repeated")
+      .one_each_time()
+      .only_with(cleaning);
+  command
+      .add_option("--below NAME", o.joints.below,
+                  "Clean only this joint and its descendants; may be repeated")
+      .one_each_time()
+      .only_with(cleaning);
+  command.add_flag("--plant", o.plant,
+                   "Remove foot skate: heel and ball stay where they stand, the pelvis is lowered "
+                   "where a leg would be stretched");
+  add_contacts_option(command, o.contacts).only_with("--plant");
+}
+
+void declare_cut(CommandOptions& command, Options& o) {
+  const ValueKind<CutTime> time = {"time or keytime", "TIME", parse_cut_time, {}};
   command.group("2. Cut");
-  command.add_option(
-      "--from TIME", a.from,
+  command.add(
+      "--from", o.from, time,
       "Start of the range to keep: 1.5s, 250ms, or 120f for a frame; a bare number is seconds; or "
       "a keytime, left_strike[2] for the second of that name, from NAME.keys.json or detected as "
       "by "
       "krok-keys");
-  command.add_option("--to TIME", a.to, "End of the range to keep, inclusive");
-  add_choice(
-      command, "--cycle", a.cycle,
-      {{"auto", CycleFoot::either}, {"left", CycleFoot::left}, {"right", CycleFoot::right}},
-      "Keep one gait cycle, from a strike of a foot to its next, and loop it: the one whose "
-      "ends match best, of those that turn by at most 10 degrees if there are any, of either "
-      "foot or of the left or right one",
-      "FOOT", "");
-  command.add_option(
-      "--sequences IN.json", a.sequences,
-      "File that lists sequences of the input (formats/sequences/SPEC.md). Without --sequence each "
-      "is written to a file; its name replaces {sequence} in the output's name");
-  command.add_option("--sequence NAME", a.sequence,
-                     "Cut out this sequence, at its speed, and loop it if the file says so");
-  command.add_flag("--list-sequences", a.list_sequences,
-                   "Print the sequences in the file; nothing is written");
+  command.add("--to", o.to, time, "End of the range to keep, inclusive");
+  command
+      .add("--cycle FOOT", o.cycle,
+           choice<CycleFoot>({{"auto", CycleFoot::either},
+                              {"left", CycleFoot::left},
+                              {"right", CycleFoot::right}}),
+           "Keep one gait cycle, from a strike of a foot to its next, and loop it: the one whose "
+           "ends match best, of those that turn by at most 10 degrees if there are any, of either "
+           "foot or of the left or right one")
+      .not_with("--sequences");
+  command
+      .add_option("--sequences IN.json", o.sequences,
+                  "File that lists sequences of the input (formats/sequences/SPEC.md). Without "
+                  "--sequence each is written to a file; its name replaces {sequence} in the "
+                  "output's name")
+      .not_with({"--from", "--to"});
+  command
+      .add_option("--sequence NAME", o.sequence,
+                  "Cut out this sequence, at its speed, and loop it if the file says so")
+      .only_with("--sequences");
+  command
+      .add_flag("--list-sequences", o.list_sequences,
+                "Print the sequences in the file; nothing is written")
+      .only_with("--sequences");
 }
 
-void declare_timing(CommandOptions& command, Arguments& a) {
+void declare_timing(CommandOptions& command, Options& o) {
   command.group("3. Mirror");
-  command.add_flag("--mirror", a.mirror, "Mirror left and right at the plane x = 0");
+  command.add_flag("--mirror", o.mirror, "Mirror left and right at the plane x = 0");
   command.group("4. Timing");
-  add_number(command, "--speed TIMES", a.speed,
-             "Playback speed factor; multiplied by the speed of a sequence")
-      .default_str("1");
-  add_rate(
-      command, "--resample", a.resample,
-      "Frame rate of the result. Frames are interpolated: for a lower rate, --filter butterworth "
-      "first removes what it cannot hold");
+  command.add("--speed TIMES", o.speed, number(kPositive),
+              "Playback speed factor; multiplied by the speed of a sequence", "1");
+  command.add("--resample", o.resample, rate(),
+              "Frame rate of the result. Frames are interpolated: for a lower rate, --filter "
+              "butterworth first removes what it cannot hold");
 }
 
-void declare_joining(CommandOptions& command, Arguments& a) {
+void declare_joining(CommandOptions& command, Options& o) {
   command.group("5. Append");
   command
-      .add_option("--append IN", a.append,
+      .add_option("--append IN", o.append,
                   "Append this motion of the same skeleton, moved to the current position and "
                   "heading; may be repeated")
       .one_each_time();
   command
-      .add_option("--blend TIME", a.blend,
-                  "Duration of the cross-fade between two motions; 0 is a hard cut")
-      .default_str(a.blend);
-  command.add_flag("--match-height", a.match_height, "Append at the current height, as on stairs");
+      .add("--blend", o.append_blend, clip_time(),
+           "Duration of the cross-fade between two motions; 0 is a hard cut", "0.2s")
+      .only_with("--append");
+  command.add_flag("--match-height", o.match_height, "Append at the current height, as on stairs")
+      .only_with("--append");
 }
 
-void declare_loop(CommandOptions& command, Arguments& a) {
+void declare_loop(CommandOptions& command, Options& o) {
   command.group("6. Loop");
-  command.add_flag("--loop", a.loop,
+  command.add_flag("--loop", o.loop,
                    "Make a seamless loop. The last frame becomes the first, moved by the root "
                    "motion of one cycle, so n frames repeat every n - 1");
-  command
-      .add_option("--loop-blend TIME", a.loop_blend,
-                  "Time before and after the seam that may change")
-      .default_str(a.loop_blend);
-  add_choice<LoopEnd>(
-      command, "--loop-end", a.loop_end,
-      {{"auto", LoopEnd::automatic}, {"closed", LoopEnd::closed}, {"open", LoopEnd::open}},
-      "Whether the last frame repeats the first (closed) or precedes it (open: a frame is added); "
-      "auto compares them",
-      "END", "auto");
-  add_choice<LoopTurn>(
-      command, "--loop-turn", a.loop_turn,
-      {{"auto", LoopTurn::automatic},
-       {"keep", LoopTurn::keep},
-       {"straighten", LoopTurn::straighten}},
-      "Turning per cycle: keep, straighten, or auto, which straightens up to 10 degrees", "TURN",
+  // A sequence may loop if its file says so.
+  command.only_with({"--loop", "--cycle", "--sequences"});
+  command.add("--loop-blend", o.loop_blend, clip_time(),
+              "Time before and after the seam that may change", "0.2s");
+  command.add(
+      "--loop-end END", o.looping.end,
+      choice<LoopEnd>(
+          {{"auto", LoopEnd::automatic}, {"closed", LoopEnd::closed}, {"open", LoopEnd::open}}),
+      "Whether the last frame repeats the first (closed) or precedes it (open: a frame is "
+      "added); auto compares them",
       "auto");
-  add_choice<LoopClimb>(
-      command, "--loop-climb", a.loop_climb,
-      {{"auto", LoopClimb::automatic}, {"keep", LoopClimb::keep}, {"level", LoopClimb::level}},
-      "Height gain per cycle: keep, level, or auto, which levels up to 5 % of the character's size",
-      "CLIMB", "auto");
-  add_whole(command, "--rounds N", a.rounds, "Number of cycles of the loop to write", 1, 1000000);
+  command.add("--loop-turn TURN", o.looping.turn,
+              choice<LoopTurn>({{"auto", LoopTurn::automatic},
+                                {"keep", LoopTurn::keep},
+                                {"straighten", LoopTurn::straighten}}),
+              "Turning per cycle: keep, straighten, or auto, which straightens up to 10 degrees",
+              "auto");
+  command.add(
+      "--loop-climb CLIMB", o.looping.climb,
+      choice<LoopClimb>(
+          {{"auto", LoopClimb::automatic}, {"keep", LoopClimb::keep}, {"level", LoopClimb::level}}),
+      "Height gain per cycle: keep, level, or auto, which levels up to 5 % of the character's "
+      "size",
+      "auto");
+  command.add("--rounds", o.rounds, whole(1, 1000000), "Number of cycles of the loop to write");
 }
 
-void declare_place(CommandOptions& command, Arguments& a) {
+void declare_place(CommandOptions& command, Options& o) {
   command.group("7. Root motion");
-  command.add_flag("--in-place", a.in_place, "Remove all horizontal motion of the hips");
-  command.add_flag("--treadmill", a.treadmill,
+  command.add_flag("--in-place", o.in_place, "Remove all horizontal motion of the hips")
+      .not_with("--treadmill");
+  command.add_flag("--treadmill", o.treadmill,
                    "Remove only the constant-velocity part from the first to the last frame; keeps "
                    "sway and loops");
   command.group("8. Size");
-  add_number(command, "--scale TIMES", a.scale, "Scale factor for the skeleton and its motion");
-  command.add_option(
-      "--height LENGTH", a.height,
-      "Scale to this height of the reference pose, lowest to highest joint: 1.8m, with a unit");
+  command
+      .add("--scale TIMES", o.scale, number(kPositive),
+           "Scale factor for the skeleton and its motion")
+      .not_with("--height");
+  command.add("--height", o.height, ValueKind<double>{"length", "LENGTH", parse_height, {}},
+              "Scale to this height of the reference pose, lowest to highest joint: 1.8m, with a "
+              "unit");
   command.group("9. Position");
-  command.add_flag("--at-origin", a.at_origin, "Start above the origin");
-  command.add_flag("--re-orient", a.re_orient, "Start facing +Z, the same as --heading 0");
-  command.add_option("--heading ANGLE", a.heading,
-                     "Initial heading: 0 is +Z, 90deg is +X, the character's left");
-  command.add_option("--turn ANGLE", a.turn,
-                     "Turn left about the vertical axis through the start position");
-  command.add_option("--move X,Y,Z", a.move, "Translate along X, Y and Z: 1m,0,-20cm");
-  command.add_flag("--ground", a.ground, "Move the lowest foot position to y = 0");
+  command.add_flag("--at-origin", o.at_origin, "Start above the origin");
+  command.add_flag("--re-orient", o.re_orient, "Start facing +Z, the same as --heading 0")
+      .not_with("--heading");
+  command.add("--heading", o.heading, angle(),
+              "Initial heading: 0 is +Z, 90deg is +X, the character's left");
+  command.add("--turn", o.turn, angle(),
+              "Turn left about the vertical axis through the start position");
+  command.add("--move X,Y,Z", o.move, lengths<Vec3>(), "Translate along X, Y and Z: 1m,0,-20cm");
+  command.add_flag("--ground", o.ground, "Move the lowest foot position to y = 0");
+}
+
+void declare(CommandOptions& command, Options& o) {
+  command
+      .add_option("input IN", o.input,
+                  "Motion: a .anim file, or a capture read as by krok-import without options")
+      .required();
+  command.group("Character");
+  add_map_option(command, o.map);
+  declare_cleaning(command, o);
+  declare_cut(command, o);
+  declare_timing(command, o);
+  declare_joining(command, o);
+  declare_loop(command, o);
+  declare_place(command, o);
+  add_orientation_option(command, o.orientation);
+}
+
+// The filter as such; at the motion's rate it is checked later.
+Status check(const Options& o) {
+  const auto smoothing = o.smoothing();
+  if (!smoothing) return {};
+  if (const auto* polynomials = std::get_if<filter::SavitzkyGolay>(&*smoothing)) {
+    return filter::check(*polynomials);
+  }
+  const auto known = filter::design(std::get<filter::Butterworth>(*smoothing), 4 * o.cutoff);
+  return known ? Status() : known.error();
 }
 
 }  // namespace
 
-void declare(CommandOptions& command, Arguments& arguments) {
-  command
-      .add_option("input IN", arguments.input,
-                  "Motion: a .anim file, or a capture read as by krok-import without options")
-      .required();
-  command.group("Character");
-  add_map_option(command, arguments.map);
-  declare_cleaning(command, arguments);
-  declare_cut(command, arguments);
-  declare_timing(command, arguments);
-  declare_joining(command, arguments);
-  declare_loop(command, arguments);
-  declare_place(command, arguments);
-  add_orientation_option(command, arguments.orientation);
-  arguments.given = [&command](const char* option) { return command.count(option) > 0; };
+std::optional<filter::Smoothing> Options::smoothing() const {
+  if (filter == Filter::none) return std::nullopt;
+  if (filter == Filter::savgol) return krok::filter::SavitzkyGolay{window, order.value_or(3)};
+  return krok::filter::Butterworth{cutoff, order.value_or(4)};
 }
 
 ToolSpec make_spec() {
-  const auto arguments = std::make_shared<Arguments>();
-  ToolSpec spec = spec_of("krok-edit", arguments, declare, understand, run);
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-edit", options, declare, check, run);
   spec.summary = "Cleans, cuts, mirrors, retimes, joins, loops, scales and places motions";
   spec.details = "Steps run in the order listed here, regardless of the order of the options.";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";
@@ -194,15 +247,16 @@ ToolSpec make_spec() {
        "feet that stay where they stand; contacts from walk.keys.json if it exists"},
       {"krok-edit walk.anim -o both.anim --append turn.anim --blend 0.3s --at-origin --heading 0",
        "two motions in sequence, from the origin towards +Z"}};
+  spec.writes = registry::Kind::anim;
   spec.needs_output = false;  // --list-sequences writes nothing
-  spec.batch = {io::motion_endings(), [arguments]() -> Result<std::string> {
-                  if (arguments->list_sequences) {
+  spec.batch = {io::motion_endings(), [options]() -> Result<std::string> {
+                  if (options->list_sequences) {
                     return Error(
                         "usage",
                         "--list-sequences has no outputs; --out-dir and --manifest cannot be used",
                         "give a single input");
                   }
-                  const bool several = !arguments->sequences.empty() && arguments->sequence.empty();
+                  const bool several = !options->sequences.empty() && options->sequence.empty();
                   return std::string(several ? "_{sequence}.anim" : ".anim");
                 }};
   return spec;

@@ -10,7 +10,8 @@
 namespace krok::cli::edit {
 
 Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
-  if (!options.removed_travel) return {};
+  if (!options.in_place && !options.treadmill) return {};
+  const Travel removed = options.in_place ? Travel::all : Travel::trend;
   const int last = edit.clip.frame_count() - 1;
   double way = 0;
   if (last > 0) {
@@ -18,8 +19,8 @@ Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
     const GroundFrame to = ground_frame(edit.clip, edit.carrier, last);
     way = Vec2(to.x - from.x, to.z - from.z).norm();
   }
-  edit.clip = in_place(edit.clip, edit.carrier, *options.removed_travel);
-  const bool all = *options.removed_travel == Travel::all;
+  edit.clip = in_place(edit.clip, edit.carrier, removed);
+  const bool all = removed == Travel::all;
   Json metrics;
   metrics["removed"] = all ? "all" : "trend";
   metrics["way"] = way;
@@ -60,9 +61,10 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
   };
   const auto degrees = [](double angle) { return readable(angle / kRadiansPerDegree, 4); };
   if (options.at_origin) apply(to_origin(clip, edit.carrier), "starts above the origin");
-  if (options.heading) {
-    apply(facing_at_start(clip, edit.carrier, *options.heading),
-          fmt::format("starts facing {} deg", degrees(*options.heading)));
+  if (options.heading || options.re_orient) {
+    const double heading = options.heading.value_or(0);
+    apply(facing_at_start(clip, edit.carrier, heading),
+          fmt::format("starts facing {} deg", degrees(heading)));
   }
   if (options.turn != 0) {
     apply(turned_about_start(clip, edit.carrier, options.turn),

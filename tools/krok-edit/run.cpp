@@ -13,12 +13,11 @@
 #include "formats/sequences/sequences.h"
 #include "motion/ground_frame.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-edit/steps.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/planting.h"
-#include "tools/shared/role_input.h"
 
 namespace krok::cli::edit {
 
@@ -116,7 +115,8 @@ Result<Edit> read_inputs(const Options& options, ToolContext& context) {
     if (!contacts) return contacts.error();
     edit.contacts = std::move(*contacts);
   }
-  if (options.from_event || options.to_event || options.cycle != CycleFoot::none) {
+  const auto is_event = [](const std::optional<CutTime>& time) { return time && time->event; };
+  if (is_event(options.from) || is_event(options.to) || options.cycle != CycleFoot::none) {
     auto keys = choose_keys(KeysChoice::automatic, options.input, name_of_input(options.input),
                             edit.clip, *find_roles, context);
     if (!keys) return keys.error();
@@ -184,8 +184,8 @@ Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolConte
     return std::move(status.error()).in_file(options.input);
   }
   Options cleaned_already = options;
-  cleaned_already.spike_threshold.reset();
-  cleaned_already.smoothing.reset();
+  cleaned_already.spikes = false;
+  cleaned_already.filter = Filter::none;
   cleaned_already.joints = {};
   cleaned_already.plant = false;
   Edited all;
@@ -220,10 +220,7 @@ void Edit::note(const char* step, Json metrics, std::string line) {
 
 Result<int> run(const Options& options, ToolContext& context) {
   if (options.list_sequences) return list_sequences(options, context);
-  if (context.output.empty()) return Error("usage", "no output given (-o)");
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
+  if (context.output.empty()) return no_output();
   auto source = read_inputs(options, context);
   if (!source) return source.error();
   const Json input_summary = summary_of(source->clip);

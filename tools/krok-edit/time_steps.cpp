@@ -65,25 +65,23 @@ Result<Range> named_range(const Options& options, Edit& edit) {
 Result<Range> typed_range(const Options& options, const Edit& edit) {
   const double end = edit.clip.frame_count() - 1;
   // Keytimes are between frames: the nearest frame.
-  const auto frame_of = [&](const std::optional<ClipTime>& time,
-                            const std::optional<EventTime>& event,
+  const auto frame_of = [&](const std::optional<CutTime>& time,
                             double otherwise) -> Result<double> {
-    if (time) return time->seconds(edit.clip.rate) * edit.clip.rate;
-    if (!event) return otherwise;
-    const auto seconds = time_of(*event, edit.keytimes);
+    if (!time) return otherwise;
+    if (!time->event) return time->time.seconds(edit.clip.rate) * edit.clip.rate;
+    const auto seconds = time_of(*time->event, edit.keytimes);
     if (!seconds) return Error(seconds.error()).in_file(options.input);
     return std::clamp(std::round(*seconds * edit.clip.rate), 0.0, end);
   };
-  const auto first = frame_of(options.from, options.from_event, 0);
+  const auto first = frame_of(options.from, 0);
   if (!first) return first.error();
-  const auto last = frame_of(options.to, options.to_event, end);
+  const auto last = frame_of(options.to, end);
   if (!last) return last.error();
   const Range range{*first, *last};
   if (range.first > range.last) {
     return Error("edit-range",
                  fmt::format("--from ({}) is after {} ({})", seconds(range.first / edit.clip.rate),
-                             options.to || options.to_event ? "--to" : "the end",
-                             seconds(range.last / edit.clip.rate)),
+                             options.to ? "--to" : "the end", seconds(range.last / edit.clip.rate)),
                  extent_of(edit.clip));
   }
   // A printed duration may be rounded up.
@@ -160,13 +158,10 @@ Status check_sequences(const Options& options, const Edit& edit) {
 
 Status cut_out(const Options& options, ToolContext&, Edit& edit) {
   edit.speed = options.speed;
-  edit.loop = options.loop;
+  edit.loop = options.loop || options.cycle != CycleFoot::none;
   const bool named = !edit.sequence.empty();
   const bool cycle = options.cycle != CycleFoot::none;
-  if (!named && !cycle && !options.from && !options.to && !options.from_event &&
-      !options.to_event) {
-    return {};
-  }
+  if (!named && !cycle && !options.from && !options.to) return {};
   if (edit.clip.frame_count() == 0) {
     return Error("edit-range", "the motion has no frames to cut from").in_file(options.input);
   }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
+#include "capture/conventions.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli::exporting {
@@ -19,30 +21,27 @@ enum class What : unsigned char {
   velocities,
   contacts
 };
-enum class Layout : unsigned char { automatic, long_rows, wide };
+enum class Layout : unsigned char { long_rows, wide };
 
 struct Options {
   std::string input;
   ExportFormat format = ExportFormat::from_extension;
-  std::string unit;                   // BVH: length unit; empty: centimetres
-  std::optional<int> digits;          // BVH: decimal places of degrees and centimetres
+  Unit unit;                          // BVH
+  int digits = 0;                     // BVH: decimal places of degrees and centimetres
   bool root_offset = false;           // BVH: write the root's reference position
-  std::string order;                  // BVH: of rotation channels, "ZXY"; empty: default
-  std::string reduce;                 // glTF: key reduction tolerance; empty: keep all keys
+  std::string order;                  // BVH: of rotation channels, "ZXY"
+  std::optional<double> reduce;       // glTF: key reduction tolerance, metres; empty: all keys
   What what = What::automatic;        // tables
-  Layout layout = Layout::automatic;  // CSV; automatic: long
+  Layout layout = Layout::long_rows;  // CSV
   std::string map;                    // role map for angles and contacts, or empty
-  std::optional<bool> bones;          // glTF: add a thin mesh of the skeleton; default yes
+  bool bones = true;                  // glTF: add a thin mesh of the skeleton
+
+  // Whether an option, "--unit", was given; set by declare().
+  std::function<bool(const char* option)> given;
 };
 
 // Checks the options for a format. Codes usage, export-unit.
 Status check_for(ExportFormat format, const Options& options);
-
-// Length of a BVH unit in metres.
-Result<double> unit_of(const Options& options, ExportFormat format);
-
-// The tolerance of --reduce in metres.
-Result<double> reduce_tolerance(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

@@ -223,8 +223,8 @@ Status write_bvh(const Clip& clip, const Options& options, double unit_metres, O
   bvh::WriteOptions writing;
   writing.unit_metres = unit_metres;
   writing.root_offset = options.root_offset;
-  if (options.digits) writing.decimals = *options.digits;
-  if (!options.order.empty()) writing.order = order_of(options.order);
+  writing.decimals = options.digits;
+  writing.order = order_of(options.order);
   return bvh::write(clip, writing, file);
 }
 
@@ -239,10 +239,8 @@ Error empty_error(const std::string& path) {
 // Reduces keys if requested.
 Result<std::optional<Reduction>> reduce(const Options& options, const Skeleton& skeleton, int jobs,
                                         gltf::JointTracks& tracks) {
-  if (options.reduce.empty()) return std::optional<Reduction>();
-  const auto tolerance = reduce_tolerance(options);
-  if (!tolerance) return tolerance.error();
-  auto reduction = gltf::reduce_tracks(skeleton, {.tolerance = *tolerance}, jobs, tracks);
+  if (!options.reduce) return std::optional<Reduction>();
+  auto reduction = gltf::reduce_tracks(skeleton, {.tolerance = *options.reduce}, jobs, tracks);
   if (!reduction) return reduction.error();
   return std::optional(*std::move(reduction));
 }
@@ -286,7 +284,7 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
   writing.binary = binary;
   writing.provenance = context.provenance();
   writing.provenance.conversions = facts->conversions;
-  const bool bones = options.bones.value_or(true);
+  const bool bones = options.bones;
   writing.name = bones ? "bones" : "skeleton";
   writing.clip_name = clip_name_of(options.input);
   const Status status = write_output(context, context.output, [&](OutputFile& file) {
@@ -331,7 +329,7 @@ Status write_table(ExportFormat format, const Clip& clip, const Options& options
   const bool opensim = format != ExportFormat::csv;
   const What usual = opensim ? What::angles : What::positions;
   const What what = options.what == What::automatic ? usual : options.what;
-  const Layout layout = options.layout == Layout::wide ? Layout::wide : Layout::long_rows;
+  const Layout layout = options.layout;
   if (!opensim && what == What::contacts && layout == Layout::long_rows) {
     const auto contacts = contacts_of(options, clip, context);
     if (!contacts) return contacts.error();
@@ -395,13 +393,11 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
   if (Status status = check_for(*format, options); !status) return status.error();
-  const auto unit_metres = unit_of(options, *format);
-  if (!unit_metres) return unit_metres.error();
   const bool is_glb = *format == ExportFormat::glb;
   std::optional<Reduction> reduction;
   const auto motion = is_glb || *format == ExportFormat::gltf
                           ? export_gltf(is_glb, options, context, reduction)
-                          : export_others(*format, options, *unit_metres, context);
+                          : export_others(*format, options, options.unit.metres, context);
   if (!motion) return motion.error();
   Json columns = std::move(context.report.result["columns"]);
   context.report.result = result_of(*motion, reduction);

@@ -85,18 +85,16 @@ void warn_of_spread(const LibraryInput& input, const parametric::PackedExamples&
 // Whether the user gave a tolerance.
 bool has_own_tolerance(const LibraryInput& input, const Options& options) {
   const auto& parameters = input.description.parameters;
-  return !options.until.empty() || std::ranges::any_of(parameters, [](const auto& entry) {
-    return entry.tolerance.has_value();
-  });
+  return options.until || std::ranges::any_of(parameters, [](const auto& entry) {
+           return entry.tolerance.has_value();
+         });
 }
 
 std::vector<double> tolerances_of(const Library& library, const Options& options) {
   std::vector<double> tolerances;
   for (const parametric::Parameter& parameter : library.parameters) {
     double tolerance = parameter.tolerance;
-    if (!options.until.empty() && unit_of(parameter) == "m") {
-      if (const auto until = parse_length(options.until)) tolerance = *until;
-    }
+    if (options.until && unit_of(parameter) == "m") tolerance = *options.until;
     tolerances.push_back(tolerance);
   }
   return tolerances;

@@ -17,7 +17,7 @@ struct Options {
   std::optional<rbf::Kernel> kernel;  // not set: automatic
   std::optional<int> refine;          // max points to insert; not set: 40 per parameter
   std::optional<double> smooth;       // 0: interpolate; not set: automatic
-  std::string until;                  // a length: accepted error of length parameters
+  std::optional<double> until;        // metres: accepted error of length parameters
   int held_out = 0;                   // 0: default of refine()
   std::uint64_t seed = 1;
   bool polish = true;  // optimise inserted weights jointly after refinement
@@ -30,9 +30,6 @@ inline constexpr std::size_t kMaxLeftOut = 128;
 
 // Max points for --refine.
 inline constexpr int kMaxRefined = 4000;
-
-void declare(CommandOptions& command, Options& options);
-Status check(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

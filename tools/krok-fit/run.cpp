@@ -10,7 +10,6 @@
 #include "core/result.h"
 #include "fit/refine.h"
 #include "formats/steps/steps.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/report.h"
 #include "tools/krok-fit/fit_library.h"
@@ -194,9 +193,6 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::steps); !status) {
-    return status.error();
-  }
   auto input = read_library(options.library, options.keep_going, context);
   if (!input) return input.error();
   std::optional<krok::fit::Refined> start;

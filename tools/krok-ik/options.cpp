@@ -2,102 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string_view>
-#include <tuple>
 
-#include "core/file.h"
 #include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/cli/option_kinds.h"
-#include "tools/cli/usage.h"
 #include "tools/krok-ik/run.h"
-#include "tools/shared/orientation_option.h"
-#include "tools/shared/planting.h"
-#include "tools/shared/role_input.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::ik {
 
 namespace {
-
-void declare_goals(CommandOptions& command, Arguments& a) {
-  command.group("Goals");
-  command.add_option("--goals IN.json", a.goals, "Goals (.json, formats/goals/SPEC.md)");
-  command.add_option("--ground IN", a.ground,
-                     "Heights of goals in the world are over this ground, as for krok-walk: a "
-                     "mesh, a height field, stairs:rise=17cm,run=29cm, slope:12deg, ...");
-  command
-      .add_option("--reach JOINT=X,Y,Z@TIME", a.reaches,
-                  "Bring a joint, given by name or role, to a point at a time: "
-                  "RightHand=0.4m,1.2m,0.3m@2s, or for a while: @2s..3.5s; repeatable")
-      .one_each_time();
-  command
-      .add_option("--look-at JOINT=X,Y,Z@TIME", a.looks,
-                  "The same for what faces forwards in the reference pose, which then points to "
-                  "the place: head=0m,1.5m,4m@1s..3s")
-      .one_each_time();
-  command
-      .add_option("--fade TIME", a.fade,
-                  "Time in which --reach and --look-at take hold before, and let go after")
-      .default_str("0.5s");
-  add_map_option(command, a.map);
-}
-
-void declare_planting(CommandOptions& command, Arguments& a) {
-  command.group("Feet");
-  command.add_flag("--plant", a.plant,
-                   "Remove foot skate before the goals are brought about: heel and ball stay where "
-                   "they stand, the pelvis is lowered where a leg would be stretched");
-  add_contacts_option(command, a.contacts).needs("--plant");
-}
-
-void declare_limits(CommandOptions& command, Arguments& a) {
-  command.group("Limits");
-  command.add_option("--limits IN.json|auto", a.limits,
-                     "Ranges of motion: a file (formats/limits/SPEC.md), or auto for published "
-                     "ranges of adults by the joints' roles");
-  command
-      .add_option("--learn-limits IN.anim", a.captures,
-                  "Use the ranges that a motion of the same skeleton uses; repeatable")
-      .one_each_time();
-  command.add_option("--margin ANGLE", a.margin, "Margin added to learnt ranges")
-      .default_str("0deg");
-  command.add_option("--write-limits OUT.limits.json", a.write_limits,
-                     "Write the limits to a file; then neither goals nor -o are needed");
-}
-
-void declare_solver(CommandOptions& command, Arguments& a) {
-  command.group("Solver");
-  add_choice<krok::ik::Method>(command, "--method", a.method,
-                               {{"least-squares", krok::ik::Method::least_squares},
-                                {"ccd", krok::ik::Method::ccd},
-                                {"two-bone", krok::ik::Method::two_bone}},
-                               "least-squares: all goals at once; ccd: joint by joint; two-bone: "
-                               "the joint's parent and grandparent in closed form",
-                               "METHOD", "least-squares");
-  command
-      .add_option("--stiffness JOINT=NUMBER", a.stiffness,
-                  "How much a joint resists, 0 to 1 (does not turn): spine=0.7; repeatable")
-      .one_each_time();
-  add_whole(command, "--depth", a.depth,
-            "How many joints take part for each goal, from the joint's own upwards; 0: all; "
-            "default: all below the hips",
-            0, 10000);
-  command.add_flag("--root-moves", a.root_moves, "The root may be shifted to reach the goals");
-  add_whole(command, "--iterations", a.iterations, "Max iterations in a frame", 0, 100'000)
-      .default_str("60");
-  add_whole(command, "--restarts", a.restarts,
-            "Further starts in frames whose goals are not reached; may make a motion jump", 0, 1000)
-      .default_str("0");
-  command.add_option("--tolerance LENGTH", a.tolerance, "A goal's position is reached within this")
-      .default_str("0.01mm");
-  command
-      .add_option("--angle-tolerance ANGLE", a.angle_tolerance,
-                  "A goal's angle is reached within this")
-      .default_str("0.01deg");
-}
 
 // The text before and after the first `mark`.
 bool split(std::string_view text, std::string_view mark, std::string_view& before,
@@ -109,16 +24,11 @@ bool split(std::string_view text, std::string_view mark, std::string_view& befor
   return true;
 }
 
-Result<double> value_of(const char* option, Result<double> parsed) {
-  if (parsed) return parsed;
-  return usage(fmt::format("{}: {}", option, parsed.error().message), parsed.error().hint);
-}
-
 // JOINT=X,Y,Z@TIME or @TIME..TIME.
-Result<PointGoal> parse_point(const std::string& option, const std::string& text,
-                              krok::ik::Goal::Kind kind) {
+Result<PointGoal> parse_point(const std::string& option, krok::ik::Goal::Kind kind,
+                              const std::string& text) {
   const auto wrong = [&](const std::string& why) {
-    return usage(fmt::format("{} {}: {}", option, shown(text), why),
+    return usage(fmt::format("'{}': {}", shown(text), why),
                  "write RightHand=0.4m,1.2m,0.3m@2s or RightHand=0.4m,1.2m,0.3m@2s..3s");
   };
   PointGoal goal;
@@ -131,17 +41,10 @@ Result<PointGoal> parse_point(const std::string& option, const std::string& text
   if (!split(std::string_view(text).substr(equals + 1), "@", place, times)) {
     return wrong("it has no time");
   }
-  for (int i = 0; i < 3; ++i) {
-    std::string_view one = place, rest;
-    if (i < 2 && !split(place, ",", one, rest)) return wrong("a place has three lengths");
-    const auto length = parse_length(one);
-    if (!length || !(std::abs(*length) <= 1e6)) {
-      return wrong(length ? std::string("the place is farther away than 1000 km")
-                          : length.error().message);
-    }
-    goal.target[i] = *length;
-    place = rest;
-  }
+  const auto target = lengths<Vec3>().read(std::string(place));
+  if (!target) return wrong("a place has three lengths: " + target.error().message);
+  if (!(target->cwiseAbs().maxCoeff() <= 1e6)) return wrong("it is farther away than 1000 km");
+  goal.target = *target;
   std::string_view begin = times, end = times;
   split(times, "..", begin, end);
   const auto from = parse_clip_time(begin), to = parse_clip_time(end);
@@ -154,99 +57,127 @@ Result<PointGoal> parse_point(const std::string& option, const std::string& text
   return goal;
 }
 
+ValueKind<PointGoal> point_goal(const std::string& option, krok::ik::Goal::Kind kind) {
+  return {"goal",
+          "JOINT=X,Y,Z@TIME",
+          [=](const std::string& text) { return parse_point(option, kind, text); },
+          {}};
+}
+
 Result<Stiffness> parse_stiffness(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const auto value = equals == std::string::npos || equals == 0
                          ? std::nullopt
                          : parse_finite(std::string_view(text).substr(equals + 1));
   if (!value || !(*value >= 0 && *value <= 1)) {
-    return usage(fmt::format("--stiffness {} is not a joint and a number from 0 to 1", shown(text)),
+    return usage(fmt::format("'{}' is not a joint and a number from 0 to 1", shown(text)),
                  "write spine=0.7");
   }
   return Stiffness{text.substr(0, equals), *value};
 }
 
-}  // namespace
+void declare_goals(CommandOptions& command, Options& o) {
+  command.group("Goals");
+  command.add_option("--goals IN.json", o.goals, "Goals (.json, formats/goals/SPEC.md)");
+  add_ground_option(command, o.ground,
+                    "Heights of goals in the world are over this ground, as for krok-walk: a mesh, "
+                    "a height field, stairs:rise=17cm,run=29cm, slope:12deg, ...");
+  command.add("--reach", o.points, point_goal("--reach", krok::ik::Goal::Kind::position),
+              "Bring a joint, given by name or role, to a point at a time: "
+              "RightHand=0.4m,1.2m,0.3m@2s, or for a while: @2s..3.5s; repeatable");
+  command.add("--look-at", o.looks, point_goal("--look-at", krok::ik::Goal::Kind::look_at),
+              "The same for what faces forwards in the reference pose, which then points to the "
+              "place: head=0m,1.5m,4m@1s..3s");
+  command.add("--fade", o.fade, seconds(),
+              "Time in which --reach and --look-at take hold before, and let go after", "0.5s");
+  add_map_option(command, o.map);
+}
 
-void declare(CommandOptions& command, Arguments& arguments) {
+void declare_planting(CommandOptions& command, Options& o) {
+  command.group("Feet");
+  command.add_flag("--plant", o.plant,
+                   "Remove foot skate before the goals are brought about: heel and ball stay where "
+                   "they stand, the pelvis is lowered where a leg would be stretched");
+  add_contacts_option(command, o.contacts).only_with("--plant");
+}
+
+void declare_limits(CommandOptions& command, Options& o) {
+  command.group("Limits");
   command
-      .add_option("input IN.anim", arguments.input,
+      .add_option("--limits IN.json|auto", o.limits,
+                  "Ranges of motion: a file (formats/limits/SPEC.md), or auto for published ranges "
+                  "of adults by the joints' roles")
+      .not_with("--learn-limits");
+  command
+      .add_option("--learn-limits IN.anim", o.captures,
+                  "Use the ranges that a motion of the same skeleton uses; repeatable")
+      .one_each_time();
+  command.add("--margin", o.margin, angle(kNotNegative), "Margin added to learnt ranges", "0deg");
+  command
+      .add("--write-limits OUT.limits.json", o.write_limits, output({".json"}),
+           "Write the limits to a file; then neither goals nor -o are needed")
+      .only_with({"--limits", "--learn-limits"});
+}
+
+void declare_solver(CommandOptions& command, Options& o) {
+  command.group("Solver");
+  command.add("--method METHOD", o.solver.method,
+              choice<krok::ik::Method>({{"least-squares", krok::ik::Method::least_squares},
+                                        {"ccd", krok::ik::Method::ccd},
+                                        {"two-bone", krok::ik::Method::two_bone}}),
+              "least-squares: all goals at once; ccd: joint by joint; two-bone: the joint's parent "
+              "and grandparent in closed form",
+              "least-squares");
+  command.add("--stiffness", o.stiffness,
+              ValueKind<Stiffness>{"stiffness", "JOINT=NUMBER", parse_stiffness, {}},
+              "How much a joint resists, 0 to 1 (does not turn): spine=0.7; repeatable");
+  command.add("--depth", o.depth, whole(0, 10000),
+              "How many joints take part for each goal, from the joint's own upwards; 0: all; "
+              "default: all below the hips");
+  command.add_flag("--root-moves", o.solver.root_moves,
+                   "The root may be shifted to reach the goals");
+  command.add("--iterations", o.solver.iterations, whole(0, 100'000), "Max iterations in a frame",
+              "60");
+  command.add("--restarts", o.solver.restarts, whole(0, 1000),
+              "Further starts in frames whose goals are not reached; may make a motion jump", "0");
+  command.add("--tolerance", o.solver.distance, length_with_unit(kPositive),
+              "A goal's position is reached within this", "0.01mm");
+  command.add("--angle-tolerance", o.solver.angle, angle(kPositive),
+              "A goal's angle is reached within this", "0.01deg");
+}
+
+void declare(CommandOptions& command, Options& o) {
+  command
+      .add_option("input IN.anim", o.input,
                   "Motion, or a capture read as by krok-import (- is standard input)")
       .required();
-  declare_goals(command, arguments);
-  declare_planting(command, arguments);
-  declare_limits(command, arguments);
-  declare_solver(command, arguments);
+  declare_goals(command, o);
+  declare_planting(command, o);
+  declare_limits(command, o);
+  declare_solver(command, o);
   command.group("Output");
-  add_orientation_option(command, arguments.orientation);
-  command.add_option("--plot OUT.svg", arguments.plot,
-                     "Write a chart: by how much each goal is missed over time, which joints' "
-                     "limits hold it back, rotations beyond limits before and after");
+  add_orientation_option(command, o.orientation);
+  command
+      .add("--plot OUT.svg", o.plot, output({".svg"}),
+           "Write a chart: by how much each goal is missed over time, which joints' limits hold it "
+           "back, rotations beyond limits before and after")
+      .only_with({"--goals", "--reach", "--look-at"});
 }
 
-Result<Options> understand(const Arguments& a) {
-  Options options;
-  options.given = a;
-  for (const auto& [list, option, kind] :
-       {std::tuple(&a.reaches, "--reach", krok::ik::Goal::Kind::position),
-        std::tuple(&a.looks, "--look-at", krok::ik::Goal::Kind::look_at)}) {
-    for (const std::string& text : *list) {
-      auto goal = parse_point(option, text, kind);
-      if (!goal) return goal.error();
-      options.points.push_back(*goal);
-    }
-  }
-  for (const std::string& text : a.stiffness) {
-    auto stiffness = parse_stiffness(text);
-    if (!stiffness) return stiffness.error();
-    options.stiffness.push_back(*stiffness);
-  }
-  const auto fade = parse_clip_time(a.fade);
-  if (!fade || fade->in_frames || !(fade->value >= 0)) {
-    return usage(fmt::format("--fade {} is not a time of 0 or more seconds", shown(a.fade)));
-  }
-  options.fade = fade->value;
-  const auto margin = value_of("--margin", parse_angle(a.margin));
-  if (!margin) return margin.error();
-  const auto distance = value_of("--tolerance", parse_length_with_unit(a.tolerance));
-  if (!distance) return distance.error();
-  const auto angle = value_of("--angle-tolerance", parse_angle(a.angle_tolerance));
-  if (!angle) return angle.error();
-  if (!(*margin >= 0) || !(*distance > 0) || !(*angle > 0)) {
-    return usage("--margin must be 0 or more, --tolerance and --angle-tolerance greater than 0");
-  }
-  if (!a.limits.empty() && !a.captures.empty()) {
-    return usage("--limits and --learn-limits cannot be combined");
-  }
-  if (!a.write_limits.empty() && a.limits.empty() && a.captures.empty()) {
-    return usage("--write-limits has no limits to write", "add --limits auto or --learn-limits");
-  }
-  if (!options.changes_motion() && a.write_limits.empty()) {
-    return usage("no goals are given", "use --goals, --reach, --look-at or --plant");
-  }
-  if (!options.has_goals() && !a.plot.empty()) {
-    return usage("--plot has no goals to show", "use --goals, --reach or --look-at");
-  }
-  if (!a.plot.empty() && extension(a.plot) != ".svg") {
-    return usage(fmt::format("--plot {}: the chart is SVG", shown(a.plot)),
-                 "use the extension .svg");
-  }
-  options.margin = *margin;
-  options.solver.method = a.method;
-  options.solver.iterations = a.iterations;
-  options.solver.restarts = a.restarts;
-  options.solver.distance = *distance;
-  options.solver.angle = *angle;
-  options.solver.root_moves = a.root_moves;
-  return options;
+Status check(const Options& o) {
+  if (o.changes_motion() || !o.write_limits.empty()) return {};
+  return usage("no goals are given", "use --goals, --reach, --look-at or --plant");
 }
+
+}  // namespace
 
 ToolSpec make_spec() {
-  const auto arguments = std::make_shared<Arguments>();
-  ToolSpec spec = spec_of("krok-ik", arguments, declare, understand, run);
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of("krok-ik", options, declare, check, run);
   spec.summary = "Brings joints of a motion to goals by inverse kinematics";
   spec.details = "Joints stay within their ranges of motion, and feet where they stand.";
   spec.inputs = "IN.anim";
+  spec.writes = registry::Kind::anim;
   spec.needs_output = false;  // --write-limits alone is enough
   spec.examples = {
       {"krok-ik walk.anim --reach RightHand=-0.4m,1.1m,0.5m@1s..1.5s -o touch.anim",

@@ -11,30 +11,6 @@
 
 namespace krok::cli::ik {
 
-// The options as given on the command line.
-struct Arguments {
-  std::string input, map;
-  std::string goals;                        // a goal file, or empty
-  std::vector<std::string> reaches, looks;  // JOINT=X,Y,Z@TIME
-  std::string fade = "0.5s";
-  std::string ground;                 // what heights of goals are over; empty: the origin
-  std::string limits;                 // a file, auto, or empty
-  std::vector<std::string> captures;  // to learn limits from
-  std::string margin = "0deg";
-  std::string write_limits;
-  krok::ik::Method method = krok::ik::Method::least_squares;
-  std::vector<std::string> stiffness;  // JOINT=NUMBER
-  std::optional<int> depth;
-  int iterations = 60;
-  int restarts = 0;
-  std::string tolerance = "0.01mm", angle_tolerance = "0.01deg";
-  bool root_moves = false;
-  bool plant = false;
-  std::string contacts = "auto";
-  std::string plot;  // an SVG file, or empty
-  OrientationEncoding orientation = OrientationEncoding::xyz;
-};
-
 // A goal of the command line: a point that a joint is to reach or to look at.
 struct PointGoal {
   std::string option, joint;
@@ -49,23 +25,27 @@ struct Stiffness {
   double value = 0;
 };
 
-// The parsed options.
 struct Options {
-  Arguments given;
-  std::vector<PointGoal> points;
-  std::vector<Stiffness> stiffness;
-  double fade = 0;  // seconds
-  double margin = 0;
+  std::string input, map;
+  std::string goals;                     // a goal file, or empty
+  std::vector<PointGoal> points, looks;  // of --reach and --look-at
+  double fade = 0;                       // seconds
+  std::string ground;                    // what heights of goals are over; empty: the origin
+  bool plant = false;
+  std::string contacts;
+  std::string limits;                 // a file, auto, or empty
+  std::vector<std::string> captures;  // to learn limits from
+  double margin = 0;                  // radians
+  std::string write_limits;
   krok::ik::Options solver;
+  std::vector<Stiffness> stiffness;
+  std::optional<int> depth;
+  std::string plot;  // an SVG file, or empty
+  OrientationEncoding orientation = OrientationEncoding::xyz;
 
-  bool has_goals() const { return !given.goals.empty() || !points.empty(); }
-  bool changes_motion() const { return has_goals() || given.plant; }
+  bool has_goals() const { return !goals.empty() || !points.empty() || !looks.empty(); }
+  bool changes_motion() const { return has_goals() || plant; }
 };
-
-void declare(CommandOptions& command, Arguments& arguments);
-
-// Code usage, and those of quantities; messages name the option.
-Result<Options> understand(const Arguments& arguments);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

@@ -16,18 +16,18 @@
 #include "formats/anim/anim.h"
 #include "formats/goals/goals.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
 #include "formats/io/open_terrain.h"
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
 #include "ik/learn_limits.h"
 #include "retarget/stance.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-ik/outcome.h"
 #include "tools/shared/goal_input.h"
 #include "tools/shared/planting.h"
-#include "tools/shared/role_input.h"
 
 namespace krok::cli::ik {
 
@@ -188,7 +188,6 @@ class Run {
   Result<int> run();
 
  private:
-  const Arguments& given() const { return options_.given; }
   Status check_outputs() const;
   Status read_motion();
   Status read_limits();
@@ -217,17 +216,17 @@ class Run {
 };
 
 Status Run::read_motion() {
-  auto clip = io::open_motion(given().input, context_);
+  auto clip = io::open_motion(options_.input, context_);
   if (!clip) return clip.error();
   clip_ = std::move(*clip);
-  const auto find = io::open_role_map(given().map, context_);
+  const auto find = io::open_role_map(options_.map, context_);
   if (!find) return find.error();
   find_roles_ = *find;
   auto roles = find_roles_(clip_.skeleton);
   if (!roles) return roles.error();
   roles_ = std::move(*roles);
   if (clip_.skeleton.empty()) {
-    return Error("ik-empty", "the motion has no joints").in_file(given().input);
+    return Error("ik-empty", "the motion has no joints").in_file(options_.input);
   }
   return {};
 }
@@ -235,34 +234,34 @@ Status Run::read_motion() {
 Status Run::learn() {
   std::deque<Clip> clips;
   std::vector<const Clip*> list;
-  for (const std::string& path : given().captures) {
+  for (const std::string& path : options_.captures) {
     auto clip = io::open_motion(path, context_);
     if (!clip) return clip.error();
     clips.push_back(std::move(*clip));
     list.push_back(&clips.back());
   }
   auto limits = krok::ik::learn_limits(clip_.skeleton, list, {.margin = options_.margin});
-  if (!limits) return std::move(limits).error().in_file(given().captures.front());
+  if (!limits) return std::move(limits).error().in_file(options_.captures.front());
   limits_ = std::move(*limits);
   return {};
 }
 
 Status Run::read_limits() {
-  if (!given().captures.empty()) return learn();
-  if (given().limits.empty()) return {};
-  if (given().limits == "auto") {
+  if (!options_.captures.empty()) return learn();
+  if (options_.limits.empty()) return {};
+  if (options_.limits == "auto") {
     if (!roles_.humanoid) {
       return Error("ik-roles", "--limits auto needs a humanoid; the motion's joints are not one's",
                    "krok-info -v lists the joints and their roles; --map assigns roles")
-          .in_file(given().input);
+          .in_file(options_.input);
     }
     limits_ = krok::ik::anatomical_limits(retarget::neutral_skeleton(clip_, roles_), roles_);
     return {};
   }
-  const auto file = context_.open_input(given().limits);
+  const auto file = context_.open_input(options_.limits);
   if (!file) return file.error();
   auto limits = limits::read(file->text(), clip_.skeleton);
-  if (!limits) return std::move(limits).error().in_file(given().limits);
+  if (!limits) return std::move(limits).error().in_file(options_.limits);
   limits_ = std::move(*limits);
   return {};
 }
@@ -274,12 +273,12 @@ Result<int> Run::joint_of(const std::string& option, const std::string& name) co
                fmt::format("{} {}: the motion has no joint of that name or role", option,
                            shown(name)),
                nearest_hint(name, clip_.skeleton.names))
-      .in_file(given().input);
+      .in_file(options_.input);
 }
 
 Status Run::read_goals() {
-  if (given().goals.empty()) return {};
-  auto opened = open_goals(given().goals, clip_.skeleton, roles_, context_);
+  if (options_.goals.empty()) return {};
+  auto opened = open_goals(options_.goals, clip_.skeleton, roles_, context_);
   if (!opened) return opened.error();
   opened_ = std::move(*opened);
   goals_ = opened_.goals;
@@ -290,8 +289,8 @@ Status Run::read_goals() {
 
 // With --ground heights of goals in the world are over the ground.
 Status Run::raise_goals() {
-  if (given().ground.empty()) return {};
-  const auto ground = io::open_terrain(given().ground, {}, context_);
+  if (options_.ground.empty()) return {};
+  const auto ground = io::open_terrain(options_.ground, {}, context_);
   if (!ground) return ground.error();
   for (krok::ik::KeyedGoal& goal : goals_) {
     if (goal.relative_to >= 0) continue;
@@ -310,7 +309,9 @@ Status Run::raise_goals() {
 }
 
 Status Run::add_points() {
-  for (const PointGoal& point : options_.points) {
+  std::vector<PointGoal> points = options_.points;
+  points.insert(points.end(), options_.looks.begin(), options_.looks.end());
+  for (const PointGoal& point : points) {
     const auto joint = joint_of(point.option, point.joint);
     if (!joint) return joint.error();
     krok::ik::KeyedGoal goal;
@@ -329,8 +330,8 @@ Status Run::add_points() {
     goal.keys.push_back(key);
     goals_.push_back(std::move(goal));
   }
-  if (given().depth) {
-    for (krok::ik::KeyedGoal& goal : goals_) goal.goal.depth = *given().depth;
+  if (options_.depth) {
+    for (krok::ik::KeyedGoal& goal : goals_) goal.goal.depth = *options_.depth;
   }
   return {};
 }
@@ -356,7 +357,7 @@ Status Run::set_stiffness() {
                  "ik-roles",
                  fmt::format("goal '{}' balances a body that is not a humanoid", shown(goal.name)),
                  "krok-info -v lists the joints and their roles; --map assigns roles")
-          .in_file(given().goals);
+          .in_file(options_.goals);
     }
   }
   return {};
@@ -364,11 +365,11 @@ Status Run::set_stiffness() {
 
 // The goals are for the motion with its feet planted.
 Status Run::plant_first() {
-  if (!given().plant) return {};
-  const auto contacts = read_planting_contacts(given().contacts, given().input, clip_, context_);
+  if (!options_.plant) return {};
+  const auto contacts = read_planting_contacts(options_.contacts, options_.input, clip_, context_);
   if (!contacts) return contacts.error();
   auto planted = plant(clip_, roles_, *contacts, context_);
-  if (!planted) return std::move(planted).error().in_file(given().input);
+  if (!planted) return std::move(planted).error().in_file(options_.input);
   planting_ = planting_json(*planted, contacts->has_value());
   planting_line_ = planting_line(*planted);
   clip_ = std::move(planted->clip);
@@ -385,10 +386,10 @@ void Run::note_provenance(Clip& clip, const std::string& line) const {
 }
 
 Result<int> Run::finish_without_goals() {
-  if (!given().plant) {
+  if (!options_.plant) {
     if (Status status = write(nullptr); !status) return status.error();
     context_.report.result = limits_json(limits_, clip_.skeleton);
-    context_.log(fmt::format("{}: {}", given().write_limits, limits_summary(limits_)));
+    context_.log(fmt::format("{}: {}", options_.write_limits, limits_summary(limits_)));
     return kExitDone;
   }
   Clip planted = clip_;
@@ -402,10 +403,10 @@ Result<int> Run::finish_without_goals() {
 
 Status Run::write(const Clip* made, const std::string& chart) {
   OutputSet outputs(context_);
-  if (!given().write_limits.empty()) {
+  if (!options_.write_limits.empty()) {
     const std::string text = limits::write(limits_, clip_.skeleton);
     if (Status status = outputs.add(
-            given().write_limits,
+            options_.write_limits,
             [&](OutputFile& file) { return file.write(std::as_bytes(std::span(text))); });
         !status) {
       return status;
@@ -413,7 +414,7 @@ Status Run::write(const Clip* made, const std::string& chart) {
   }
   if (made != nullptr) {
     anim::WriteOptions writing;
-    writing.orientation = given().orientation;
+    writing.orientation = options_.orientation;
     writing.jobs = context_.jobs;
     if (Status status = outputs.add(
             context_.output, [&](OutputFile& file) { return anim::write(*made, writing, file); });
@@ -421,9 +422,9 @@ Status Run::write(const Clip* made, const std::string& chart) {
       return status;
     }
   }
-  if (!given().plot.empty()) {
+  if (!options_.plot.empty()) {
     if (Status status = outputs.add(
-            given().plot,
+            options_.plot,
             [&](OutputFile& file) { return file.write(std::as_bytes(std::span(chart))); });
         !status) {
       return status;
@@ -433,17 +434,17 @@ Status Run::write(const Clip* made, const std::string& chart) {
 }
 
 Status Run::check_outputs() const {
-  if (!given().plot.empty() && context_.one_of_many != nullptr) {
+  if (!options_.plot.empty() && context_.one_of_many != nullptr) {
     return Error("usage", "--plot cannot be used in batch mode");
   }
   if (options_.changes_motion() && context_.output.empty()) {
-    return Error("usage", "-o is missing", "it names the motion to write");
+    return no_output();
   }
   if (!options_.changes_motion() && !context_.output.empty()) {
     return Error("usage", "-o is given, but no goals",
                  "use --goals, --reach, --look-at or --plant");
   }
-  return check_output_kind(context_.output, "-o", registry::Kind::anim);
+  return {};
 }
 
 Result<int> Run::run() {
@@ -459,23 +460,24 @@ Result<int> Run::run() {
   how.jobs = context_.jobs;
   auto made = krok::ik::apply_goals(clip_, goals_, limits_, how);
   if (!made) {
-    return std::move(made).error().in_file(given().goals.empty() ? given().input : given().goals);
+    return std::move(made).error().in_file(options_.goals.empty() ? options_.input
+                                                                  : options_.goals);
   }
   const Outcome outcome{clip_, goals_, limits_, *made};
   for (Diagnostic& missed : missed_goals(outcome)) {
-    missed.where.file = given().input;
+    missed.where.file = options_.input;
     context_.diagnose(std::move(missed));
   }
   note_provenance(made->clip, "inverse kinematics: " + summary(outcome));
   std::string chart;
-  if (!given().plot.empty()) {
-    auto svg = draw::to_svg(chart_of(outcome, name_of_input(given().input)));
+  if (!options_.plot.empty()) {
+    auto svg = draw::to_svg(chart_of(outcome, name_of_input(options_.input)));
     if (!svg) return svg.error();
     chart = std::move(*svg);
   }
   if (Status status = write(&made->clip, chart); !status) return status.error();
   context_.report.result = to_json(outcome);
-  if (given().plant) {
+  if (options_.plant) {
     context_.report.result["plant"] = std::move(planting_);
     context_.log(fmt::format("{}: {}", context_.output, planting_line_));
   }

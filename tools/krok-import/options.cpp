@@ -1,28 +1,23 @@
 #include "tools/krok-import/options.h"
 
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "formats/io/formats.h"
-#include "formats/registry/registry.h"
-#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_kind.h"
 #include "tools/krok-import/run.h"
-#include "tools/shared/orientation_option.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::import {
 
 namespace {
 
-Result<std::optional<Direction>> direction_option(const std::string& text, const char* option) {
-  if (text == "auto") return std::optional<Direction>();
-  const auto direction = parse_direction(text);
-  if (!direction) {
-    return Error("usage", fmt::format("{}: {}", option, direction.error().message),
-                 "use auto, x, y, z, -x, -y or -z");
-  }
-  return std::optional<Direction>(*direction);
+ValueKind<std::optional<Direction>> axis() {
+  const auto read = [](const std::string& text) -> Result<Direction> {
+    const auto direction = parse_direction(text);
+    if (direction) return direction;
+    return usage(direction.error().message, "use auto, x, y, z, -x, -y or -z");
+  };
+  return or_word("auto", ValueKind<Direction>{"axis", "AXIS", read, {}});
 }
 
 void declare_inputs(CommandOptions& command, Options& options) {
@@ -37,17 +32,19 @@ void declare_inputs(CommandOptions& command, Options& options) {
                      "Skeleton of an Acclaim motion; default: the .asf file beside it whose name "
                      "starts the motion's name, or the only one");
   add_map_option(command, options.map);
-  command.add_option("--model OUT.model", options.model,
-                     "Write the model: skeleton with reference pose, mesh and skin; for a capture "
-                     "the skeleton without vertices");
+  command.add("--model OUT.model", options.model, output_of(registry::Kind::model),
+              "Write the model: skeleton with reference pose, mesh and skin; for a capture "
+              "the skeleton without vertices");
 }
 
 void declare_characters(CommandOptions& command, Options& options) {
   command.group("Characters");
-  command.add_option(
-      "--character OUT.character", options.character,
-      "Write the whole character: OUT.character and beside it OUT.model, OUT.material, textures in "
-      "OUT_textures/, morph targets in OUT_morphs.exr; replaces --model and --morphs");
+  command
+      .add("--character OUT.character", options.character, output_of(registry::Kind::character),
+           "Write the whole character: OUT.character and beside it OUT.model, OUT.material, "
+           "textures in OUT_textures/, morph targets in OUT_morphs.exr; replaces --model and "
+           "--morphs")
+      .not_with({"--model", "--morphs"});
   command.add_option("--clip NAME", options.clip,
                      "Animation to import: name, number from 0, or all; for all, {clip} in the "
                      "output's name is the animation's name [the first that moves at least half "
@@ -67,61 +64,54 @@ void declare_characters(CommandOptions& command, Options& options) {
 
 void declare_conventions(CommandOptions& command, Options& options) {
   command.group("Conventions of the file");
-  command
-      .add_option("--unit UNIT", options.unit,
-                  "Unit of length: auto, m, dm, cm, mm, in, ft, cmu (of the CMU database) or a "
-                  "length such as 5.64cm")
-      .default_str("auto");
-  const CommandOption up =
-      command.add_option("--up AXIS", options.up, "Up axis: auto, x, y, z, -x, -y, -z");
-  up.default_str("auto");
-  const CommandOption forward =
-      command.add_option("--forward AXIS", options.forward,
-                         "Axis that the character faces in the reference pose: as --up");
-  forward.default_str("auto");
+  command.add("--unit UNIT", options.unit, or_word("auto", length_unit()),
+              "Unit of length: auto, m, dm, cm, mm, in, ft, cmu (of the CMU database) or a length "
+              "such as 5.64cm",
+              "auto");
+  command.add("--up AXIS", options.up, axis(), "Up axis: auto, x, y, z, -x, -y, -z", "auto");
+  command.add("--forward AXIS", options.forward, axis(),
+              "Axis that the character faces in the reference pose: as --up", "auto");
   command
       .add_option("--axes-from IN", options.axes_from,
                   "Axes as this capture has them, so that takes of one skeleton agree where those "
                   "of a take that lies or crawls are in doubt")
-      .excludes(up)
-      .excludes(forward);
-  add_choice<bvh::Positions>(
-      command, "--positions", options.positions,
-      {{"auto", bvh::Positions::automatic},
-       {"absolute", bvh::Positions::absolute},
-       {"additive", bvh::Positions::additive}},
+      .not_with({"--up", "--forward"});
+  command.add(
+      "--positions HOW", options.positions,
+      choice<bvh::Positions>({{"auto", bvh::Positions::automatic},
+                              {"absolute", bvh::Positions::absolute},
+                              {"additive", bvh::Positions::additive}}),
       "BVH: whether position channels replace OFFSETs (absolute) or are added to them (additive)",
-      "HOW", "auto");
-  add_choice<bvh::Angles>(command, "--angles", options.angles,
-                          {{"degrees", bvh::Angles::degrees}, {"radians", bvh::Angles::radians}},
-                          "BVH: unit of rotations: degrees, the format's unit, or radians", "UNIT",
-                          "degrees");
+      "auto");
+  command.add(
+      "--angles UNIT", options.angles,
+      choice<bvh::Angles>({{"degrees", bvh::Angles::degrees}, {"radians", bvh::Angles::radians}}),
+      "BVH: unit of rotations: degrees, the format's unit, or radians", "degrees");
 }
 
 void declare_timing(CommandOptions& command, Options& options) {
   command.group("Time");
-  add_rate(command, "--fps", options.fps, "Frame rate of the file, overrides the file's value");
-  add_rate(command, "--resample", options.resample, "Resample the motion to N frames per second");
-  add_choice<RestFrame>(
-      command, "--skip-rest-frame", options.rest_frame,
-      {{"no", RestFrame::keep}, {"auto", RestFrame::automatic}, {"yes", RestFrame::drop}},
-      "Drop the first frame of a capture: auto (if it is a rest pose, not part of the motion), yes "
-      "or no",
-      "WHEN", "no");
+  command.add("--fps", options.fps, rate(), "Frame rate of the file, overrides the file's value");
+  command.add("--resample", options.resample, rate(), "Resample the motion to N frames per second");
+  command.add(
+      "--skip-rest-frame WHEN", options.rest_frame,
+      choice<RestFrame>(
+          {{"no", RestFrame::keep}, {"auto", RestFrame::automatic}, {"yes", RestFrame::drop}}),
+      "Drop the first frame of a capture: auto (if it is a rest pose, not part of the "
+      "motion), yes or no",
+      "no");
 }
 
 void declare_faults(CommandOptions& command, Options& options) {
   command.group("Errors in the file");
-  const CommandOption strict = command.add_flag(
-      "--strict", options.strict,
-      "Fail on any error in the file; by default incomplete rows are dropped with a warning");
   command
-      .add_flag("--repair", options.repair,
-                "Fill damaged frames from their neighbours; each repair is listed")
-      .excludes(strict);
+      .add_flag(
+          "--strict", options.strict,
+          "Fail on any error in the file; by default incomplete rows are dropped with a warning")
+      .not_with("--repair");
+  command.add_flag("--repair", options.repair,
+                   "Fill damaged frames from their neighbours; each repair is listed");
 }
-
-}  // namespace
 
 void declare(CommandOptions& command, Options& options) {
   declare_inputs(command, options);
@@ -132,25 +122,22 @@ void declare(CommandOptions& command, Options& options) {
   add_orientation_option(command, options.orientation);
 }
 
-Result<io::CaptureReading> read_options(const Options& options) {
+Status check(const Options& options) {
+  if (options.up && options.forward) {
+    const auto rotation = rotation_to_krok(*options.up, *options.forward);
+    if (!rotation) return usage(rotation.error().message, rotation.error().hint);
+  }
+  if (options.character != "-") return {};
+  return usage("--character -: several files cannot go to standard output");
+}
+
+}  // namespace
+
+io::CaptureReading read_options(const Options& options) {
   io::CaptureReading result;
-  if (options.unit != "auto") {
-    auto unit = parse_unit(options.unit);
-    if (!unit) {
-      return Error("usage", "--unit: " + unit.error().message, unit.error().hint);
-    }
-    result.unit = *unit;
-  }
-  const auto up = direction_option(options.up, "--up");
-  if (!up) return up.error();
-  result.up = *up;
-  const auto forward = direction_option(options.forward, "--forward");
-  if (!forward) return forward.error();
-  result.forward = *forward;
-  if (result.up && result.forward) {
-    const auto rotation = rotation_to_krok(*result.up, *result.forward);
-    if (!rotation) return Error("usage", rotation.error().message, rotation.error().hint);
-  }
+  result.unit = options.unit;
+  result.up = options.up;
+  result.forward = options.forward;
   result.roles = options.roles;
   if (options.fps > 0) result.rate = options.fps;
   result.rest_frame = options.rest_frame;
@@ -162,27 +149,6 @@ Result<io::CaptureReading> read_options(const Options& options) {
                                        : Strictness::normal;
   return result;
 }
-
-namespace {
-
-Status check(const Options& options) {
-  if (const auto how = read_options(options); !how) return how.error();
-  if (!options.character.empty() && !(options.model.empty() && options.morphs.empty())) {
-    return Error("usage", "--character already writes model and morph targets",
-                 "remove --model and --morphs");
-  }
-  if (Status status =
-          check_output_kind(options.character, "--character", registry::Kind::character);
-      !status) {
-    return status;
-  }
-  if (options.character == "-") {
-    return Error("usage", "--character -: several files cannot go to standard output");
-  }
-  return check_output_kind(options.model, "--model", registry::Kind::model);
-}
-
-}  // namespace
 
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();

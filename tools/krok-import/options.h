@@ -1,33 +1,32 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
 #include "formats/io/open_capture.h"
+#include "formats/io/open_role_map.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/role_input.h"
 
 namespace krok::cli::import {
 
-// Command-line options; as text if the library parses them.
 struct Options {
   std::string input;
-  std::string skeleton;   // --skeleton, empty: search for it
-  std::string map;        // --map, empty: none
-  std::string model;      // --model, empty: none
-  std::string character;  // --character, empty: none
-  std::string clip;       // --clip, empty: see best_animation()
-  std::string skin;       // --skin, empty: the largest skeleton
-  std::string cam;        // --cam, empty: none
-  std::string camera;     // --camera, empty: the first
-  std::string morphs;     // --morphs, empty: none
-  std::string weights;    // --morph-weights, empty: none
-  std::string unit = "auto";
-  std::string up = "auto";
-  std::string forward = "auto";
-  std::string axes_from;  // --axes-from, empty: from the file
+  std::string skeleton;                  // --skeleton, empty: search for it
+  std::string map;                       // --map, empty: none
+  std::string model;                     // --model, empty: none
+  std::string character;                 // --character, empty: none
+  std::string clip;                      // --clip, empty: see best_animation()
+  std::string skin;                      // --skin, empty: the largest skeleton
+  std::string cam;                       // --cam, empty: none
+  std::string camera;                    // --camera, empty: the first
+  std::string morphs;                    // --morphs, empty: none
+  std::string weights;                   // --morph-weights, empty: none
+  std::optional<Unit> unit;              // empty: found out
+  std::optional<Direction> up, forward;  // empty: found out
+  std::string axes_from;                 // --axes-from, empty: from the file
   bvh::Positions positions = bvh::Positions::automatic;
   bvh::Angles angles = bvh::Angles::degrees;
   RestFrame rest_frame = RestFrame::keep;
@@ -41,10 +40,8 @@ struct Options {
   io::FindRoles roles;
 };
 
-void declare(CommandOptions& command, Options& options);
-
-// Options common to all readers of captures; an Error for an invalid unit or axis.
-Result<io::CaptureReading> read_options(const Options& options);
+// Options common to all readers of captures.
+io::CaptureReading read_options(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

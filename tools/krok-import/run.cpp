@@ -58,7 +58,6 @@ Status check_strict(const Options& options, const nodes::Scene& scene) {
 Result<int> import_scene(const InputFile& input, const Options& options, ToolContext& context) {
   if (Status status = check_options(options); !status) return status.error();
   auto how = read_options(options);
-  if (!how) return how.error();
   auto scene = io::open_scene(input, context, !options.character.empty());
   if (!scene) return scene.error();
   if (Status status = check_strict(options, *scene); !status) {
@@ -71,7 +70,7 @@ Result<int> import_scene(const InputFile& input, const Options& options, ToolCon
   }
   context.diagnose(scene->diagnostics);
   // Axes from the user replace a rotation given by the file.
-  if ((how->up || how->forward) && character::rotation_to_apply(scene->space) != Mat4::Identity()) {
+  if ((how.up || how.forward) && character::rotation_to_apply(scene->space) != Mat4::Identity()) {
     scene->space.file_to_krok.reset();
   }
   // Without an animation, -o takes the pose that the file shows, as a motion of one frame.
@@ -86,7 +85,7 @@ Result<int> import_scene(const InputFile& input, const Options& options, ToolCon
   }
   auto evaluator = nodes::Evaluator::create(*scene);
   if (!evaluator) return std::move(evaluator.error()).in_file(input.path());
-  return SceneImporter(input, options, *how, *scene, *evaluator, context).run();
+  return SceneImporter(input, options, how, *scene, *evaluator, context).run();
 }
 
 // Rejects options that are only for characters.
@@ -177,13 +176,12 @@ Status take_axes(const Options& options, io::CaptureReading& reading, ToolContex
 Result<int> import_capture(const InputFile& input, const Options& options, ToolContext& context) {
   if (Status status = check_capture_options(options, input.path()); !status) return status.error();
   auto reading = read_options(options);
-  if (!reading) return reading.error();
-  if (Status status = take_axes(options, *reading, context); !status) return status.error();
-  reading->jobs = context.jobs;
-  reading->progress = context.progress;
+  if (Status status = take_axes(options, reading, context); !status) return status.error();
+  reading.jobs = context.jobs;
+  reading.progress = context.progress;
   const bool whole = context.output.empty() || options.resample > 0;
   Status status =
-      io::use_capture(input, context, *reading, whole, [&](const io::OpenedCapture& opened) {
+      io::use_capture(input, context, reading, whole, [&](const io::OpenedCapture& opened) {
         if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
           return fits;
         }

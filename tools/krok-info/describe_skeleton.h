@@ -1,8 +1,8 @@
 #pragma once
 
+#include "formats/io/open_role_map.h"
 #include "scene/skeleton.h"
 #include "tools/krok-info/description.h"
-#include "tools/shared/role_input.h"
 
 namespace krok::cli::info {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "tools/krok-info/run.h"
-#include "tools/shared/role_input.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::info {
 

@@ -166,17 +166,17 @@ Status set_keytimes(const Changes& changes, const Clip& clip, krok::keys::Sideca
 
 Status set_contacts(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
   std::vector<MarkedContact> list = contacts_of(sidecar);
-  for (const ContactChange& change : changes.remove_contact) {
-    const auto joint = joint_of(change.joint, clip);
+  for (const KeytimeChange& change : changes.remove_contact) {
+    const auto joint = joint_of(change.name, clip);
     if (!joint) return joint.error();
-    const auto time = seconds_of(change.from, clip);
+    const auto time = seconds_of(*change.time, clip);
     if (!time) return time.error();
     const std::size_t removed = std::erase_if(list, [&](const MarkedContact& c) {
       return c.contact.joint == *joint && c.contact.start <= *time && *time <= c.contact.end;
     });
     if (removed == 0) {
       return Error("keys-none",
-                   fmt::format("'{}' has no contact at {} s", change.joint, readable(*time)),
+                   fmt::format("'{}' has no contact at {} s", change.name, readable(*time)),
                    "run without --remove-contact to list the contacts");
     }
     sidecar.edited = true;

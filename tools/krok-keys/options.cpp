@@ -4,11 +4,10 @@
 
 #include <memory>
 
+#include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/cli/one_of.h"
-#include "tools/cli/usage.h"
 #include "tools/krok-keys/run.h"
-#include "tools/shared/role_input.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::keys {
 
@@ -25,122 +24,88 @@ Halves halves_at(const std::string& text, const std::string& mark) {
   return {text.substr(0, place), text.substr(place + mark.size()), true};
 }
 
-Result<ClipTime> time_of(const std::string& text, const std::string& option) {
-  auto time = parse_clip_time(text);
-  if (time) return time;
-  Error error = std::move(time).error();
-  error.message = fmt::format("{}: {}", option, error.message);
-  return error;
-}
-
-Result<KeytimeChange> parse_keytime(const std::string& text, const std::string& mark,
-                                    const std::string& option, bool needs_time) {
-  const Halves halves = halves_at(text, mark);
-  if (halves.before.empty() || (needs_time && !halves.split)) {
-    return usage(fmt::format("{}: '{}' needs a name and a time", option, text),
-                 fmt::format("for example {} left_strike{}1.25s", option, mark));
-  }
-  KeytimeChange change{halves.before, {}};
-  if (!halves.split) return change;
-  const auto time = time_of(halves.after, option);
-  if (!time) return time.error();
-  change.time = *time;
-  return change;
+// NAME and TIME with `mark` between; `example` has both.
+ValueKind<KeytimeChange> keytime(const std::string& mark, bool needs_time,
+                                 const std::string& example) {
+  const auto read = [=](const std::string& text) -> Result<KeytimeChange> {
+    const Halves halves = halves_at(text, mark);
+    if (halves.before.empty() || (needs_time && !halves.split)) {
+      return usage(fmt::format("'{}' needs a name and a time", shown(text)),
+                   "for example " + example);
+    }
+    if (!halves.split) return KeytimeChange{halves.before, {}};
+    const auto time = clip_time({}).read(halves.after);
+    if (!time) return time.error();
+    return KeytimeChange{halves.before, *time};
+  };
+  return {"keytime", "NAME" + mark + "TIME", read, {}};
 }
 
 Result<ContactChange> parse_contact(const std::string& text) {
   const Halves parts = halves_at(text, "=");
   const Halves times = halves_at(parts.after, "..");
   if (parts.before.empty() || !times.split) {
-    return usage(fmt::format("--add-contact: '{}' needs a joint and a time range", text),
+    return usage(fmt::format("'{}' needs a joint and a time range", shown(text)),
                  "for example --add-contact LeftFoot=1.2s..1.8s");
   }
-  const auto from = time_of(times.before, "--add-contact");
-  if (!from) return from.error();
-  const auto to = time_of(times.after, "--add-contact");
-  if (!to) return to.error();
+  const auto from = clip_time({}).read(times.before), to = clip_time({}).read(times.after);
+  if (!from || !to) return (from ? to : from).error();
   return ContactChange{parts.before, *from, *to};
+}
+
+void declare(CommandOptions& command, Options& o) {
+  command
+      .add_option("input IN", o.input,
+                  "Motion: a .anim file, or a capture, read with the defaults of krok-import")
+      .required();
+  add_map_option(command, o.map);
+  command.add(
+      "--find WHAT", o.find,
+      choice<Find>({{"auto", Find::automatic}, {"steps", Find::steps}, {"none", Find::none}}),
+      "steps (detect contacts and keytimes, keep manual edits), none (use the existing file), or "
+      "auto: none if the file was edited by hand, otherwise steps",
+      "auto");
+  command.add_option(
+      "--keys IN.json", o.keys,
+      "Initial keytime file (default: the one given by -o, or else the one beside the motion)");
+  command
+      .add_flag("--discard-edits", o.discard_edits,
+                "Detect everything again and discard manual edits")
+      .not_with("--find none");
+  command.add("--plot OUT.svg", o.plot, output({".svg"}),
+              "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes");
+  command.group("Manual edits");
+  command
+      .add("--set", o.changes.set, keytime("=", true, "--set left_strike=1.25s"),
+           "Move the keytime of that name within 0.15 s to this time, or add one; several "
+           "separated by commas, or repeat the option. Times: 1.25s, 250ms, or 120f (frame)")
+      .delimiter(',');
+  command.add_flag("--new", o.changes.new_names,
+                   "Allow --set to add a keytime of a name that is neither a gait event nor in the "
+                   "file, such as clap");
+  command
+      .add("--remove NAME[@TIME]", o.changes.remove,
+           keytime("@", false, "--remove left_strike@1.25s"),
+           "Remove a keytime, or all with that name")
+      .delimiter(',');
+  command
+      .add("--add-contact", o.changes.add_contact,
+           ValueKind<ContactChange>{"contact", "JOINT=TIME..TIME", parse_contact, {}},
+           "Add a contact of a joint, replacing those it overlaps; its position is that of the "
+           "joint during that time")
+      .delimiter(',');
+  command
+      .add("--remove-contact JOINT@TIME", o.changes.remove_contact,
+           keytime("@", true, "--remove-contact LeftFoot@1.25s"),
+           "Remove a joint's contact at that time")
+      .delimiter(',');
 }
 
 }  // namespace
 
-void declare(CommandOptions& command, Options& options) {
-  command
-      .add_option("input IN", options.input,
-                  "Motion: a .anim file, or a capture, read with the defaults of krok-import")
-      .required();
-  add_map_option(command, options.map);
-  command
-      .add_option("--find WHAT", options.find,
-                  "steps (detect contacts and keytimes, keep manual edits), none (use the existing "
-                  "file), or auto: none if the file was edited by hand, otherwise steps")
-      .transform(
-          one_of<Find>({{"auto", Find::automatic}, {"steps", Find::steps}, {"none", Find::none}}))
-      .default_str("auto");
-  command.add_option(
-      "--keys IN.json", options.keys,
-      "Initial keytime file (default: the one given by -o, or else the one beside the motion)");
-  command.add_flag("--discard-edits", options.discard_edits,
-                   "Detect everything again and discard manual edits");
-  command.add_option(
-      "--plot OUT.svg", options.plot,
-      "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes");
-  command.group("Manual edits");
-  const auto list = [&](const char* name, std::vector<std::string>& values, const char* help) {
-    command.add_option(name, values, help).delimiter(',').one_each_time();
-  };
-  list("--set NAME=TIME", options.set,
-       "Move the keytime of that name within 0.15 s to this time, or add one; several separated by "
-       "commas, or repeat the option. Times: 1.25s, 250ms, or 120f (frame)");
-  command.add_flag("--new", options.new_names,
-                   "Allow --set to add a keytime of a name that is neither a gait event nor in the "
-                   "file, such as clap");
-  list("--remove NAME[@TIME]", options.remove, "Remove a keytime, or all with that name");
-  list("--add-contact JOINT=TIME..TIME", options.add_contact,
-       "Add a contact of a joint, replacing those it overlaps; its position is that of the joint "
-       "during that time");
-  list("--remove-contact JOINT@TIME", options.remove_contact,
-       "Remove a joint's contact at that time");
-}
-
-Result<Changes> changes_of(const Options& options) {
-  Changes changes;
-  changes.new_names = options.new_names;
-  for (const std::string& text : options.set) {
-    auto change = parse_keytime(text, "=", "--set", true);
-    if (!change) return change.error();
-    changes.set.push_back(std::move(*change));
-  }
-  for (const std::string& text : options.remove) {
-    auto change = parse_keytime(text, "@", "--remove", false);
-    if (!change) return change.error();
-    changes.remove.push_back(std::move(*change));
-  }
-  for (const std::string& text : options.add_contact) {
-    auto change = parse_contact(text);
-    if (!change) return change.error();
-    changes.add_contact.push_back(std::move(*change));
-  }
-  for (const std::string& text : options.remove_contact) {
-    const auto change = parse_keytime(text, "@", "--remove-contact", true);
-    if (!change) return change.error();
-    changes.remove_contact.push_back({change->name, *change->time, *change->time});
-  }
-  return changes;
-}
-
-Status check(const Options& options) {
-  const auto changes = changes_of(options);
-  if (!changes) return changes.error();
-  if (options.discard_edits && options.find == Find::none) {
-    return usage("--discard-edits and --find none exclude each other", "choose one of them");
-  }
-  return {};
-}
-
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
-  ToolSpec spec = spec_of("krok-keys", options, declare, check, run);
+  ToolSpec spec = spec_of<Options>("krok-keys", options, declare, nullptr, run);
   spec.summary = "Detects foot contacts and gait keytimes; shows and saves them";
   spec.details = "They are written to an editable file beside the motion.";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";

@@ -262,11 +262,8 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  const auto changes = changes_of(options);
-  if (!changes) return changes.error();
-  if (!changes->empty() && context.output.empty()) {
-    return Error(
-        "usage", "edits need an output file, -o",
+  if (!options.changes.empty() && context.output.empty()) {
+    return no_output(
         fmt::format("use -o {} to write beside the motion",
                     options.input == "-" ? "NAME.keys.json" : keys_sidecar_path(options.input)));
   }
@@ -292,7 +289,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     context.log("the keys were edited by hand and are kept; --find steps detects the rest again");
   }
   sidecar.duration = clip->duration();
-  if (Status status = change(*changes, *clip, sidecar); !status) return status.error();
+  if (Status status = change(options.changes, *clip, sidecar); !status) return status.error();
   if (Status status = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !status) {
     return status.error();
   }

@@ -3,9 +3,7 @@
 #include <memory>
 
 #include "tools/krok-mix/run.h"
-#include "tools/shared/orientation_option.h"
-#include "tools/shared/plant_result.h"
-#include "tools/shared/role_input.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::mix {
 
@@ -21,7 +19,7 @@ void declare(CommandOptions& command, Options& options) {
   add_keys_option(command, options.keys);
   command.group("Space");
   add_map_option(command, options.map);
-  command.add_flag("--plant", options.plant, kPlantHelp);
+  add_plant_flag(command, options.plant);
   add_orientation_option(command, options.orientation);
 }
 
@@ -33,6 +31,7 @@ ToolSpec make_spec() {
   spec.summary = "Bakes a timeline of motions, transitions and layers to one motion";
   spec.details = "Sequences, cross-fades, and layers for parts of the body.";
   spec.inputs = "IN.json";
+  spec.writes = registry::Kind::anim;
   spec.examples = {
       {"krok-mix story.json -o story.anim --json=story.report.json",
        "story.json: {\"schema\": \"krok.timeline/1\", \"sources\": {\"walk\": \"walk.anim\", "

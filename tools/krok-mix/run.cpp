@@ -18,7 +18,6 @@
 #include "formats/sequences/sequences.h"
 #include "formats/timeline/timeline_file.h"
 #include "timeline/mix.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-mix/options.h"
 #include "tools/shared/keys_sidecar.h"
@@ -252,9 +251,6 @@ void report(const timeline::Timeline& timeline, const Mixed& mixed, ToolContext&
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   const auto document = read_timeline(options, context);

@@ -76,22 +76,21 @@ Result<std::vector<std::string>> shapes_in(const std::string& folder) {
 }
 
 Result<key_shapes::KeyShapeFile> keys_of_folder(const std::string& folder, double rate,
-                                                const std::string& spacing) {
+                                                const std::optional<ClipTime>& spacing) {
   auto names = shapes_in(folder);
   if (!names) return names.error();
   key_shapes::KeyShapeFile file;
   file.shapes = *std::move(names);
-  const auto step = parse_clip_time(spacing.empty() ? "1f" : spacing);
-  if (!step) return step.error();
+  const ClipTime step = spacing.value_or(ClipTime{1, true});
   for (std::size_t i = 0; i < file.shapes.size(); ++i) {
-    file.times.push_back(static_cast<double>(i) * step->value / (step->in_frames ? rate : 1));
+    file.times.push_back(static_cast<double>(i) * step.value / (step.in_frames ? rate : 1));
   }
   return file;
 }
 
 Result<key_shapes::KeyShapeFile> keys_of_file(const Options& options, ToolContext& context) {
   const std::string& path = options.files[0];
-  if (!options.spacing.empty()) {
+  if (options.spacing) {
     return Error("usage", "--spacing is for a folder; a key file has its own times");
   }
   const auto file = context.open_input(path);

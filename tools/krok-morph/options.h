@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "capture/conventions.h"
+#include "core/quantity.h"
 #include "core/result.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
@@ -23,7 +25,7 @@ struct Options {
   std::vector<std::string> files;
 
   // OBJ conventions.
-  double metres_per_unit = 1;
+  Unit unit;
   Up up = Up::y;
   bool by_order = false;  // triangles need not match
 
@@ -36,18 +38,12 @@ struct Options {
   std::optional<double> rate;
   Between between = Between::as_given;  // frames
   std::optional<double> tension;
-  std::string spacing;  // time between shapes of a folder; a ClipTime
+  std::optional<ClipTime> spacing;  // time between shapes of a folder
   std::string save_weights;
 
   // Whether an option, "--rate", was given; set by declare().
   std::function<bool(const char* option)> given;
 };
-
-// `options` keeps a reference to `command`.
-void declare(CommandOptions& command, Options& options);
-
-// Checks that the options are valid for the action and consistent. Code usage.
-Status check(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

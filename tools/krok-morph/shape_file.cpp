@@ -24,7 +24,7 @@ void turn_up(std::vector<Vec3f>& vectors) {
 }
 
 Result<ShapeFile> read_obj(const InputFile& file, const Options& options, ToolContext& context) {
-  auto read = obj::read(file.text(), file.path(), {.metres_per_unit = options.metres_per_unit});
+  auto read = obj::read(file.text(), file.path(), {.metres_per_unit = options.unit.metres});
   if (!read) return read.error();
   context.diagnose_in(file.path(), read->diagnostics);
   ShapeFile shape;

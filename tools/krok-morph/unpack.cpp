@@ -86,7 +86,7 @@ void to_obj_space(const Options& options, Model& model) {
   };
   for (Vec3f& normal : model.normals) normal = turned(normal);
   for (Vec3f& position : model.positions) {
-    const Vec3 scaled = turned(position).cast<double>() / options.metres_per_unit;
+    const Vec3 scaled = turned(position).cast<double>() / options.unit.metres;
     position = scaled.cast<float>();
   }
 }

@@ -60,8 +60,8 @@ class MotionChart {
     auto joints = chosen_joints(motions_, options_.motion.joints);
     if (!joints) return joints.error();
     joints_ = std::move(*joints);
-    const std::vector<ChartKind> charts =
-        options_.motion.charts.empty() ? usual_charts() : options_.motion.charts;
+    std::vector<ChartKind> charts = options_.motion.charts();
+    if (charts.empty()) charts = usual_charts();
     for (const ChartKind chart : charts) {
       if (Status status = add(chart); !status) return status.error();
     }
@@ -77,7 +77,7 @@ class MotionChart {
   }
 
   bool asked_for(ChartKind chart) const {
-    const auto& charts = options_.motion.charts;
+    const auto charts = options_.motion.charts();
     return std::find(charts.begin(), charts.end(), chart) != charts.end();
   }
 
@@ -88,7 +88,7 @@ class MotionChart {
         append(chart_.panels, draw::path_panels(motions, motions_.ground));
         return {};
       case ChartKind::feet:
-        add_sided(draw::foot_panels(motions, options_.magnitude_scale, motions_.ground), chart,
+        add_sided(draw::foot_panels(motions, scale_of(options_.log_y), motions_.ground), chart,
                   "feet");
         return {};
       case ChartKind::angles:
@@ -158,7 +158,7 @@ class MotionChart {
       context_.warn("plot-difference", sentence);
     }
     report(*difference, first.clip->skeleton);
-    append(chart_.panels, draw::difference_panels(*difference, options_.magnitude_scale));
+    append(chart_.panels, draw::difference_panels(*difference, scale_of(options_.log_y)));
     return {};
   }
 

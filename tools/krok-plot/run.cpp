@@ -38,8 +38,8 @@ void lay_out(const Options& options, draw::Chart& chart) {
   chart.panel_width = single ? kSingleWidth : kPanelWidth;
   chart.panel_height = single ? kSingleHeight : kPanelHeight;
   if (options.panel) {
-    chart.panel_width = options.panel->first;
-    chart.panel_height = options.panel->second;
+    chart.panel_width = (*options.panel)[0];
+    chart.panel_height = (*options.panel)[1];
   }
 }
 
@@ -94,7 +94,7 @@ Json summary_of(const draw::Chart& chart) {
 }
 
 Result<draw::Chart> make_chart(const Options& options, ToolContext& context) {
-  if (options.table) return chart_tables(options, context);
+  if (options.plots_tables()) return chart_tables(options, context);
   const auto motions = read_motions(options.inputs, options.motion, context);
   if (!motions) return motions.error();
   return chart_motions(*motions, options, context);
@@ -121,16 +121,22 @@ Status add_charts(const Options& options, ToolContext& context, OutputSet& outpu
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
+  if (Status status = check_inputs(options); !status) return status.error();
   const bool images = options.sheet.wanted();
   if (context.output.empty() && !images) {
-    return Error("usage", "-o is missing", "see krok-plot --help");
+    return no_output("add -o OUTPUT, --sheet or --strip");
   }
   // In batch mode -o is given by the batch; images replace the charts.
   const bool charts = !context.output.empty() && !(images && context.one_of_many != nullptr);
   OutputSet outputs(context);
   std::vector<std::string> done;
   if (images) {
-    Status status = make_sheets(options.inputs, options.sheet, context, outputs, done);
+    SheetOptions sheet = options.sheet;
+    sheet.from = options.motion.from;
+    sheet.to = options.motion.to;
+    sheet.ground = options.motion.ground;
+    sheet.prints = options.motion.prints;
+    Status status = make_sheets(options.inputs, sheet, context, outputs, done);
     if (!status) return status.error();
   }
   if (charts) {

@@ -11,10 +11,9 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "render/strip.h"
-#include "tools/cli/one_of.h"
+#include "tools/shared/shared_options.h"
 #include "tools/shared/sheet_ground.h"
 #include "tools/shared/shown_ground.h"
-#include "tools/shared/skin_method_option.h"
 
 namespace krok::cli::plot {
 
@@ -113,7 +112,7 @@ ImageSide strip_side(const Shown& shown, const std::vector<ImageSide>& sides,
                      const SheetOptions& options) {
   ImageSide side = sides[0];
   side.yaw += front_of(shown, options);
-  if (options.image.sides != ImageOptions().sides) return side;
+  if (!are_usual_sides(options.image.sides)) return side;
   const Vec3 way = shown.actors.back().centre - shown.actors.front().centre;
   const render::Bounds box = render::bounds(shown.actors.front());
   if (way.norm() > 0.3 * box.extent()) {
@@ -222,65 +221,49 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 
 }  // namespace
 
-void declare_sheet(CommandOptions& command, SheetOptions& options) {
-  command.add_option(
-      "--sheet OUT.png", options.sheet,
-      "Contact sheet as PNG: characters at several times, in rows by file and side; "
-      "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out "
-      "where alpha is below their cutoff, or below one half for blended ones");
-  command.add_option(
-      "--strip OUT.png", options.strip,
-      "Motion strip as PNG: a character at several times in one image, earlier ones fainter");
-  command.add_option(
-      "--ground IN", options.ground,
-      "Ground to show below each actor and in the charts path and feet, as for krok-walk: a mesh, "
-      "a height field, or stairs:rise=17cm,run=29cm, slope:12deg, rough:seed=1,height=8cm");
-  command.add_flag("--whole-ground", options.whole_ground,
-                   "Show the ground of the whole way in each image, seen from one place");
-  declare_image_options(command, options.image, kSheetMoments);
+void declare_sheet(CommandOptions& command, SheetOptions& options, std::string& ground) {
+  command.add("--sheet OUT.png", options.sheet, output({".png"}),
+              "Contact sheet as PNG: characters at several times, in rows by file and side; "
+              "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out where "
+              "alpha is below their cutoff, or below one half for blended ones");
+  command.add("--strip OUT.png", options.strip, output({".png"}),
+              "Motion strip as PNG: a character at several times in one image, earlier ones "
+              "fainter");
+  add_ground_option(command, ground,
+                    "Ground to show below each actor and in the charts path and feet, as for "
+                    "krok-walk: a mesh, a height field, or stairs:rise=17cm,run=29cm, slope:12deg, "
+                    "rough:seed=1,height=8cm");
+  command.only_with({"--sheet", "--strip"});
   command
-      .add_option("--front WHAT", options.front,
-                  "What counts as the front: the facing at the first time (actor), or +Z, the "
-                  "facing in the reference pose (world)")
-      .transform(one_of<Front>({{"actor", Front::actor}, {"world", Front::world}}))
-      .default_str("actor");
-  add_body_option(command, options.body,
-                  "Body for motions without a model: low (2,500 vertices), medium (10,000), high "
-                  "(40,000), auto: low for more than two files, else medium; none: bones only");
+      .add_flag("--whole-ground", options.whole_ground,
+                "Show the ground of the whole way in each image, seen from one place")
+      .only_with("--ground");
+  declare_image_options(command, options.image, kSheetMoments);
+  command.add(
+      "--front WHAT", options.front,
+      choice<Front>({{"actor", Front::actor}, {"world", Front::world}}),
+      "What counts as the front: the facing at the first time (actor), or +Z, the facing in "
+      "the reference pose (world)",
+      "actor");
+  add_body_option(command, options.body, kShownBody);
   add_clip_option(command, options.clip);
-  add_skin_method(command, options.method,
-                  "Skinning method: linear, as viewers use it, dual-quaternion, which keeps the "
-                  "volume of twisted joints, or rigid; not for glTF files");
-}
-
-bool has_image_options(const SheetOptions& options) {
-  const SheetOptions usual;
-  return options.image.moments != usual.image.moments || options.image.sides != usual.image.sides ||
-         options.image.elevation != usual.image.elevation ||
-         options.image.size != usual.image.size || options.front != usual.front ||
-         options.whole_ground != usual.whole_ground || options.body != usual.body ||
-         options.method != usual.method || !options.clip.empty();
+  add_skin_method(command, options.method, kShownMethod);
 }
 
 Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& options,
                    ToolContext& context, OutputSet& outputs, std::vector<std::string>& done) {
   Results results{context, outputs, done};
-  const auto sides = parse_sides(options.image);
-  if (!sides) return sides.error();
-  for (const auto& [option, path] :
-       {std::pair("--sheet", options.sheet), std::pair("--strip", options.strip)}) {
-    if (Status status = check_image_name(path, option); !status) return status;
-  }
+  const std::vector<ImageSide> sides = sides_seen(options.image);
   const auto actors = read_actors(inputs, {options.body, options.method, options.clip}, context);
   if (!actors) return actors.error();
   const auto ground = open_sheet_ground(options.ground, options.prints, context);
   if (!ground) return ground.error();
   if (!options.sheet.empty()) {
-    if (Status status = make_sheet(*actors, *sides, options, *ground, results); !status) {
+    if (Status status = make_sheet(*actors, sides, options, *ground, results); !status) {
       return status;
     }
   }
-  if (!options.strip.empty()) return make_strip(*actors, *sides, options, *ground, results);
+  if (!options.strip.empty()) return make_strip(*actors, sides, options, *ground, results);
   return {};
 }
 

@@ -21,7 +21,7 @@ enum class Front : unsigned char {
 struct SheetOptions {
   std::string sheet, strip;  // paths; empty for none
   ImageOptions image;
-  std::string from, to;
+  std::optional<ClipTime> from, to;
   std::string ground;  // what io::open_terrain() takes; empty: level at 0
   std::string prints;  // a file of footprints on it, or empty
   bool whole_ground = false;
@@ -33,11 +33,8 @@ struct SheetOptions {
   bool wanted() const { return !sheet.empty() || !strip.empty(); }
 };
 
-// Declares --sheet, --strip and their options, except --from and --to.
-void declare_sheet(CommandOptions& command, SheetOptions& options);
-
-// Whether an option that only applies to images was given.
-bool has_image_options(const SheetOptions& options);
+// Declares --sheet, --strip, --ground and their options, except --from and --to.
+void declare_sheet(CommandOptions& command, SheetOptions& options, std::string& ground);
 
 // Renders the characters of all inputs, adds the requested images to the outputs and the report,
 // and a line for each to `done`.

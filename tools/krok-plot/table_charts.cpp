@@ -293,8 +293,8 @@ Status add_table(const std::string& path, const Options& options, ToolContext& c
       draw::Panel panel;
       panel.x = x_axis(*table, choice->x);
       panel.y = y_axis(*table, columns);
-      panel.x.scale = wanted.x_scale;
-      panel.y.scale = wanted.y_scale;
+      panel.x.scale = scale_of(wanted.log_x);
+      panel.y.scale = scale_of(options.log_y);
       chart.panels.push_back(std::move(panel));
     }
   }

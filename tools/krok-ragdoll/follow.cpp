@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "core/index.h"
@@ -11,6 +12,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/goals/goals.h"
+#include "tools/cli/option_kinds.h"
 
 namespace krok::cli::ragdoll {
 
@@ -23,19 +25,6 @@ constexpr double kFall = 3;       // seconds
 constexpr double kHold = 0.5;     // of powered characters
 constexpr double kPushSpeed = 1;  // m/s that a push gives the whole body
 constexpr double kAside = 60 * kRadiansPerDegree;
-
-Error usage_of(std::string message, std::string hint = {}) {
-  return {"usage", std::move(message), std::move(hint)};
-}
-
-Result<std::optional<double>> strength_of(const std::string& text, const char* option) {
-  if (text.empty()) return std::optional<double>();
-  const auto value = parse_finite(text);
-  if (!value || !(*value >= 0 && *value <= 1)) {
-    return usage_of(fmt::format("{} {} is not a strength from 0 to 1", option, shown(text)));
-  }
-  return std::optional<double>(*value);
-}
 
 // The mean of [0, 1), the same on every machine.
 double chance(std::mt19937& random) {
@@ -54,61 +43,30 @@ Vec3 left_of(const Clip& motion, const RoleMap& roles, double time) {
 
 }  // namespace
 
-void declare_follow(CommandOptions& command, FollowArguments& a) {
+void declare_follow(CommandOptions& command, FollowOptions& o) {
+  const ValueKind<double> strength = number({0, 1});
   command.group("Playing on");
-  command.add_option("--powered STRENGTH", a.powered,
-                     "Motors in the joints follow the motion: 1 as strong as an adult, 0 limp");
+  command.add("--powered STRENGTH", o.powered, strength,
+              "Motors in the joints follow the motion: 1 as strong as an adult, 0 limp");
   command
-      .add_option("--hold STRENGTH", a.hold,
-                  "Hold the root body to the motion from outside, as if by hand: 0 free, 1 as "
-                  "animated; 0.5 with --powered, which keeps walkers on their feet")
-      .default_str("0");
+      .add("--hold STRENGTH", o.hold, strength,
+           "Hold the root body to the motion from outside, as if by hand: 0 free, 1 as animated; "
+           "0.5 with --powered, which keeps walkers on their feet",
+           "0")
+      .not_with("--simulated");
   command
-      .add_option("--simulated JOINT", a.simulated,
+      .add_option("--simulated JOINT", o.simulated,
                   "Simulate only the bodies from this joint on, given by name or role, limp or as "
                   "strong as --powered; all others stay animated; repeatable")
       .one_each_time();
-  command.add_option("--push-every TIME", a.push_every,
-                     "Push the chest at this spacing, to alternate sides, with what gives the body "
-                     "1 m/s");
-  command.add_option("--seed N", a.seed, "Seed of the directions of --push-every").default_str("1");
-  command.add_option("--until TIME", a.until,
-                     "Time from which the motion goes on alone, blended within 0.5 s");
-}
-
-Result<FollowOptions> understand_follow(const FollowArguments& a) {
-  FollowOptions options;
-  const auto powered = strength_of(a.powered, "--powered");
-  if (!powered) return powered.error();
-  const auto hold = strength_of(a.hold, "--hold");
-  if (!hold) return hold.error();
-  options.powered = *powered;
-  options.hold = *hold;
-  options.simulated = a.simulated;
-  options.seed = a.seed;
-  if (options.hold && !a.simulated.empty()) {
-    return usage_of("--simulated and --hold exclude each other",
-                    "with --simulated the root body is animated");
-  }
-  if (a.seed != FollowArguments().seed && a.push_every.empty()) {
-    return usage_of("--seed is for --push-every", "give --push-every TIME, or leave --seed out");
-  }
-  if (!a.until.empty()) {
-    const auto until = parse_clip_time(a.until);
-    if (!until || !(until->value > 0)) {
-      return usage_of(fmt::format("--until {} is not a time above 0", shown(a.until)));
-    }
-    options.until = *until;
-  }
-  if (!a.push_every.empty()) {
-    const auto spacing = parse_clip_time(a.push_every);
-    if (!spacing || spacing->in_frames || !(spacing->value >= 0.1 && spacing->value <= 600)) {
-      return usage_of(
-          fmt::format("--push-every {} is not a time from 0.1 to 600 s", shown(a.push_every)));
-    }
-    options.push_every = spacing->value;
-  }
-  return options;
+  command.add("--push-every", o.push_every, seconds({0.1, 600}),
+              "Push the chest at this spacing, to alternate sides, with what gives the body 1 m/s");
+  command
+      .add("--seed", o.seed, whole(0, std::numeric_limits<std::uint32_t>::max()),
+           "Seed of the directions of --push-every", "1")
+      .only_with("--push-every");
+  command.add("--until", o.until, clip_time(kPositive),
+              "Time from which the motion goes on alone, blended within 0.5 s");
 }
 
 namespace {
@@ -190,11 +148,11 @@ Status set_modes(const FollowOptions& options, bool gets_up, const Skeleton& ske
   if (Status status = choose_modes(options, skeleton, roles, bodies); !status) return status;
   const bool follows = follows_motion(bodies);
   if (!follows && options.until) {
-    return usage_of("--until: nothing follows the motion that is to go on",
-                    "give --powered, --hold or --simulated, or bodies with modes");
+    return usage("--until: nothing follows the motion that is to go on",
+                 "give --powered, --hold or --simulated, or bodies with modes");
   }
   if (follows && gets_up) {
-    return usage_of("--get-up needs a fall that comes to rest; the bodies follow the motion");
+    return usage("--get-up needs a fall that comes to rest; the bodies follow the motion");
   }
   return {};
 }

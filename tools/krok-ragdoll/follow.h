@@ -15,12 +15,6 @@
 
 namespace krok::cli::ragdoll {
 
-struct FollowArguments {
-  std::string powered, hold, until, push_every;
-  std::vector<std::string> simulated;  // joints, by name or role
-  std::uint32_t seed = 1;
-};
-
 struct FollowOptions {
   std::optional<double> powered, hold;
   std::vector<std::string> simulated;
@@ -31,10 +25,7 @@ struct FollowOptions {
   bool any() const { return powered || hold || !simulated.empty(); }
 };
 
-void declare_follow(CommandOptions& command, FollowArguments& arguments);
-
-// Code usage; messages name the option.
-Result<FollowOptions> understand_follow(const FollowArguments& arguments);
+void declare_follow(CommandOptions& command, FollowOptions& options);
 
 // Sets the modes of bodies as the options say; without, they keep those of the file. Code
 // ragdoll-joint if the skeleton has no joint of a name, usage if what is asked for (`gets_up`:

@@ -2,87 +2,20 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string_view>
 
-#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/cli/option_kinds.h"
-#include "tools/cli/usage.h"
 #include "tools/krok-ragdoll/run.h"
-#include "tools/shared/orientation_option.h"
-#include "tools/shared/role_input.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::ragdoll {
 
 namespace {
 
-void declare_fall(CommandOptions& command, Arguments& a) {
-  command.group("Fall");
-  command.add_option("--at TIME", a.at, "Time at which the body takes over from the motion")
-      .default_str("0s");
-  command
-      .add_option("--push JOINT=X,Y,Z", a.pushes,
-                  "Push at a joint, given by name or role: Spine2=120Ns,0,40Ns at --at, or later: "
-                  "head=0,0,-30Ns@2s; repeatable")
-      .one_each_time();
-  command.add_option("--pushes IN.csv", a.push_table,
-                     "A fall for each row of a table with the columns name, at, joint, x, y, z and "
-                     "maybe time; {name} in the output's name is the row's");
-  command
-      .add_option("--get-up IN.anim", a.rises,
-                  "Get up once at rest, with the motion whose first pose, or its mirror image, is "
-                  "nearest; repeatable")
-      .one_each_time();
-  command
-      .add_option("--duration TIME", a.duration,
-                  "Length of the fall; where the motion plays on, to its end")
-      .default_str("3s");
-}
-
-void declare_body(CommandOptions& command, Arguments& a) {
-  command.group("Body");
-  command.add_option("--model IN.model", a.model,
-                     "Fit the bodies to this model's vertices by their weights");
-  command.add_option(
-      "--bodies IN.ragdoll.json", a.bodies,
-      "Bodies and joints from a file (formats/ragdoll/SPEC.md) instead of made ones");
-  command.add_option(
-      "--save-bodies OUT.ragdoll.json|OUT.glb", a.save_bodies,
-      "Also save the bodies and joints: to be edited and given to --bodies, or as meshes (.glb)");
-  command.add_option("--mass MASS", a.mass, "Mass of the body").default_str("75kg");
-  command
-      .add_option("--limits IN.json|auto|none", a.limits,
-                  "Ranges of motion: a file (formats/limits/SPEC.md), auto for published ranges of "
-                  "adults, or none")
-      .default_str("auto");
-  command.add_flag("--soft", a.soft, "Limits push back as springs instead of stopping");
-  add_map_option(command, a.map);
-}
-
-void declare_surroundings(CommandOptions& command, Arguments& a) {
-  command.group("Surroundings");
-  command
-      .add_option("--ground IN|KIND", a.ground,
-                  "Ground: level[:height=H], stairs, slope:ANGLE, rough, or a file (glTF, GLB, "
-                  "OBJ, EXR, PNG)")
-      .default_str("level");
-  add_number(command, "--friction", a.friction, "Coefficient of friction, 0 to 10")
-      .default_str("0.7");
-  add_number(command, "--restitution", a.restitution, "Share of speed kept in a bounce, 0 to 1")
-      .default_str("0");
-}
-
-// A number with an optional unit.
-std::optional<double> number_of(std::string_view text, std::string_view unit) {
-  if (text.ends_with(unit)) text.remove_suffix(unit.size());
-  return parse_finite(text);
-}
-
 Result<PushAt> parse_push(const std::string& text) {
   const auto wrong = [&](const std::string& why) {
-    return usage(fmt::format("--push {}: {}", shown(text), why),
+    return usage(fmt::format("'{}': {}", shown(text), why),
                  "write Spine2=120Ns,0,40Ns or Spine2=120Ns,0,40Ns@2s");
   };
   PushAt push;
@@ -97,110 +30,97 @@ Result<PushAt> parse_push(const std::string& text) {
     push.time = *time;
     impulse = impulse.substr(0, mark);
   }
-  for (int i = 0; i < 3; ++i) {
-    const std::size_t comma = impulse.find(',');
-    if ((comma == std::string_view::npos) != (i == 2)) return wrong("an impulse has three parts");
-    const auto value = number_of(impulse.substr(0, comma), "Ns");
-    if (!value || !(std::abs(*value) <= kMaxImpulse)) {
-      return wrong("an impulse is a number of Ns, up to 10000");
-    }
-    push.impulse[i] = *value;
-    if (i < 2) impulse.remove_prefix(comma + 1);
-  }
+  const ValueKind<double> part = number({-kMaxImpulse, kMaxImpulse}, "Ns");
+  const auto parts = numbers_as<Vec3>({part, part, part}, 3).read(std::string(impulse));
+  if (!parts) return wrong("an impulse has three parts; " + parts.error().message);
+  push.impulse = *parts;
   return push;
 }
 
-Status understand_playing_on(const Arguments& a, Options& options) {
-  auto follow = understand_follow(a.follow);
-  if (!follow) return follow.error();
-  options.follow = std::move(*follow);
-  if (options.follow.until && options.duration) {
-    return usage("--duration and --until exclude each other");
-  }
-  if (options.follow.any() && !a.rises.empty()) {
-    return usage("--get-up needs a fall that comes to rest",
-                 "leave out --powered, --hold and --simulated");
-  }
-  return {};
+void declare_fall(CommandOptions& command, Options& o) {
+  command.group("Fall");
+  command.add("--at", o.at, clip_time(), "Time at which the body takes over from the motion", "0s")
+      .not_with("--pushes");
+  command
+      .add("--push", o.pushes, ValueKind<PushAt>{"push", "JOINT=X,Y,Z", parse_push, {}},
+           "Push at a joint, given by name or role: Spine2=120Ns,0,40Ns at --at, or later: "
+           "head=0,0,-30Ns@2s; repeatable")
+      .not_with("--pushes");
+  command.add_option("--pushes IN.csv", o.push_table,
+                     "A fall for each row of a table with the columns name, at, joint, x, y, z and "
+                     "maybe time; {name} in the output's name is the row's");
+  command
+      .add_option("--get-up IN.anim", o.rises,
+                  "Get up once at rest, with the motion whose first pose, or its mirror image, is "
+                  "nearest; repeatable")
+      .one_each_time()
+      .not_with({"--powered", "--hold", "--simulated"});
+  command
+      .add("--duration", o.duration, seconds({0, 600, true}),
+           "Length of the fall; where the motion plays on, to its end", "3s")
+      .not_with("--until");
+}
+
+void declare_body(CommandOptions& command, Options& o) {
+  command.group("Body");
+  command
+      .add_option("--model IN.model", o.model,
+                  "Fit the bodies to this model's vertices by their weights")
+      .not_with("--bodies");
+  command.add_option(
+      "--bodies IN.ragdoll.json", o.bodies,
+      "Bodies and joints from a file (formats/ragdoll/SPEC.md) instead of made ones");
+  command
+      .add("--save-bodies OUT.ragdoll.json|OUT.glb", o.save_bodies, output({".json", ".glb"}),
+           "Also save the bodies and joints: to be edited and given to --bodies, or as meshes "
+           "(.glb)")
+      .not_with("--pushes");
+  command.add("--mass MASS", o.mass, number({1, 1000}, "kg"), "Mass of the body", "75kg")
+      .not_with("--bodies");
+  command
+      .add_option("--limits IN.json|auto|none", o.limits,
+                  "Ranges of motion: a file (formats/limits/SPEC.md), auto for published ranges of "
+                  "adults, or none")
+      .default_str("auto")
+      .not_with("--bodies");
+  command.add_flag("--soft", o.soft, "Limits push back as springs instead of stopping")
+      .not_with("--bodies");
+  add_map_option(command, o.map);
+}
+
+void declare_surroundings(CommandOptions& command, Options& o) {
+  command.group("Surroundings");
+  add_ground_option(command, o.ground,
+                    "Ground: level[:height=H], stairs, slope:ANGLE, rough, or a file (glTF, GLB, "
+                    "OBJ, EXR, PNG)",
+                    "level")
+      .type_name("IN|KIND");
+  command.add("--friction", o.friction, number({0, 10}), "Coefficient of friction, 0 to 10", "0.7");
+  command.add("--restitution", o.restitution, number({0, 1}),
+              "Share of speed kept in a bounce, 0 to 1", "0");
+}
+
+void declare(CommandOptions& command, Options& o) {
+  command
+      .add_option("input IN.anim", o.input,
+                  "Motion, or a capture read as by krok-import (- is standard input)")
+      .required();
+  declare_fall(command, o);
+  declare_follow(command, o.follow);
+  declare_body(command, o);
+  declare_surroundings(command, o);
+  add_orientation_option(command, o.orientation);
 }
 
 }  // namespace
 
-void declare(CommandOptions& command, Arguments& arguments) {
-  command
-      .add_option("input IN.anim", arguments.input,
-                  "Motion, or a capture read as by krok-import (- is standard input)")
-      .required();
-  declare_fall(command, arguments);
-  declare_follow(command, arguments.follow);
-  declare_body(command, arguments);
-  declare_surroundings(command, arguments);
-  add_orientation_option(command, arguments.orientation);
-}
-
-Result<Options> understand(const Arguments& a) {
-  Options options;
-  options.given = a;
-  for (const std::string& text : a.pushes) {
-    auto push = parse_push(text);
-    if (!push) return push.error();
-    options.pushes.push_back(*push);
-  }
-  if (!(a.friction >= 0 && a.friction <= 10) || !(a.restitution >= 0 && a.restitution <= 1)) {
-    return usage("--friction must be from 0 to 10, --restitution from 0 to 1");
-  }
-  if (!a.bodies.empty()) {
-    const std::pair<const char*, bool> unused[] = {{"--model", !a.model.empty()},
-                                                   {"--mass", a.mass != Arguments().mass},
-                                                   {"--limits", a.limits != Arguments().limits},
-                                                   {"--soft", a.soft}};
-    for (const auto& [option, given] : unused) {
-      if (given) {
-        return usage(fmt::format("--bodies has what {} would change", option),
-                     "edit the file, or leave one of them out");
-      }
-    }
-  }
-  if (!a.push_table.empty()) {
-    const std::pair<const char*, bool> unused[] = {{"--at", a.at != Arguments().at},
-                                                   {"--push", !a.pushes.empty()},
-                                                   {"--save-bodies", !a.save_bodies.empty()}};
-    for (const auto& [option, given] : unused) {
-      if (given) return usage(fmt::format("--pushes and {} exclude each other", option));
-    }
-  }
-  const std::string ending = extension(a.save_bodies);
-  if (!a.save_bodies.empty() && ending != ".json" && ending != ".glb") {
-    return usage(
-        fmt::format("--save-bodies: '{}' is neither .ragdoll.json nor .glb", shown(a.save_bodies)));
-  }
-  const auto begin = parse_clip_time(a.at);
-  if (!begin || !(begin->value >= 0)) {
-    return usage(fmt::format("--at {} is not a time of 0 or more", shown(a.at)));
-  }
-  options.at = *begin;
-  if (!a.duration.empty()) {
-    const auto duration = parse_clip_time(a.duration);
-    if (!duration || duration->in_frames || !(duration->value > 0 && duration->value <= 600)) {
-      return usage(fmt::format("--duration {} is not a time of up to 600 s", shown(a.duration)));
-    }
-    options.duration = duration->value;
-  }
-  if (Status status = understand_playing_on(a, options); !status) return status.error();
-  const auto mass = number_of(a.mass, "kg");
-  if (!mass || !(*mass >= 1 && *mass <= 1000)) {
-    return usage(fmt::format("--mass {} is not a mass from 1 to 1000 kg", shown(a.mass)));
-  }
-  options.mass = *mass;
-  return options;
-}
-
 ToolSpec make_spec() {
-  const auto arguments = std::make_shared<Arguments>();
-  ToolSpec spec = spec_of("krok-ragdoll", arguments, declare, understand, run);
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of<Options>("krok-ragdoll", options, declare, nullptr, run);
   spec.summary = "Lets a motion's character fall by physics";
   spec.details = "Rigid bodies with joints take over from the motion.";
   spec.inputs = "IN.anim";
+  spec.writes = registry::Kind::anim;
   spec.examples = {
       {"krok-ragdoll walk.anim --at 1.2s --push Spine2=120Ns,0,40Ns -o fall.anim",
        "a walker is shoved from the side and falls"},
@@ -218,8 +138,8 @@ ToolSpec make_spec() {
        "-o up.anim",
        "falls and gets up, over the front or the back as it lies"}};
   spec.exit_partly = "with --pushes: some rows failed, all others were written";
-  spec.batch = {io::motion_endings(), [arguments]() -> Result<std::string> {
-                  return std::string(arguments->push_table.empty() ? ".anim" : "_{name}.anim");
+  spec.batch = {io::motion_endings(), [options]() -> Result<std::string> {
+                  return std::string(options->push_table.empty() ? ".anim" : "_{name}.anim");
                 }};
   return spec;
 }

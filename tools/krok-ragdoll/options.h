@@ -12,22 +12,6 @@
 
 namespace krok::cli::ragdoll {
 
-// The options as given on the command line.
-struct Arguments {
-  std::string input, map, model;
-  std::string bodies, save_bodies;
-  std::string at = "0s", duration, mass = "75kg";
-  std::vector<std::string> pushes;  // JOINT=X,Y,ZNs[@TIME]
-  std::string push_table;
-  std::vector<std::string> rises;
-  std::string ground = "level";
-  std::string limits = "auto";
-  FollowArguments follow;
-  double friction = 0.7, restitution = 0;
-  bool soft = false;
-  OrientationEncoding orientation = OrientationEncoding::xyz;
-};
-
 inline constexpr double kMaxImpulse = 1e4;  // N s
 
 struct PushAt {
@@ -37,20 +21,22 @@ struct PushAt {
   ClipTime time;
 };
 
-// The parsed options.
 struct Options {
-  Arguments given;
-  std::vector<PushAt> pushes;
+  std::string input, map, model;
+  std::string bodies, save_bodies;
   ClipTime at;
-  std::optional<double> duration;
-  double mass = 75;
+  std::optional<double> duration;  // seconds
+  double mass = 0;                 // kg
+  std::vector<PushAt> pushes;
+  std::string push_table;
+  std::vector<std::string> rises;
+  std::string ground;
+  std::string limits = "auto";
   FollowOptions follow;
+  double friction = 0, restitution = 0;
+  bool soft = false;
+  OrientationEncoding orientation = OrientationEncoding::xyz;
 };
-
-void declare(CommandOptions& command, Arguments& arguments);
-
-// Code usage; messages name the option.
-Result<Options> understand(const Arguments& arguments);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

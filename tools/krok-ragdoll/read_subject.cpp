@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
 #include "formats/io/open_terrain.h"
 #include "formats/limits/limits_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
@@ -14,7 +15,6 @@
 #include "retarget/stance.h"
 #include "tools/cli/file_name.h"
 #include "tools/krok-ragdoll/follow.h"
-#include "tools/shared/role_input.h"
 
 namespace krok::cli::ragdoll {
 
@@ -30,7 +30,6 @@ class SubjectReader {
   Result<Subject> read();
 
  private:
-  const Arguments& given() const { return options_.given; }
   Status read_motion();
   Status read_limits();
   Status read_bodies();
@@ -46,14 +45,14 @@ class SubjectReader {
 };
 
 Status SubjectReader::read_motion() {
-  auto clip = io::open_motion(given().input, context_);
+  auto clip = io::open_motion(options_.input, context_);
   if (!clip) return clip.error();
   subject_.clip = std::move(*clip);
   if (subject_.clip.frame_count() == 0) {
     return Error("ragdoll-time", "the motion has no frames, so that nothing falls")
-        .in_file(given().input);
+        .in_file(options_.input);
   }
-  const auto find = io::open_role_map(given().map, context_);
+  const auto find = io::open_role_map(options_.map, context_);
   if (!find) return find.error();
   auto roles = (*find)(subject_.clip.skeleton);
   if (!roles) return roles.error();
@@ -63,42 +62,42 @@ Status SubjectReader::read_motion() {
 }
 
 Status SubjectReader::read_limits() {
-  if (given().limits == "none") return {};
-  if (given().limits == "auto") {
+  if (options_.limits == "none") return {};
+  if (options_.limits == "auto") {
     subject_.limits = krok::ik::anatomical_limits(neutral_, subject_.roles);
     return {};
   }
-  const auto file = context_.open_input(given().limits);
+  const auto file = context_.open_input(options_.limits);
   if (!file) return file.error();
   auto limits = limits::read(file->text(), subject_.clip.skeleton);
-  if (!limits) return std::move(limits).error().in_file(given().limits);
+  if (!limits) return std::move(limits).error().in_file(options_.limits);
   subject_.limits = std::move(*limits);
   return {};
 }
 
 Status SubjectReader::read_given_bodies() {
-  const auto file = context_.open_input(given().bodies);
+  const auto file = context_.open_input(options_.bodies);
   if (!file) return file.error();
   auto read = ragdoll_file::read(file->text(), &subject_.clip.skeleton);
-  if (!read) return std::move(read).error().in_file(given().bodies);
+  if (!read) return std::move(read).error().in_file(options_.bodies);
   subject_.bodies = std::move(read->bodies);
   subject_.rules = std::move(read->joints);
   return set_modes();
 }
 
 Status SubjectReader::read_bodies() {
-  if (!given().bodies.empty()) return read_given_bodies();
+  if (!options_.bodies.empty()) return read_given_bodies();
   krok::ragdoll::BodyOptions how;
   how.mass = options_.mass;
   std::optional<Model> model;
-  if (!given().model.empty()) {
+  if (!options_.model.empty()) {
     auto actor =
-        io::open_actor(given().model, context_, {.with_materials = false, .with_motions = false});
+        io::open_actor(options_.model, context_, {.with_materials = false, .with_motions = false});
     if (!actor) return actor.error();
     if (!actor->motions.empty()) {
       return Error("ragdoll-model", "is a motion, not a model",
                    "krok-body makes a model for a motion")
-          .in_file(given().model);
+          .in_file(options_.model);
     }
     model = std::move(actor->model);
     how.model = &*model;
@@ -106,7 +105,7 @@ Status SubjectReader::read_bodies() {
   auto bodies = krok::ragdoll::make_bodies(neutral_, subject_.roles, how);
   if (!bodies) {
     const bool of_model = bodies.error().code == "ragdoll-model";
-    return std::move(bodies).error().in_file(of_model ? given().model : given().input);
+    return std::move(bodies).error().in_file(of_model ? options_.model : options_.input);
   }
   subject_.bodies = std::move(*bodies);
   if (model) check_cover(*model);
@@ -119,19 +118,19 @@ void SubjectReader::check_cover(const Model& model) {
   context_.warn("ragdoll-model",
                 fmt::format("{}: {:.0f} % of the vertices are within 3 cm of a body (90 are "
                             "expected)",
-                            shown(given().model), 100 * *subject_.covered),
+                            shown(options_.model), 100 * *subject_.covered),
                 "--save-bodies OUT.ragdoll.json, edit the shapes, and give them to --bodies");
 }
 
 Status SubjectReader::set_modes() {
-  Status status = ragdoll::set_modes(options_.follow, !given().rises.empty(),
+  Status status = ragdoll::set_modes(options_.follow, !options_.rises.empty(),
                                      subject_.clip.skeleton, subject_.roles, subject_.bodies);
   if (status || status.error().code == "usage") return status;
-  return Error(status.error()).in_file(given().input);
+  return Error(status.error()).in_file(options_.input);
 }
 
 Status SubjectReader::read_rises() {
-  for (const std::string& path : given().rises) {
+  for (const std::string& path : options_.rises) {
     auto clip = io::open_motion(path, context_);
     if (!clip) return clip.error();
     // Checked here, so that the message has the file's name.
@@ -142,7 +141,7 @@ Status SubjectReader::read_rises() {
     subject_.rise_names.push_back(name_of_input(path));
   }
   if (subject_.rises.empty()) return {};
-  auto terrain = io::open_terrain(given().ground, {}, context_);
+  auto terrain = io::open_terrain(options_.ground, {}, context_);
   if (!terrain) return terrain.error();
   subject_.terrain = std::move(*terrain);
   return {};

@@ -22,7 +22,7 @@
 #include "ragdoll/world.h"
 #include "terrain/surface.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/output_kind.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/fall.h"
@@ -93,7 +93,6 @@ class Run {
   Result<int> run();
 
  private:
-  const Arguments& given() const { return options_.given; }
   Status plan_falls();
   Status plan_table();
   Result<std::string> output_of(const std::string& file_name) const;
@@ -121,14 +120,14 @@ Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& pl
   if (plan.fall.at > clip.duration() + 1e-9) {
     return Error("ragdoll-time", fmt::format("{} is after the motion's end, {} s", shown_time,
                                              readable(clip.duration())))
-        .in_file(given().input);
+        .in_file(options_.input);
   }
   const Status status =
       set_end(options_.follow, options_.duration, clip, subject_.roles, subject_.bodies, plan.fall);
-  if (!status) return Error(status.error()).in_file(given().input);
-  plan.fall.joints.soft = given().soft;
+  if (!status) return Error(status.error()).in_file(options_.input);
+  plan.fall.joints.soft = options_.soft;
   plan.fall.rules = subject_.rules;
-  if (given().bodies.empty()) {
+  if (options_.bodies.empty()) {
     // Through rules even if no file is written, so that a saved file gives the same fall.
     const auto pose = krok::ragdoll::pose_at(clip, plan.fall.at);
     plan.fall.rules = krok::ragdoll::rules_of(
@@ -172,7 +171,7 @@ Status Run::add_push(const PushAt& push, Plan& plan) const {
     return Error("ragdoll-joint",
                  fmt::format("{}: the motion has no joint of that name or role", shown(push.joint)),
                  nearest_hint(push.joint, clip.skeleton.names))
-        .in_file(given().input);
+        .in_file(options_.input);
   }
   const double time = push.timed ? push.time.seconds(clip.rate) : plan.fall.at;
   if (time < plan.fall.at - 1e-9 || time > plan.fall.at + plan.fall.duration) {
@@ -190,19 +189,19 @@ Status Run::read_ground(Plan& plan) {
   const int frame = static_cast<int>(std::min(plan.fall.at * clip.rate, clip.frame_count() - 1.0));
   const int root = subject_.bodies.front().joint;
   const Vec3 centre = clip.frame_positions(frame)[at(root)].cast<double>();
-  auto surroundings = open_surroundings(given().ground, centre, context_);
+  auto surroundings = open_surroundings(options_.ground, centre, context_);
   if (!surroundings) return surroundings.error();
   plan.fall.surroundings = std::move(*surroundings);
-  plan.fall.world.friction = given().friction;
-  plan.fall.world.restitution = given().restitution;
+  plan.fall.world.friction = options_.friction;
+  plan.fall.world.restitution = options_.restitution;
   return {};
 }
 
 Status Run::plan_falls() {
-  if (!given().push_table.empty()) return plan_table();
+  if (!options_.push_table.empty()) return plan_table();
   Plan plan;
   plan.output = context_.output;
-  if (Status status = begin_at(options_.at, "--at " + shown(given().at), plan); !status) {
+  if (Status status = begin_at(options_.at, "--at " + written(options_.at), plan); !status) {
     return status;
   }
   for (const PushAt& push : options_.pushes) {
@@ -230,21 +229,21 @@ Result<std::string> Run::output_of(const std::string& file_name) const {
 }
 
 Status Run::plan_table() {
-  const auto file = context_.open_input(given().push_table);
+  const auto file = context_.open_input(options_.push_table);
   if (!file) return file.error();
-  const auto falls = read_push_table(file->text(), given().push_table);
+  const auto falls = read_push_table(file->text(), options_.push_table);
   if (!falls) return falls.error();
   for (const TableFall& fall : *falls) {
     const auto at_place = [&](Status status, Location place) {
       if (status) return status;
-      place.file = given().push_table;
+      place.file = options_.push_table;
       status.error().where = std::move(place);
       return status;
     };
     Plan plan;
     plan.name = fall.name;
     plan.place = fall.at_place;
-    plan.place.file = given().push_table;
+    plan.place.file = options_.push_table;
     auto output = output_of(fall.file_name);
     if (!output) return output.error();
     plan.output = std::move(*output);
@@ -269,7 +268,7 @@ Status Run::write(const Plan& plan, Provenance provenance, int jobs, Fallen& fal
   conversions.push_back("ragdoll: " + (plan.name.empty() ? "" : plan.name + ": ") +
                         summary_of(subject_, plan.fall, fallen));
   anim::WriteOptions writing;
-  writing.orientation = given().orientation;
+  writing.orientation = options_.orientation;
   writing.jobs = jobs;
   return anim::write(fallen.clip, writing, file);
 }
@@ -288,7 +287,7 @@ Status Run::write_meshes(OutputFile& file) const {
 Status Run::write_one() {
   const Plan& plan = plans_.front();
   auto fallen = make_fall(subject_, plan.fall);
-  if (!fallen) return std::move(fallen).error().in_file(given().input);
+  if (!fallen) return std::move(fallen).error().in_file(options_.input);
   for (const Error& fault : faults_of(*fallen)) {
     context_.warn(fault.code, fault.message, fault.hint);
   }
@@ -297,8 +296,8 @@ Status Run::write_one() {
     return write(plan, context_.provenance(), context_.jobs, *fallen, file);
   });
   if (!status) return status;
-  status = outputs.add(given().save_bodies, [&](OutputFile& file) {
-    if (extension(given().save_bodies) == ".glb") return write_meshes(file);
+  status = outputs.add(options_.save_bodies, [&](OutputFile& file) {
+    if (extension(options_.save_bodies) == ".glb") return write_meshes(file);
     return file.write(
         ragdoll_file::write({subject_.bodies, plan.fall.rules}, subject_.clip.skeleton));
   });
@@ -367,20 +366,17 @@ void Run::report_rows(const std::vector<std::optional<Error>>& failures,
       context_.warn(fault.code, name + fault.message, fault.hint);
     }
   }
-  context_.log(fmt::format("{}: {} falls, {} of them within all tolerances{}", given().push_table,
+  context_.log(fmt::format("{}: {} falls, {} of them within all tolerances{}", options_.push_table,
                            failures.size() - failed, kept,
                            failed > 0 ? fmt::format(", {} failed", failed) : ""));
 }
 
 Result<int> Run::run() {
-  if (Status status = check_output_kind(context_.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
   auto subject = read_subject(options_, context_);
   if (!subject) return subject.error();
   subject_ = std::move(*subject);
   if (Status status = plan_falls(); !status) return status.error();
-  if (!given().push_table.empty()) return write_all();
+  if (!options_.push_table.empty()) return write_all();
   if (const Status status = write_one(); !status) return status.error();
   return kExitDone;
 }

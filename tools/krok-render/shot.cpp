@@ -184,9 +184,10 @@ Status Shot::measure_difference(int jobs) {
 void Shot::lay_out_panes() {
   const double front = actors_[0].heading(setting_.start);
   const auto add = [&](const std::string& name, std::vector<std::size_t> shown, bool compares) {
-    for (const ImageSide& side : options_->sides) {
+    const std::vector<ImageSide> sides = sides_seen(options_->image);
+    for (const ImageSide& side : sides) {
       Pane pane;
-      pane.title = options_->sides.size() > 1 ? fmt::format("{}   {}", name, side.name) : name;
+      pane.title = sides.size() > 1 ? fmt::format("{}   {}", name, side.name) : name;
       // Compared actors are seen from the same side, others from their own.
       const bool own = !options_->difference && shown.size() == 1;
       pane.yaw = (own ? actors_[shown[0]].heading(setting_.start) : front) + side.yaw;

@@ -10,16 +10,21 @@
 
 namespace krok::cli::retarget {
 
-// The options as given.
+// The pose that matches the other skeleton's reference pose: a frame of the motion, or of the
+// motion in `path`; found out without a frame.
+struct MatchingPose {
+  std::string path;
+  std::optional<int> frame;
+};
+
 struct Options {
   std::string input;
   std::string onto;
   std::string map;       // of the input's joints; empty: none
   std::string onto_map;  // of the target's joints
   krok::retarget::Feet feet = krok::retarget::Feet::keep;
-  std::string scale;                    // empty: ratio of leg lengths
-  std::string reference_pose = "auto";  // auto, a frame, or FILE:FRAME
-  std::string onto_reference_pose = "auto";
+  std::optional<double> scale;  // empty: ratio of leg lengths
+  MatchingPose reference_pose, onto_reference_pose;
   std::vector<std::string> takes;  // of the input's actor: files, folders, patterns
   std::string alignment;           // of the two skeletons; empty: none
   std::string save_alignment;      // empty: none
@@ -27,17 +32,6 @@ struct Options {
   std::string contacts = "auto";   // of the input's feet, for `ground`
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
-
-// A frame of another motion: FILE:FRAME.
-struct PoseOfFile {
-  std::string path;
-  int frame = 0;
-};
-// Empty for auto and plain frame numbers.
-std::optional<PoseOfFile> pose_of_file(const std::string& text);
-
-// Code usage for invalid values. Poses from files are left to the caller.
-Result<krok::retarget::Options> parse(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();

@@ -57,26 +57,25 @@ Result<RoleMap> roles_of(const Skeleton& skeleton, const std::string& map_path,
 }
 
 // The pose that an option takes from another motion of the skeleton; none for other values.
-Status take_pose(const char* option, const std::string& text, const Skeleton& skeleton,
+Status take_pose(const char* option, const MatchingPose& given, const Skeleton& skeleton,
                  std::vector<Transform>& pose, ToolContext& context) {
-  const auto given = pose_of_file(text);
-  if (!given) return {};
-  const auto clip = io::open_motion(given->path, context);
+  if (given.path.empty()) return {};
+  const auto clip = io::open_motion(given.path, context);
   if (!clip) return clip.error();
   const std::string difference = difference_in_structure(clip->skeleton, skeleton);
   if (!difference.empty()) {
     return Error("retarget-pose", fmt::format("{}: another skeleton: {}", option, difference))
-        .in_file(given->path);
+        .in_file(given.path);
   }
-  if (given->frame >= clip->frame_count()) {
+  if (*given.frame >= clip->frame_count()) {
     return Error("retarget-frame",
                  fmt::format("{}: no frame {}; the motion has {} frames, numbered "
                              "from 0",
-                             option, given->frame, clip->frame_count()))
-        .in_file(given->path);
+                             option, *given.frame, clip->frame_count()))
+        .in_file(given.path);
   }
   pose.resize(skeleton.names.size());
-  clip->get_pose(given->frame, pose);
+  clip->get_pose(*given.frame, pose);
   return {};
 }
 
@@ -224,11 +223,8 @@ Status check_outputs(const Options& options, const ToolContext& context) {
                  "write their alignment with --takes and --save-alignment first, and give it to "
                  "the batch with --alignment");
   }
-  if (!context.output.empty()) return check_output_kind(context.output, "-o", registry::Kind::anim);
-  if (options.save_alignment.empty()) {
-    return Error("usage", "nothing to write: neither -o nor --save-alignment is given",
-                 "write the motion with -o OUTPUT.anim");
-  }
+  if (!context.output.empty()) return {};
+  if (options.save_alignment.empty()) return no_output("add -o OUTPUT, or --save-alignment");
   if (options.ground.empty()) return {};
   return Error("usage", "--ground is for a motion that is written", "give its name with -o");
 }
@@ -237,10 +233,14 @@ Status check_outputs(const Options& options, const ToolContext& context) {
 
 Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_outputs(options, context); !status) return status.error();
-  auto how = parse(options);
-  if (!how) return how.error();
-  how->jobs = context.jobs;
-  how->progress = context.progress;
+  krok::retarget::Options how;
+  how.feet = options.feet;
+  how.scale = options.scale;
+  if (options.reference_pose.path.empty()) how.source_frame = options.reference_pose.frame;
+  if (options.onto_reference_pose.path.empty())
+    how.target_frame = options.onto_reference_pose.frame;
+  how.jobs = context.jobs;
+  how.progress = context.progress;
   const auto source = io::open_motion(options.input, context);
   if (!source) return source.error();
   const auto target = read_target(options.onto, context);
@@ -249,26 +249,26 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!source_roles) return source_roles.error();
   const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
   if (!target_roles) return target_roles.error();
-  if (!options.ground.empty()) how->feet = krok::retarget::Feet::free;
-  how->target_floor = believable_floor(*target, *target_roles);
+  if (!options.ground.empty()) how.feet = krok::retarget::Feet::free;
+  how.target_floor = believable_floor(*target, *target_roles);
   Status posed = take_pose("--reference-pose", options.reference_pose, source->skeleton,
-                           how->source_pose, context);
+                           how.source_pose, context);
   if (posed) {
     posed = take_pose("--onto-reference-pose", options.onto_reference_pose, target->clip.skeleton,
-                      how->target_pose, context);
+                      how.target_pose, context);
   }
   if (posed) {
     posed =
-        take_alignment(options.alignment, source->skeleton, target->clip.skeleton, *how, context);
+        take_alignment(options.alignment, source->skeleton, target->clip.skeleton, how, context);
   }
   if (!posed) return posed.error();
   if (!options.takes.empty()) {
     auto pose = pose_of_takes(options.takes, *source, *source_roles, context);
     if (!pose) return pose.error();
-    how->source_pose = *std::move(pose);
+    how.source_pose = *std::move(pose);
   }
 
-  auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, *how);
+  auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, how);
   if (!result) return std::move(result).error().in_file(options.input);
   std::optional<FollowedFeet> followed;
   if (!options.ground.empty()) {
@@ -280,7 +280,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
                         result->report};
-  const bool pose_is_given = how->source_frame || !how->source_pose.empty();
+  const bool pose_is_given = how.source_frame || !how.source_pose.empty();
   report_choices(outcome, pose_is_given, context);
 
   Clip& clip = result->clip;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/quantity.h"
 #include "core/result.h"
 #include "formats/pc2/pc2.h"
 #include "scene/clip.h"
@@ -25,30 +26,22 @@ struct Options {
   std::string weights;                      // --weights, empty: none
   As as = As::automatic;                    // see what_to_write()
   SkinMethod method = SkinMethod::linear;   // always for --as rig
-  std::string time;                         // --as pose; a ClipTime, empty: the start
-  std::string from, to;                     // time range; ClipTimes, empty: the ends; not --as pose
+  std::optional<ClipTime> time;             // --as pose; empty: the start
+  std::optional<ClipTime> from, to;         // time range; empty: the ends; not --as pose
   int every = 1;                            // frame step; not --as pose
   pc2::Up up = pc2::Up::y;                  // of a point cache
   Influences influences = Influences::all;  // per vertex at most
-  std::string reduce;                       // --as rig: the tolerance, empty: all keys
+  std::optional<double> reduce;             // --as rig: the tolerance, metres; empty: all keys
   bool quantize = false, compress = false;  // --as rig
 };
-
-// The tolerance of --reduce, metres.
-Result<double> reduce_tolerance(const Options& options);
 
 // Whether a path is a character, not a model.
 bool is_character(const std::string& path);
 
-void declare(CommandOptions& command, Options& options);
-
 // What --as stands for: baked for a point cache (.pc2), else a rig, where it is not given.
 As what_to_write(const Options& options, const std::string& output);
 
-// Checks the options for values that are invalid for any file.
-Status check(const Options& options);
-
-// The same with what is written, once the output is known.
+// Checks the options with what is written, once the output is known.
 Status check_for(As as, const Options& options);
 
 // The frames of a motion selected by --from, --to and --every; codes skin-no-frames, skin-time.

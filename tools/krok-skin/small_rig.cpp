@@ -248,12 +248,7 @@ class BitsLost {
 Status lose_bits(const Options& options, const MorphWeights& weights, SmallRig& rig,
                  ToolContext& context) {
   const BitsLost lost(rig, weights, context.jobs);
-  double tolerance = 0;
-  if (!options.reduce.empty()) {
-    const auto given = reduce_tolerance(options);
-    if (!given) return given.error();
-    tolerance = *given;
-  }
+  const double tolerance = options.reduce.value_or(0);
   const bool filtered = options.compress && options.quantize;
   if (options.quantize) rig.quantization = lost.quantization_for(tolerance, filtered);
   const Shown shown = lost.shown(rig.quantization);
@@ -341,7 +336,7 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
   if (options.quantize || options.compress) {
     drop_unused_sets(subject.materials, rig.model, context);
   }
-  if (!options.reduce.empty() || options.quantize) {
+  if (options.reduce || options.quantize) {
     if (Status status = lose_bits(options, subject.weights, rig, context); !status)
       return status.error();
   }

@@ -27,7 +27,7 @@ Result<double> parse_value(std::string_view text, std::string_view unit) {
   return time->value;
 }
 
-Error usage(std::string message, const std::vector<NamedParameter>& parameters) {
+Error misfit(std::string message, const std::vector<NamedParameter>& parameters) {
   return {"usage", std::move(message), "the library has the parameters " + in_words(parameters)};
 }
 
@@ -77,15 +77,15 @@ Result<std::vector<double>> parse_settings(const std::vector<std::string>& words
   for (const std::string& word : words) {
     const std::size_t sign = word.rfind('=');
     if (sign == std::string::npos) {
-      return usage(fmt::format("--set: '{}' is not NAME=VALUE", shown(word)), parameters);
+      return misfit(fmt::format("--set: '{}' is not NAME=VALUE", shown(word)), parameters);
     }
     const auto d = find(word.substr(0, sign), parameters);
     if (!d) {
-      return usage(fmt::format("--set: unknown parameter '{}'", shown(word.substr(0, sign))),
-                   parameters);
+      return misfit(fmt::format("--set: unknown parameter '{}'", shown(word.substr(0, sign))),
+                    parameters);
     }
     if (values[*d]) {
-      return usage(fmt::format("--set: {} is set twice", parameters[*d].name), parameters);
+      return misfit(fmt::format("--set: {} is set twice", parameters[*d].name), parameters);
     }
     const auto value = parse_value(word.substr(sign + 1), parameters[*d].unit);
     if (!value) {
@@ -97,7 +97,7 @@ Result<std::vector<double>> parse_settings(const std::vector<std::string>& words
   std::vector<double> point;
   for (std::size_t d = 0; d < values.size(); ++d) {
     if (!values[d]) {
-      return usage(
+      return misfit(
           fmt::format("no value for {}: --set {}=", parameters[d].name, parameters[d].name),
           parameters);
     }

@@ -2,11 +2,9 @@
 
 #include <memory>
 
-#include "tools/cli/option_kinds.h"
 #include "tools/krok-synth/asked_parameters.h"
 #include "tools/krok-synth/run.h"
-#include "tools/shared/orientation_option.h"
-#include "tools/shared/plant_result.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::synth {
 
@@ -16,8 +14,10 @@ void declare(CommandOptions& command, Options& options) {
   command.add_option("library IN.steps", options.library, "Step library made by krok-fit")
       .required();
   command.group("Parameters");
-  command.add_option("--set NAME=VALUE", options.set,
-                     "Value of a parameter: length=70cm, turn=15deg, duration=0.6s");
+  command
+      .add_option("--set NAME=VALUE", options.set,
+                  "Value of a parameter: length=70cm, turn=15deg, duration=0.6s")
+      .not_with("--table");
   command.add_option("--table IN.csv", options.table,
                      "Table (CSV) with a column per parameter; makes one motion per row, named as "
                      "-o plus the row number");
@@ -28,26 +28,23 @@ void declare(CommandOptions& command, Options& options) {
                    "Exit with 1 if a motion differs from what was asked by more than the library's "
                    "tolerance (otherwise a warning)");
   command.group("Motion");
-  add_choice<SideChoice>(
-      command, "--side", options.side,
-      {{"library", SideChoice::library}, {"left", SideChoice::left}, {"right", SideChoice::right}},
-      "Swing foot: library (as in the library), left or right", "SIDE", "library");
+  command.add("--side SIDE", options.side,
+              choice<SideChoice>({{"library", SideChoice::library},
+                                  {"left", SideChoice::left},
+                                  {"right", SideChoice::right}}),
+              "Swing foot: library (as in the library), left or right", "library");
   command.add_flag("--correct", options.correct,
                    "Correct the weights until the measured parameters match");
-  command.add_flag("--plant", options.plant, kPlantHelp);
-  add_rate(command, "--rate", options.rate,
-           "Frames per second (default: the library's, adjusted so that the duration is exact)");
+  add_plant_flag(command, options.plant);
+  command.add("--rate", options.rate, rate(),
+              "Frames per second (default: the library's, adjusted so that the duration is exact)");
   add_orientation_option(command, options.orientation);
 }
 
 Status check(const Options& options) {
-  if (options.set.empty() == options.table.empty()) {
-    return Error(
-        "usage",
-        options.set.empty() ? "no parameters given" : "--set and --table exclude each other",
-        "give each parameter with --set NAME=VALUE, or a table with --table IN.csv");
-  }
-  return {};
+  if (!options.set.empty() || !options.table.empty()) return {};
+  return usage("no parameters given",
+               "give each parameter with --set NAME=VALUE, or a table with --table IN.csv");
 }
 
 }  // namespace
@@ -58,6 +55,7 @@ ToolSpec make_spec() {
   spec.exit_no = "with --strict: a motion differs from what was asked by more than the tolerance";
   spec.summary = "Makes motions for given parameters from a step library";
   spec.inputs = "IN.steps";
+  spec.writes = registry::Kind::anim;
   spec.examples = {{"krok-synth walking.steps --set length=70cm --set turn=15deg -o step.anim",
                     "one step of that length and turn; prints its measured parameters"},
                    {"krok-synth walking.steps --set length=0.7 --correct --side right -o step.anim",

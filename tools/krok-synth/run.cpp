@@ -15,7 +15,6 @@
 #include "math/types.h"
 #include "parametric/synthesise.h"
 #include "roles/roles.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-synth/asked_parameters.h"
 #include "tools/shared/keys_choice.h"
@@ -252,9 +251,6 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
   const auto steps = read_steps(options, context);
   if (!steps) return steps.error();
   const auto parameters = parameters_of(*steps);

@@ -3,9 +3,8 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/cli/one_of.h"
 #include "tools/krok-view/run.h"
-#include "tools/shared/shown_ground.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::view {
 
@@ -18,15 +17,14 @@ void declare(CommandOptions& command, Options& options) {
                   ".character, animated by the motions of their skeleton), cameras (.cam), glTF; "
                   "for a folder, all motions, characters and glTF in it")
       .required();
-  command
-      .add_option("--layout HOW", options.layout,
-                  "Layout of several characters: apart (side by side), together (at their own "
-                  "positions), list (one at a time), or auto: apart for up to four, otherwise list")
-      .transform(one_of<Layout>({{"auto", Layout::automatic},
-                                 {"apart", Layout::apart},
-                                 {"together", Layout::together},
-                                 {"list", Layout::list}}))
-      .default_str("auto");
+  command.add("--layout HOW", options.layout,
+              choice<Layout>({{"auto", Layout::automatic},
+                              {"apart", Layout::apart},
+                              {"together", Layout::together},
+                              {"list", Layout::list}}),
+              "Layout of several characters: apart (side by side), together (at their own "
+              "positions), list (one at a time), or auto: apart for up to four, otherwise list",
+              "auto");
   command.add_flag(
       "--difference", options.difference,
       "Show the first two characters together: the second coloured by its distance from "
@@ -36,21 +34,20 @@ void declare(CommandOptions& command, Options& options) {
       "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
       "high (40,000), or auto: medium, low for more than two actors. Motions of one skeleton "
       "share a body");
-  command
-      .add_option("--keys WHICH", options.keys,
-                  "Contacts and keytimes to mark on the timeline: auto (from the sidecar "
-                  "NAME.keys.json), find (detected as in krok-keys), none")
-      .transform(one_of<KeysChoice>({{"auto", KeysChoice::automatic},
-                                     {"find", KeysChoice::find},
-                                     {"none", KeysChoice::none}}))
-      .default_str("auto");
+  command.add("--keys WHICH", options.keys,
+              choice<KeysChoice>({{"auto", KeysChoice::automatic},
+                                  {"find", KeysChoice::find},
+                                  {"none", KeysChoice::none}}),
+              "Contacts and keytimes to mark on the timeline: auto (from the sidecar "
+              "NAME.keys.json), find (detected as in krok-keys), none",
+              "auto");
   command.add_option("--goals IN.json", options.goals,
                      "Show the goals of a krok-ik file (formats/goals/SPEC.md) on all motions: "
                      "places, chains of joints, and by how much each is missed");
-  command.add_option("--ground IN", options.ground,
-                     "Show this ground, as for krok-walk: a height field (.exr, 16-bit .png), a "
-                     "mesh (.gltf, .glb, .obj), or " +
-                         std::string(terrain::kSpecForms));
+  add_ground_option(command, options.ground,
+                    "Show this ground, as for krok-walk: a height field (.exr, 16-bit .png), a "
+                    "mesh (.gltf, .glb, .obj), or " +
+                        std::string(terrain::kSpecForms));
   command.add_option(
       "--clip NAME", options.clip,
       "Animation of glTF files that plays first [the first that moves at least half as "

@@ -14,43 +14,24 @@
 
 namespace krok::cli::walk {
 
-// As given.
-struct Arguments {
-  std::vector<std::string> libraries;
-  std::string map;
-  std::string path, path_id, path_scale = "1cm";
-  std::string prints;
-  std::vector<std::string> to;
-  std::string from;
-  std::string ground = "level", ground_size, ground_range;
-  std::string save_prints, view;
-  std::string step_length, step_width;
-  FootSide first = FootSide::left;
-  double speed = 1, rate = 0;
-  bool adapt = false, extrapolate = false;
-  std::string stretch = "0", clearance = "15mm";
-  OrientationEncoding orientation = OrientationEncoding::xyz;
-};
-
 struct Options {
   std::vector<std::string> libraries;
   std::string map;
   // One of path, prints and goals.
   std::string path, path_id;
-  double path_scale = 0.01;  // metres per unit of an SVG
+  double path_scale = 0;  // metres per unit of an SVG
   std::string prints;
-  std::vector<Vec2> goals;  // x, z, metres
-  Vec2 from = Vec2::Zero();
-  double heading = 0;  // radians, at `from`
+  std::vector<Vec2> goals;          // x, z, metres
+  std::array<double, 3> from = {};  // x, z, metres, and the heading there, radians
   std::string ground;
   height_field::Placement placement;
   std::string save_prints;
   std::string view;                               // a page to write, or empty
   std::optional<double> step_length, step_width;  // metres
   FootSide first = FootSide::left;
-  double speed = 1, rate = 0;
+  double speed = 1, rate = 0;  // 0: the library's
   bool adapt = false, extrapolate = false;
-  double stretch = 0, clearance = 0.015;  // metres
+  double stretch = 0, clearance = 0;  // metres
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 

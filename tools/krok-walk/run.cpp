@@ -34,7 +34,6 @@
 #include "roles/roles.h"
 #include "terrain/terrain.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-walk/options.h"
 #include "tools/shared/keys_choice.h"
@@ -140,9 +139,9 @@ Result<std::vector<gait::PathPoint>> read_way(const Options& options, ToolContex
 
 Result<gait::Path> make_path(const Options& options, bool backward, ToolContext& context) {
   if (options.path.empty()) {
-    const double heading = options.heading + (backward ? kPi : 0);
+    const auto [x, z, heading] = options.from;
     return gait::Path::create(
-        gait::way_to_goals(options.from.x(), options.from.y(), heading, options.goals));
+        gait::way_to_goals(x, z, heading + (backward ? kPi : 0), options.goals));
   }
   const auto way = read_way(options, context);
   if (!way) return way.error();
@@ -347,9 +346,6 @@ void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prin
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (Status status = check_output_kind(context.output, "-o", registry::Kind::anim); !status) {
-    return status.error();
-  }
   const auto libraries = open_libraries(options, context);
   if (!libraries) return libraries.error();
   const auto ground = io::open_terrain(options.ground, options.placement, context);

@@ -98,29 +98,66 @@ std::vector<std::string> names_of_sides() {
   return names;
 }
 
+ValueKind<std::vector<ImageSide>> sides_kind() {
+  const auto read = [](const std::string& text) -> Result<std::vector<ImageSide>> {
+    std::vector<ImageSide> sides;
+    for (const std::string_view word : parts(text)) {
+      const auto found = std::ranges::find(known_sides(), word, &ImageSide::name);
+      if (found == known_sides().end()) {
+        return usage(fmt::format("unknown side '{}'", shown(word)),
+                     nearest_hint(word, names_of_sides()));
+      }
+      sides.push_back(*found);
+    }
+    if (sides.size() > known_sides().size()) return usage("too many sides");
+    return sides;
+  };
+  return {"sides", "LIST", read, {}};
+}
+
+constexpr const char* kUsualSides = "front,left";
+
 }  // namespace
 
+CommandOption add_sides_option(CommandOptions& command, std::vector<ImageSide>& sides,
+                               const std::string& each, const std::string& preset) {
+  return command.add("--sides", sides, sides_kind(),
+                     fmt::format("View directions, one {} each: front, left, back, right, "
+                                 "front-left, ..., top",
+                                 each),
+                     preset);
+}
+CommandOption add_elevation_option(CommandOptions& command, double& elevation,
+                                   const std::string& help, const std::string& preset) {
+  return command.add("--elevation", elevation, angle({-90, 90}), help, preset);
+}
+
 void declare_image_options(CommandOptions& command, ImageOptions& options, int by_default) {
-  command
-      .add_option("--moments", options.moments,
-                  fmt::format("Times to show: a number of evenly spaced times (default: {}), or a "
-                              "list: 0s,1.5s,120f",
-                              by_default))
-      .type_name("LIST");
-  command
-      .add_option("--sides", options.sides,
-                  "View directions, one row each: front, left, back, right, front-left, ..., top")
-      .type_name("LIST")
-      .default_str(options.sides);
-  command
-      .add_option("--elevation", options.elevation,
-                  "Camera elevation; at 0, heights can be measured; above, the ground is a grid "
-                  "with shadows")
-      .type_name("ANGLE")
-      .default_str(options.elevation);
-  command.add_option("--size", options.size, "Max height of an actor in pixels: 32 to 4000")
-      .type_name("PIXELS")
-      .default_str(std::to_string(options.size));
+  command.add_option(
+      "--moments LIST", options.moments,
+      fmt::format("Times to show: a number of evenly spaced times (default: {}), or a "
+                  "list: 0s,1.5s,120f",
+                  by_default));
+  add_sides_option(command, options.sides, "row", kUsualSides);
+  add_elevation_option(command, options.elevation,
+                       "Camera elevation; at 0, heights can be measured; above, the ground is a "
+                       "grid with shadows",
+                       "0deg");
+  command.add("--size PIXELS", options.size, whole(32, 4000),
+              "Max height of an actor in pixels: 32 to 4000", "280");
+}
+
+bool are_usual_sides(const std::vector<ImageSide>& sides) {
+  const auto usual = sides_kind().read(kUsualSides);
+  return usual && *usual == sides;
+}
+
+std::vector<ImageSide> sides_seen(const ImageOptions& options) {
+  std::vector<ImageSide> sides = options.sides;
+  for (ImageSide& side : sides) {
+    if (side.elevation == 0) side.elevation = options.elevation;
+  }
+  return sides;
 }
 
 std::string ImageMoment::label() const {
@@ -147,38 +184,6 @@ Result<std::vector<ImageMoment>> choose_moments(const std::string& moments, int 
     if (chosen.size() > kMaxMoments) return too_many();
   }
   return std::vector<ImageMoment>(chosen.begin(), chosen.end());
-}
-
-Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options) {
-  const auto elevation = parse_angle(options.elevation);
-  if (!elevation || std::abs(*elevation) > 0.5 * kPi) {
-    return Error("usage", fmt::format("--elevation {} is not an angle from -90 to 90 degrees",
-                                      options.elevation));
-  }
-  std::vector<ImageSide> sides;
-  for (const std::string_view word : parts(options.sides)) {
-    const auto& known = known_sides();
-    const auto found = std::find_if(known.begin(), known.end(),
-                                    [word](const ImageSide& side) { return side.name == word; });
-    if (found == known.end()) {
-      return Error("usage", fmt::format("--sides: unknown side '{}'", shown(word)),
-                   nearest_hint(word, names_of_sides()));
-    }
-    sides.push_back(*found);
-    if (found->elevation == 0) sides.back().elevation = *elevation;
-  }
-  if (sides.size() > known_sides().size()) {
-    return Error("usage", "--sides: too many sides");
-  }
-  return sides;
-}
-
-Status check_image_name(const std::string& path, const std::string& option) {
-  const std::string ending = extension(path);
-  if (ending.empty() || ending == ".png") return {};
-  return Error("usage",
-               fmt::format("{} {}: the output is a PNG image, not {}", option, path, shown(ending)),
-               "call it .png");
 }
 
 Status add_image(const render::Image& image, const std::string& path, OutputSet& outputs) {

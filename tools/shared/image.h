@@ -5,6 +5,7 @@
 
 #include "core/result.h"
 #include "render/sheet.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 
@@ -12,16 +13,34 @@
 
 namespace krok::cli {
 
-struct ImageOptions {
-  std::string moments;  // "8", or "0s,1.5s,120f"; empty: the tool's default
-  std::string sides = "front,left";
-  std::string elevation = "0deg";
-  int size = 280;  // pixels
+// A view direction: `yaw` is relative to the actor's heading.
+struct ImageSide {
+  std::string name;
+  double yaw = 0, elevation = 0;  // radians
+
+  bool operator==(const ImageSide&) const = default;
 };
 
-// --moments, --sides, --elevation, --size. `by_default` is the default number of moments, for the
-// help.
+struct ImageOptions {
+  std::string moments;  // "8", or "0s,1.5s,120f"; empty: the tool's default
+  std::vector<ImageSide> sides;
+  double elevation = 0;  // radians
+  int size = 0;          // pixels
+};
+
+// --sides: front, left, back, right, front-left, front-right, back-left, back-right, top; separated
+// by commas. `each` is what there is one of for each: "row".
+CommandOption add_sides_option(CommandOptions& command, std::vector<ImageSide>& sides,
+                               const std::string& each, const std::string& preset);
+CommandOption add_elevation_option(CommandOptions& command, double& elevation,
+                                   const std::string& help, const std::string& preset);
+
+// --moments, --sides, --elevation, --size. `by_default` is the default
+// number of moments, for the help.
 void declare_image_options(CommandOptions& command, ImageOptions& options, int by_default);
+
+// Whether these are the sides that are shown where none are asked for.
+bool are_usual_sides(const std::vector<ImageSide>& sides);
 
 // A time in an actor's motion; `frame` is -1 without frames.
 struct ImageMoment {
@@ -46,18 +65,8 @@ struct ImageSpan {
 Result<std::vector<ImageMoment>> choose_moments(const std::string& moments, int by_default,
                                                 const ImageSpan& span);
 
-// A view direction: `yaw` is relative to the actor's heading.
-struct ImageSide {
-  std::string name;
-  double yaw = 0, elevation = 0;  // radians
-};
-
-// front, left, back, right, front-left, front-right, back-left, back-right, top; separated by
-// commas. Code usage.
-Result<std::vector<ImageSide>> parse_sides(const ImageOptions& options);
-
-// Fails (code usage) if the extension of `path` is that of another kind of file.
-Status check_image_name(const std::string& path, const std::string& option);
+// The sides, from the elevation that is asked for; top stays above.
+std::vector<ImageSide> sides_seen(const ImageOptions& options);
 
 // Adds the image as PNG to the outputs.
 Status add_image(const render::Image& image, const std::string& path, OutputSet& outputs);

@@ -6,21 +6,9 @@
 #include <utility>
 
 #include "formats/io/open_role_map.h"
-#include "tools/cli/option_kinds.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli {
-
-CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice) {
-  return add_choice<KeysChoice>(
-      command, "--keys", choice,
-      {{"auto", KeysChoice::automatic},
-       {"sidecar", KeysChoice::sidecar},
-       {"none", KeysChoice::none}},
-      "Keytimes: auto (from NAME.keys.json beside a motion, otherwise detected as by krok-keys), "
-      "sidecar (only from that file), none (start and end only)",
-      "WHICH", "auto");
-}
 
 Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::string& path,
                                               const std::string& name, const Clip& clip,

@@ -3,10 +3,10 @@
 #include <optional>
 #include <string>
 
+#include "formats/io/open_role_map.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/role_input.h"
 
 // --keys: where a tool that combines motions gets their contacts and keytimes, and where it writes
 // those of the result.
@@ -14,8 +14,6 @@
 namespace krok::cli {
 
 enum class KeysChoice : unsigned char { automatic, sidecar, none };
-
-CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice);
 
 // The keys of a motion read from `path`: from its sidecar, or detected if there is none and
 // `choice` allows it. Empty for KeysChoice::none, or with a warning (code keys-none) if detection

@@ -278,28 +278,17 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   return {};
 }
 
-}  // namespace
-
-void add_clip_option(CommandOptions& command, std::string& clip) {
-  command.add_option("--clip NAME", clip,
-                     "Animation of a glTF file that has several: name or number from 0 [the first "
-                     "that moves at least half as many joints as any other]");
-}
-
-namespace {
-
-Result<double> time_of(const std::string& text, const char* option, const MovingActor& actor,
-                       double otherwise) {
-  if (text.empty()) return otherwise;
-  const auto time = parse_clip_time(text);
-  if (!time) return Error("usage", fmt::format("{} {}: {}", option, text, time.error().message));
+Result<double> time_of(const std::optional<ClipTime>& time, const char* option,
+                       const MovingActor& actor, double otherwise) {
+  if (!time) return otherwise;
   if (time->in_frames && actor.frame_count == 0) {
-    return Error("usage", fmt::format("{} {}: the file has no frames, only seconds", option, text))
+    return Error("usage",
+                 fmt::format("{} {}: the file has no frames, only seconds", option, written(*time)))
         .in_file(actor.path);
   }
   const double seconds = time->seconds(actor.rate);
   if (!(seconds >= 0 && seconds <= actor.duration + 1e-6)) {
-    return Error("usage", fmt::format("{} {}: the motion lasts {} s", option, text,
+    return Error("usage", fmt::format("{} {}: the motion lasts {} s", option, written(*time),
                                       readable(actor.duration)))
         .in_file(actor.path);
   }
@@ -308,11 +297,11 @@ Result<double> time_of(const std::string& text, const char* option, const Moving
 
 }  // namespace
 
-Result<ImageSpan> span_of(const MovingActor& actor, const std::string& from_text,
-                          const std::string& to_text) {
-  const auto from = time_of(from_text, "--from", actor, 0.0);
+Result<ImageSpan> span_of(const MovingActor& actor, const std::optional<ClipTime>& given_from,
+                          const std::optional<ClipTime>& given_to) {
+  const auto from = time_of(given_from, "--from", actor, 0.0);
   if (!from) return from.error();
-  const auto to = time_of(to_text, "--to", actor, actor.duration);
+  const auto to = time_of(given_to, "--to", actor, actor.duration);
   if (!to) return to.error();
   if (*from > *to) return Error("usage", "--from is after --to");
   ImageSpan span;

@@ -40,12 +40,9 @@ struct ActorOptions {
       clip;  // of glTF files with animations: a name or an index; empty: see best_animation()
 };
 
-// --clip.
-void add_clip_option(CommandOptions& command, std::string& clip);
-
-// The part of an actor's motion between two times as given by --from and --to, or its ends for
-// empty texts. Code usage.
-Result<ImageSpan> span_of(const MovingActor& actor, const std::string& from, const std::string& to);
+// The part of an actor's motion between the times of --from and --to, or its ends. Code usage.
+Result<ImageSpan> span_of(const MovingActor& actor, const std::optional<ClipTime>& from,
+                          const std::optional<ClipTime>& to);
 
 // Reads motions (captures, .anim), models and characters (.model, .character; animated by the
 // motions of their skeleton or static, faces at rest) and glTF files, in the order of `paths`. With

@@ -10,10 +10,6 @@
 
 namespace krok::cli {
 
-inline constexpr const char* kPlantHelp =
-    "Foot skate clean-up: heel and ball of a foot stay in place while they stand, and the legs "
-    "follow";
-
 // Plants the feet of a motion that was made, where its contacts say that they stand, or where they
 // are found if it has none, and moves the contacts' positions with them. Returns largest drifts of
 // heels and balls before and after, for a report, in metres. Warning plant-contacts if no foot

@@ -32,15 +32,6 @@ std::string millimetres(double metres) {
 
 }  // namespace
 
-CommandOption add_contacts_option(CommandOptions& command, std::string& contacts) {
-  return command
-      .add_option("--contacts", contacts,
-                  "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to "
-                  "the motion if it exists")
-      .type_name("IN.json|auto|find")
-      .default_str(contacts);
-}
-
 Result<std::optional<std::vector<Contact>>> read_planting_contacts(const std::string& contacts,
                                                                    const std::string& motion_path,
                                                                    const Clip& clip,

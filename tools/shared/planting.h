@@ -5,17 +5,12 @@
 #include <vector>
 
 #include "plant/plant_feet.h"
-#include "tools/cli/command_options.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
 
 // --plant and --contacts, for the tools that have them.
 
 namespace krok::cli {
-
-// Declares --contacts. Its value is a file, "find", or "auto": the sidecar beside the motion if
-// there is one.
-CommandOption add_contacts_option(CommandOptions& command, std::string& contacts);
 
 // The contacts that --contacts asks for; none where they are to be found in the motion.
 Result<std::optional<std::vector<krok::Contact>>> read_planting_contacts(

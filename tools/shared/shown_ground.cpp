@@ -34,11 +34,6 @@ Box box_of(std::span<const Clip* const> clips) {
 
 }  // namespace
 
-CommandOption add_prints_option(CommandOptions& command, std::string& path,
-                                const std::string& description) {
-  return command.add_option("--prints", path, description).type_name("IN");
-}
-
 Result<std::vector<gait::Print>> open_prints(const std::string& path, ToolContext& context) {
   const auto file = context.open_input(path);
   if (!file) return file.error();

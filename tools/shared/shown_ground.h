@@ -15,9 +15,6 @@
 
 namespace krok::cli {
 
-CommandOption add_prints_option(CommandOptions& command, std::string& path,
-                                const std::string& description);
-
 // The footprints of a file. Codes: those of prints::read(); prints-empty for a file without one.
 Result<std::vector<gait::Print>> open_prints(const std::string& path, ToolContext& context);
 

@@ -199,7 +199,7 @@ TEST_F(BatchList, FaultsOfAManifestAreToldByLineAndColumn) {
       {"x.bvh", "list.tsv:1:1: error: no output given"},
       {"-\tb.anim", "list.tsv:1:1: error: standard streams cannot be used"},
       {"x.bvh\t-", "list.tsv:1:7: error: standard streams cannot be used"},
-      {"x.bvh\tb.anim\t--strict  --repair", "list.tsv:1:24: error: --strict excludes --repair"},
+      {"x.bvh\tb.anim\t--strict  --repair", "list.tsv:1:24: error: --repair and --strict exclude each other"},
       {"x.bvh\tb.anim\t--strict --fps fast", "list.tsv:1:23: error: --fps: 'fast'"},
       {"x.bvh\tb.anim\t--fps", "list.tsv:1:14: error: --fps"},
       {"x.bvh\tb.anim\t--jobs 3", "list.tsv:1:14: error: "},

@@ -41,7 +41,7 @@ const std::vector<Value>& values() {
       {"krok-retarget", {"--onto", "x.model", "--ground", "slope:80deg"}, "ground-value"},
       {"krok-retarget", {"--onto", "x.model", "--contacts", "find"}, "usage"},
       {"krok-skin", {"x.model", "--as", "pose", "--time", "5deg"}, "quantity-unit"},
-      {"krok-skin", {"x.model", "--from", "-1s"}, "skin-time"},
+      {"krok-skin", {"x.model", "--from", "-1s"}, "usage"},
       {"krok-skin", {"x.model", "--time", "1s"}, "usage"},
       {"krok-skin", {"x.model", "--as", "rig", "--method", "rigid"}, "usage"},
       {"krok-keys", {"--discard-edits", "--find", "none"}, "usage"},

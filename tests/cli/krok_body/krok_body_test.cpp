@@ -102,9 +102,9 @@ TEST_F(KrokBody, UsageErrors) {
       {{kMotion, "--detail", "enormous", "-o", out},
        "krok-body: error: --detail: 'enormous' is not low, medium or high [usage]"},
       {{kMotion, "--pose", "soon", "-o", out},
-       "--pose soon is not auto, reference or a frame number [usage]"},
+       "--pose: 'soon' is not auto, reference or a frame number [usage]"},
       {{kMotion, "--pose", "-1", "-o", out}, "[usage]"},
-      {{kMotion}, "--output is required [usage]"},
+      {{kMotion}, "no output given [usage]"},
       {{"-o", out}, "[usage]"},
       {{kMotion, "--nonsense", "-o", out}, "[usage]"},
   };

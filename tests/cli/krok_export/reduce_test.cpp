@@ -65,14 +65,14 @@ TEST_F(ExportReduced, BytesDoNotDependOnTheNumberOfThreads) {
 }
 
 TEST_F(ExportReduced, IsRefusedWhereItMeansNothing) {
-  for (const std::vector<std::string>& options : {std::vector<std::string>{"--reduce", "0"},
-                                                  {"--reduce", "-1mm"},
-                                                  {"--reduce", "nan"},
-                                                  {"--reduce", "much"},
-                                                  {"--reduce", "5deg"}}) {
-    const ToolRun refused = export_as("out.glb", options);
-    EXPECT_EQ(refused.exit_code, 2) << options[1];
-    EXPECT_TRUE(has_code(refused.err, "usage")) << refused.err;
+  for (const auto& [tolerance, code] : {std::pair("0", "usage"),
+                                        {"-1mm", "usage"},
+                                        {"nan", "quantity-number"},
+                                        {"much", "quantity-number"},
+                                        {"5deg", "quantity-unit"}}) {
+    const ToolRun refused = export_as("out.glb", {"--reduce", tolerance});
+    EXPECT_EQ(refused.exit_code, 2) << tolerance;
+    EXPECT_TRUE(has_code(refused.err, code)) << refused.err;
   }
   const ToolRun bvh = export_as("out.bvh", {"--reduce", "1mm"});
   EXPECT_EQ(bvh.exit_code, 2);

@@ -187,7 +187,7 @@ TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
   };
   const Case cases[] = {
       {{"walk.anim", "-o", "x.anim"}, "no goals"},
-      {{"walk.anim", "--reach", good}, "-o is missing"},
+      {{"walk.anim", "--reach", good}, "no output given"},
       {{"walk.anim", "--reach", "RightHand=1,2@3s", "-o", "x.anim"}, "three lengths"},
       {{"walk.anim", "--reach", "RightHand=1,2,3", "-o", "x.anim"}, "no time"},
       {{"walk.anim", "--reach", "=1,2,3@1s", "-o", "x.anim"}, "no joint"},
@@ -197,7 +197,7 @@ TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
       {{"walk.anim", "--reach", good, "--stiffness", "Spine=2", "-o", "x.anim"}, "0 to 1"},
       {{"walk.anim", "--reach", good, "--fade", "-1s", "-o", "x.anim"}, "--fade"},
       {{"walk.anim", "--reach", good, "--tolerance", "0mm", "-o", "x.anim"}, "--tolerance"},
-      {{"walk.anim", "--write-limits", "y.json"}, "no limits"},
+      {{"walk.anim", "--write-limits", "y.json"}, "--write-limits is for --limits"},
       {{"walk.anim", "--goals", "bad.json", "-o", "x.anim"}, "bad.json:2:13: error: "},
       {{"walk.anim", "--reach", good, "--limits", "bad.limits.json", "-o", "x.anim"},
        "bad.limits.json:2:11: error: "},

@@ -167,9 +167,9 @@ TEST_F(KrokIkPlant, WhatCannotBeDoneIsAnError) {
   put("none.json", R"({"schema": "krok.keys/1", "contacts": []})");
   refused({"walk.anim", "--plant", "--contacts", "none.json", "-o", "x.anim"}, "plant-contacts");
   refused({"walk.anim", "--reach", good, "--contacts", "none.json", "-o", "x.anim"}, "--plant");
-  refused({"walk.anim", "--plant"}, "-o is missing");
-  refused({"walk.anim", "--plant", "-o", "x.anim", "--plot", "x.svg"}, "no goals to show");
-  refused({"walk.anim", "--reach", good, "-o", "x.anim", "--plot", "x.png"}, "SVG");
+  refused({"walk.anim", "--plant"}, "no output given");
+  refused({"walk.anim", "--plant", "-o", "x.anim", "--plot", "x.svg"}, "--plot is for --goals");
+  refused({"walk.anim", "--reach", good, "-o", "x.anim", "--plot", "x.png"}, ".svg");
   refused({"walk.anim", "--reach", good, "--plot", "x.svg", "--out-dir", "out"}, "--plot");
 }
 

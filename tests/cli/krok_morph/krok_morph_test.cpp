@@ -368,7 +368,7 @@ TEST_F(KrokMorph, MistakesAreToldWithWhatToDo) {
   refused({"pack", base_, bump_, "--name", "a", "--name", "b", "-o", path("out.exr")}, "usage",
           "2 --names for 1 target file");
   refused({"pack", base_, bump_, "-o", path("out.glb")}, "morph-format", "writes .exr");
-  refused({"pack", base_, bump_}, "usage", "needs -o");
+  refused({"pack", base_, bump_}, "usage", "no output given");
   refused({"pack", put("a.bvh", capture(2)), bump_, "-o", path("out.exr")}, "morph-input",
           "this is a BVH");
   refused({"unpack", exr, base_, "-o", path("out.exr")}, "usage", "--out-dir");

@@ -229,7 +229,7 @@ TEST_F(KrokPlot, RefusesNamesOfOtherKindsOfFiles) {
   EXPECT_THAT(listing(), IsEmpty());
   const ToolRun none = run_tool("krok-plot", {kWalk});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("-o is missing"));
+  EXPECT_THAT(none.err, HasSubstr("no output given"));
 }
 
 TEST_F(KrokPlot, FitsThePaper) {
@@ -239,7 +239,7 @@ TEST_F(KrokPlot, FitsThePaper) {
   expect_trouble({kWalk, "--panel", "400"}, "usage", "340x170");
   expect_trouble({kWalk, "--panel", "0x100"}, "usage", "340x170");
   expect_trouble({kWalk, "--show", "toes"}, "usage", "'toes' is not path, feet");
-  expect_trouble({kWalk, "--moments", "3"}, "usage", "for --sheet and --strip");
+  expect_trouble({kWalk, "--moments", "3"}, "usage", "for --sheet or --strip");
 }
 
 TEST_F(KrokPlot, MakesAFileOfEachOfMany) {

@@ -253,7 +253,7 @@ TEST_F(KrokPlotSheet, RefusesWhatMakesNoSense) {
   }
   const ToolRun named = run_tool("krok-plot", {kWalk, "--sheet", path("s.jpg")});
   EXPECT_EQ(named.exit_code, 2);
-  EXPECT_THAT(named.err, HasSubstr("PNG"));
+  EXPECT_THAT(named.err, HasSubstr(".png"));
   EXPECT_THAT(listing(), IsEmpty());
 }
 

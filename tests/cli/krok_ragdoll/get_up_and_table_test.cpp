@@ -157,7 +157,7 @@ TEST_F(RagdollFiles, SavedBodiesGiveTheSameFall) {
                  path("bodies.glb")});
   EXPECT_EQ(judged.exit_code, 0) << judged.out << judged.err;
   refused({"walk.anim", "--bodies", "x.ragdoll.json", "--mass", "80kg", "-o", "c.anim"}, "--mass",
-          "usage", "edit the file");
+          "usage", "exclude each other");
   put("bad.ragdoll.json", "{\"schema\": \"krok.ragdoll/1\",\n \"bodies\": []}");
   refused({"walk.anim", "--bodies", "bad.ragdoll.json", "-o", "c.anim"}, "bad.ragdoll.json:2:12",
           "ragdoll-value", "0 bodies");

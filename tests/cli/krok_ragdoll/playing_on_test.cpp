@@ -123,8 +123,8 @@ TEST_F(PlayingOn, WrongOptionsAreTold) {
     EXPECT_THAT(run.err, HasSubstr(text));
     EXPECT_FALSE(std::filesystem::exists(path("no.anim")));
   };
-  refused({"--powered", "2"}, "usage", "--powered 2");
-  refused({"--powered", "0.5", "--hold", "x"}, "usage", "--hold x");
+  refused({"--powered", "2"}, "usage", "--powered: '2'");
+  refused({"--powered", "0.5", "--hold", "x"}, "usage", "--hold: 'x'");
   refused({"--simulated", "Wing"}, "ragdoll-joint", "Wing");
   refused({"--simulated", "Head_end"}, "ragdoll-joint", "no body");
   refused({"--until", "2s"}, "usage", "--until");

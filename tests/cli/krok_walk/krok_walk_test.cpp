@@ -175,7 +175,7 @@ TEST_F(KrokWalk, RefusesWrongInput) {
   refused({"--to", "1,2", "--path", "x.svg"}, "usage", "exclude each other");
   refused({"--to", "1"}, "usage", "too few");
   refused({"--to", "1,2,3"}, "usage", "too many");
-  refused({"--to", "1kg,2"}, "usage", "kg");
+  refused({"--to", "1kg,2"}, "quantity-unit", "kg");
   refused({"--to", "0,0"}, "path-short", "5 cm");
   refused({"--to", "0,3", "--ground", "stars"}, "ground-kind", "stairs");
   refused({"--to", "0,3", "--ground", path("none.exr")}, "file-missing", "none.exr");

@@ -1,0 +1,191 @@
+#include "tools/cli/option_kinds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "core/file.h"
+#include "core/nearest_name.h"
+#include "core/numbers.h"
+#include "core/text.h"
+
+namespace krok::cli {
+
+namespace {
+
+// "from 0 to 0.1 m", "of 0 s or more".
+std::string described(const Range& range, const char* unit) {
+  const bool low = std::isfinite(range.low), high = std::isfinite(range.high);
+  if (range.above) {
+    const std::string most = high ? fmt::format(", at most {}{}", readable(range.high), unit) : "";
+    return fmt::format("greater than {}{}{}", readable(range.low), range.low == 0 ? "" : unit,
+                       most);
+  }
+  if (low && high) {
+    return fmt::format("from {} to {}{}", readable(range.low), readable(range.high), unit);
+  }
+  return low ? fmt::format("of {}{} or more", readable(range.low), unit)
+             : fmt::format("up to {}{}", readable(range.high), unit);
+}
+
+bool holds(const Range& range, double value) {
+  return (range.above ? value > range.low : value >= range.low) && value <= range.high &&
+         std::isfinite(value);
+}
+
+struct Quantity {
+  const char* name;        // "length"
+  const char* article;     // "a length"
+  const char* value_name;  // "LENGTH"
+  const char* unit;        // of the range: " m"
+  double size = 1;         // of that unit, in what is read
+};
+
+ValueKind<double> quantity(const Quantity& what, Result<double> (*parse)(std::string_view),
+                           Range range) {
+  const auto read = [=](const std::string& text) -> Result<double> {
+    const auto value = parse(text);
+    if (!value) return value.error();
+    // The ends of the range are in it, however they are converted.
+    const double shown_value = *value / what.size;
+    if (holds(range, shown_value) || holds(range, std::round(shown_value * 1e9) / 1e9))
+      return *value;
+    return usage(
+        fmt::format("'{}' is not {} {}", shown(text), what.article, described(range, what.unit)));
+  };
+  return {what.name, what.value_name, read, {}};
+}
+
+Result<double> parse_seconds(std::string_view text) {
+  const auto time = parse_clip_time(text);
+  if (!time) return time.error();
+  if (!time->in_frames) return time->value;
+  return Error("quantity-unit", fmt::format("'{}' is not a time in seconds", text),
+               "write 1ms or 0.001s");
+}
+
+}  // namespace
+
+ValueKind<double> length(Range metres) {
+  return quantity({"length", "a length", "LENGTH", " m"}, parse_length, metres);
+}
+ValueKind<double> length_with_unit(Range metres) {
+  return quantity(
+      {"length", "a length", "LENGTH", " m"},
+      [](std::string_view text) { return parse_length_with_unit(text); }, metres);
+}
+ValueKind<double> angle(Range degrees) {
+  return quantity({"angle", "an angle", "ANGLE", " degrees", kRadiansPerDegree}, parse_angle,
+                  degrees);
+}
+ValueKind<double> seconds(Range seconds) {
+  return quantity({"duration", "a time", "TIME", " s"}, parse_seconds, seconds);
+}
+ValueKind<double> frequency(Range hertz) {
+  return quantity({"frequency", "a frequency", "FREQUENCY", " Hz"}, parse_frequency, hertz);
+}
+
+ValueKind<ClipTime> clip_time(Range range) {
+  const auto read = [range](const std::string& text) -> Result<ClipTime> {
+    const auto time = parse_clip_time(text);
+    if (!time || holds(range, time->value)) return time;
+    return usage(fmt::format("'{}' is not a time {}", shown(text), described(range, "")));
+  };
+  return {"time", "TIME", read, {}};
+}
+
+ValueKind<double> number(Range range, const std::string& unit) {
+  const auto read = [range, unit](const std::string& text) -> Result<double> {
+    std::string_view digits = text;
+    if (!unit.empty() && digits.ends_with(unit)) digits.remove_suffix(unit.size());
+    const auto value = parse_finite(digits);
+    if (value && holds(range, *value)) return *value;
+    const bool any = !std::isfinite(range.low) && !std::isfinite(range.high);
+    return usage(fmt::format("'{}' is not a number{}", shown(text),
+                             any ? "" : " " + described(range, unit.c_str())));
+  };
+  return {"number", "N", read, {}};
+}
+
+ValueKind<double> rate() {
+  const auto read = [](const std::string& text) -> Result<double> {
+    const auto value = parse_finite(text);
+    if (value && *value >= 1e-3 && *value <= 1e6) return *value;
+    return usage(fmt::format("'{}' is not a frame rate from 0.001 to 1000000", shown(text)));
+  };
+  return {"rate", "N", read, {}};
+}
+
+ValueKind<long long> whole(long long low, long long high) {
+  const auto read = [low, high](const std::string& text) -> Result<long long> {
+    const auto value = parse_integer(text);
+    if (value && *value >= low && *value <= high) return *value;
+    return usage(fmt::format("'{}' is not an integer from {} to {}", shown(text), low, high));
+  };
+  return {"whole", "N", read, {}};
+}
+
+ValueKind<std::vector<double>> numbers(std::vector<ValueKind<double>> kinds, std::size_t least,
+                                       char between) {
+  const auto read = [=](const std::string& text) -> Result<std::vector<double>> {
+    std::vector<double> values;
+    std::string_view rest = text;
+    bool more = true;
+    for (std::size_t i = 0; i < kinds.size() && more; ++i) {
+      const std::size_t end = rest.find(between);
+      const auto value = kinds[i].read(std::string(trimmed(rest.substr(0, end))));
+      if (!value) return value.error();
+      values.push_back(*value);
+      more = end != std::string_view::npos;
+      if (more) rest.remove_prefix(end + 1);
+    }
+    if (!more && values.size() >= least) return values;
+    return usage(fmt::format("'{}' has {} values", shown(text), more ? "too many" : "too few"),
+                 fmt::format("separate them by '{}'", between));
+  };
+  return {"list", "LIST", read, {}};
+}
+
+std::string written(const ClipTime& time) {
+  return readable(time.value) + (time.in_frames ? "f" : "s");
+}
+
+ValueKind<std::string> output(std::vector<std::string> endings) {
+  const auto read = [endings](const std::string& text) -> Result<std::string> {
+    const std::string ending = extension(text);
+    const auto ends_so = [&](const std::string& one) { return ascii_lower(text).ends_with(one); };
+    // Devices and names without an extension are taken as they are.
+    if (ending.empty() || std::ranges::any_of(endings, ends_so)) return text;
+    return usage(fmt::format("the output is a {} file, not {}", either_of(endings), shown(text)),
+                 "use the extension " + either_of(endings));
+  };
+  return {"output", "OUT", read, {}};
+}
+
+ValueKind<std::string> words(std::vector<std::string> words) {
+  const auto read = [words](const std::string& text) -> Result<std::string> {
+    for (const std::string& word : words) {
+      if (ascii_lower(text) == ascii_lower(word)) return word;
+    }
+    return usage(not_one_of(text, words));
+  };
+  return {"choice", "WORD", read, words};
+}
+
+std::string either_of(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    list += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  }
+  return list;
+}
+
+std::string not_one_of(const std::string& text, const std::vector<std::string>& words) {
+  const std::string near = nearest_name(text, words);
+  return fmt::format("'{}' is not {}{}", shown(text), either_of(words),
+                     near.empty() ? "" : "; did you mean '" + near + "'?");
+}
+
+}  // namespace krok::cli

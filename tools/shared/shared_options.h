@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+
+#include "capture/conventions.h"
+#include "formats/container/packed_orientation.h"
+#include "skin/skin.h"
+#include "tools/cli/option_kinds.h"
+#include "tools/shared/body_choice.h"
+#include "tools/shared/keys_choice.h"
+
+// Options that several tools have, each declared here alone. `help` is what differs between tools.
+
+namespace krok::cli {
+
+// A unit of length of a file: m, cm, ..., or a length.
+ValueKind<Unit> length_unit();
+
+// --orientation, for tools that write one of Krok's binary formats; in the group Output.
+CommandOption add_orientation_option(CommandOptions& command, OrientationEncoding& encoding);
+
+// --map: a role map for joints whose names do not identify them.
+CommandOption add_map_option(CommandOptions& command, std::string& path);
+
+// --contacts: when the feet stand. A file, "find", or "auto": the sidecar beside the motion if
+// there is one.
+CommandOption add_contacts_option(CommandOptions& command, std::string& contacts);
+
+// --keys: where a tool that combines motions gets their contacts and keytimes.
+CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice);
+
+// --ground: a file, or a made ground, whose text must be right: codes of terrain::from_spec().
+// Whether a file is there and holds a ground shows when it is opened.
+CommandOption add_ground_option(CommandOptions& command, std::string& ground,
+                                const std::string& help, const std::string& preset = {});
+
+// --prints: footprints.
+CommandOption add_prints_option(CommandOptions& command, std::string& path,
+                                const std::string& help);
+
+// --body: the generated body for a motion without one.
+CommandOption add_body_option(CommandOptions& command, BodyChoice& choice, const std::string& help);
+
+// --method, for tools that move meshes by joints.
+CommandOption add_skin_method(CommandOptions& command, SkinMethod& method, const std::string& help);
+
+// The texts of --body and --method where motions are drawn.
+inline constexpr const char* kShownBody =
+    "Body for motions without a model: low (2,500 vertices), medium (10,000), high (40,000), auto: "
+    "low for more than two files, else medium; none: bones only";
+inline constexpr const char* kShownMethod =
+    "Skinning method: linear, as viewers use it, dual-quaternion, which keeps the volume of "
+    "twisted "
+    "joints, or rigid; not for glTF files";
+
+// --clip, of glTF files that are shown: a name or an index.
+CommandOption add_clip_option(CommandOptions& command, std::string& clip);
+
+// --plant, of the tools that blend.
+CommandOption add_plant_flag(CommandOptions& command, bool& plant);
+
+}  // namespace krok::cli
