@@ -1,152 +1,145 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "core/numbers.h"
-#include "formats/json/members.h"
+#include "formats/json/fields.h"
 #include "formats/weights/weights_internal.h"
-#include "scene/frame_moment.h"
 
-// Reader for weights as keys (JSON).
+// Weights as keys (JSON).
 
 namespace krok::weights {
 
 namespace {
 
-using json::Value;
-using Kind = Value::Kind;
+using json::Given;
 
-constexpr std::string_view kSchema = "krok.weights/1";
 constexpr std::size_t kMaxKeys = 1'000'000;  // of all curves
 
-struct Join {
+struct Curve {
+  std::size_t target = 0;
   WeightJoin join = WeightJoin::linear;
   double tension = 0;
+  MorphCurve keys;
 };
 
-class Reader {
- public:
-  Reader(std::string_view text, std::span<const std::string> targets)
-      : text_(text), in_(text, "weights"), targets_(targets) {}
+struct File {
+  std::span<const std::string> targets;
+  std::optional<double> rate = {};
+  Curve usual = {};
+  std::vector<MorphCurve> curves = {};
+  std::size_t key_count = 0;
 
-  Result<WeightFile> read() {
-    const auto root = json::parse(text_);
-    if (!root) return root.error();
-    if (Status status =
-            in_.only(*root, kWhole, {"schema", "comment", "rate", "between", "tension", "curves"});
-        !status) {
-      return status.error();
+  Status read_target(const Given& given, std::size_t& to) const {
+    if (Status status = given.is(json::Value::Kind::string); !status) return status;
+    const auto target = std::ranges::find(targets, given.value.text);
+    to = static_cast<std::size_t>(target - targets.begin());
+    if (target == targets.end()) {
+      const Error unknown = unknown_target(given.value.text, targets);
+      return given.error("target", unknown.message, unknown.hint);
     }
-    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
-    if (root->find("rate") != nullptr) {
-      const auto rate = in_.number(*root, kWhole, "rate", kMinRate, kMaxRate);
-      if (!rate) return rate.error();
-      file_.rate = *rate;
-    }
-    if (Status status = read_join(*root, kWhole, usual_); !status) return status.error();
-    if (Status status = read_curves(*root); !status) return status.error();
-    return std::move(file_);
+    if (curves[to].times.empty()) return {};
+    return given.structure(fmt::format("duplicate curve of the target '{}'", shown(*target)));
   }
 
- private:
-  static constexpr std::string_view kWhole = "the file";
-
-  // Optional "between" and "tension".
-  Status read_join(const Value& object, std::string_view what, Join& join) const {
-    static constexpr std::array kJoins = {WeightJoin::linear, WeightJoin::smooth,
-                                          WeightJoin::monotone};
-    const auto between = in_.choice(object, what, "between", {"linear", "smooth", "monotone"});
-    if (!between) return between.error();
-    if (*between) join.join = kJoins[**between];
-    if (object.find("tension") == nullptr) return {};
-    const auto tension = in_.number(object, what, "tension", 0, 1);
-    if (!tension) return tension.error();
-    join.tension = *tension;
-    return {};
-  }
-
-  Status read_curves(const Value& root) {
-    const auto list = in_.get(root, kWhole, "curves", Kind::array);
-    if (!list) return list.error();
-    file_.curves.names.assign(targets_.begin(), targets_.end());
-    file_.curves.curves.resize(targets_.size());
-    for (std::size_t i = 0; i < (*list)->items.size(); ++i) {
-      if (Status status = read_curve((*list)->items[i], fmt::format("curve {}", i)); !status) {
-        return status;
+  Status read_keys(const Given& given, MorphCurve& curve) {
+    if (Status status = given.is(json::Value::Kind::array); !status) return status;
+    const auto& items = given.value.items;
+    key_count += items.size();
+    if (items.empty() || key_count > kMaxKeys) {
+      return given.wrong(fmt::format("{} has {}, expected 1 to {} in all", given.what,
+                                     counted(static_cast<long long>(items.size()), "key"),
+                                     grouped(kMaxKeys)));
+    }
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::string name = fmt::format("key {} of {}", i, given.what);
+      if (items[i].kind != json::Value::Kind::array || items[i].items.size() != 2) {
+        return Given{given.source, items[i], {}, {}}.structure(
+            fmt::format("{} must be [time, weight]", name));
+      }
+      const std::string time_name = "the time of " + name, weight_name = "the weight of " + name;
+      const Given time{given.source, items[i].items[0], {}, time_name};
+      double& at = curve.times.emplace_back();
+      Status status = json::moment(rate, kLatest).read(time, &at);
+      if (status) {
+        status = json::number(-kLargestWeight, kLargestWeight)
+                     .read({given.source, items[i].items[1], {}, weight_name},
+                           &curve.weights.emplace_back());
+      }
+      if (!status) return status;
+      if (i > 0 && !(at > curve.times[i - 1])) {
+        return time.error("time",
+                          fmt::format("{} is at {} s, not after the previous key at {} s", name,
+                                      readable(at, 9), readable(curve.times[i - 1], 9)));
       }
     }
     return {};
   }
 
-  Status read_curve(const Value& item, const std::string& what) {
-    if (Status status = in_.only(item, what, {"target", "between", "tension", "keys", "comment"});
-        !status) {
-      return status;
-    }
-    const auto name = in_.get(item, what, "target", Kind::string);
-    if (!name) return name.error();
-    const auto target = std::ranges::find(targets_, (*name)->text);
-    if (target == targets_.end()) {
-      Error unknown = unknown_target((*name)->text, targets_);
-      return json::error_at(text_, (*name)->offset, unknown.code, unknown.message, unknown.hint);
-    }
-    MorphCurve& curve = file_.curves.curves[static_cast<std::size_t>(target - targets_.begin())];
-    if (!curve.times.empty()) {
-      return json::error_at(text_, (*name)->offset, "weights-structure",
-                            fmt::format("duplicate curve of the target '{}'", shown(*target)));
-    }
-    Join join = usual_;
-    if (Status status = read_join(item, what, join); !status) return status;
-    if (Status status = read_keys(item, what, curve); !status) return status;
-    join_keys(curve, join.join, join.tension);
-    return {};
+  template <typename T, typename Access>
+  void add_join(json::Object<T>& table, const Access& of) const {
+    table.field(
+        "between", [of](T& to) -> WeightJoin& { return of(to).join; },
+        json::choice<WeightJoin>({{"linear", WeightJoin::linear},
+                                  {"smooth", WeightJoin::smooth},
+                                  {"monotone", WeightJoin::monotone}}));
+    table.field(
+        "tension", [of](T& to) -> double& { return of(to).tension; }, json::number(0, 1));
   }
 
-  Status read_keys(const Value& item, const std::string& what, MorphCurve& curve) {
-    const auto list = in_.get(item, what, "keys", Kind::array);
-    if (!list) return list.error();
-    const std::size_t count = (*list)->items.size();
-    keys_ += count;
-    if (count == 0 || keys_ > kMaxKeys) {
-      return in_.wrong(
-          **list, fmt::format("{} has {}, expected 1 to {} in all", what,
-                              counted(static_cast<long long>(count), "key"), grouped(kMaxKeys)));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      const Value& pair = (*list)->items[i];
-      const std::string name = fmt::format("key {} of {}", i, what);
-      if (pair.kind != Kind::array || pair.items.size() != 2) {
-        return json::error_at(text_, pair.offset, "weights-structure",
-                              fmt::format("{} must be [time, weight]", name));
-      }
-      const auto time = in_.moment(pair.items[0], "the time of " + name, file_.rate, kLatest);
-      if (!time) return time.error();
-      const auto weight =
-          in_.within(pair.items[1], "the weight of " + name, -kLargestWeight, kLargestWeight);
-      if (!weight) return weight.error();
-      if (i > 0 && !(*time > curve.times.back())) {
-        return json::error_at(text_, pair.items[0].offset, "weights-time",
-                              fmt::format("{} is at {} s, not after the previous key at {} s", name,
-                                          readable(*time, 9), readable(curve.times.back(), 9)));
-      }
-      curve.times.push_back(*time);
-      curve.weights.push_back(*weight);
-    }
-    return {};
+  json::Object<WeightFile> table() {
+    json::Object<Curve> curve;
+    curve.check([this](const Given&, Curve& to) { return to = usual, Status(); });
+    curve
+        .field("target", &Curve::target,
+               json::kind<std::size_t>(
+                   R"({"type": "string"})",
+                   [this](const Given& given, std::size_t& to) { return read_target(given, to); }))
+        .required();
+    add_join(curve, [](Curve& of) -> Curve& { return of; });
+    curve
+        .field(
+            "keys", &Curve::keys,
+            json::kind<MorphCurve>(
+                R"({"description": "[time, weight]", "type": "array", "minItems": 1, "items": {"type": "array", "minItems": 2, "maxItems": 2, "prefixItems": [{"type": ["number", "string"]}, {"type": "number"}]}})",
+                [this](const Given& given, MorphCurve& to) { return read_keys(given, to); }))
+        .required()
+        .comment();
+    json::Object<WeightFile> file;
+    file.file("krok.weights/1", "Weights of morph targets (krok.weights/1)").comment();
+    file.context("rate", rate, json::frame_rate(), "frames per second");
+    add_join(file, [this](WeightFile&) -> Curve& { return usual; });
+    file.field("curves",
+               json::kind<WeightFile>(
+                   json::schema_of_list(json::object(curve).schema(), 0, SIZE_MAX),
+                   [this, list = json::list<Curve>(json::object(curve), {"curve {0}"},
+                                                   [this](const Given&, std::vector<Curve>& read) {
+                                                     Curve& last = read.back();
+                                                     join_keys(last.keys, last.join, last.tension);
+                                                     curves[last.target] = std::move(last.keys);
+                                                     return Status();
+                                                   })](const Given& given, WeightFile&) {
+                     curves.resize(targets.size());
+                     std::vector<Curve> read;
+                     return list.read(given, &read);
+                   }))
+        .required();
+    return file;
   }
-
-  std::string_view text_;
-  json::Members in_;
-  std::span<const std::string> targets_;
-  WeightFile file_;
-  Join usual_;
-  std::size_t keys_ = 0;
 };
 
 }  // namespace
 
 Result<WeightFile> read_keys(std::string_view text, std::span<const std::string> targets) {
-  return Reader(text, targets).read();
+  File file{targets};
+  auto weights = file.table().read_text(text, "weights");
+  if (!weights) return weights;
+  weights->rate = file.rate;
+  weights->curves.names.assign(targets.begin(), targets.end());
+  weights->curves.curves = std::move(file.curves);
+  return weights;
+}
+
+std::string schema() {
+  return File{{}}.table().schema();
 }
 
 }  // namespace krok::weights

@@ -48,7 +48,7 @@ ALLOWED = {
                           "formats/material", "formats/model", "formats/morph_exr",
                           "formats/registry", "formats/role_map", "formats/height_field", "formats/obj",
                           "lib/terrain"},
-    "formats/json": {"lib/core"},
+    "formats/json": BASE,
     "formats/role_map": BASE | {"lib/roles", "formats/json"},
     "formats/timeline": BASE | {"lib/motion", "lib/blend", "lib/timeline", "formats/json"},
     "formats/sequences": {"lib/core", "lib/scene", "formats/json"},
