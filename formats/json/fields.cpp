@@ -119,6 +119,22 @@ Kind<std::string> plain_text(std::size_t most, std::string_view wrong, std::stri
   return made;
 }
 
+Kind<std::string> name() {
+  Kind<std::string> made = text();
+  made.schema = [] {
+    return fmt::format("{{\"type\": \"string\", \"minLength\": 1, \"maxLength\": {}}}",
+                       kLongestName);
+  };
+  made.read = [read = made.read](const Given& given, void* to) -> Status {
+    Status status = read(given, to);
+    if (!status || is_name(given.value.text)) return status;
+    return given.wrong(
+        fmt::format("the name of {} is empty, longer than {} bytes or has a zero byte", given.what,
+                    kLongestName));
+  };
+  return made;
+}
+
 Kind<bool> boolean() {
   return kind<bool>("{\"type\": \"boolean\"}",
                     [](const Given& given, bool& to) -> Status {

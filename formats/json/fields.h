@@ -46,7 +46,8 @@ struct Given {
   std::string name() const;  // "\"to\" of goal 3"
   bool has(std::string_view member) const { return value.find(member) != nullptr; }
   Given member(std::string_view member) const;  // one that it has
-  Location where() const;                       // without the file's name
+  Given as(std::string_view named) const { return {source, value, {}, named}; }
+  Location where() const;  // without the file's name
 
   // Errors with the codes FORMAT-kind, FORMAT-value and FORMAT-structure.
   Error error(std::string_view kind, std::string message, std::string hint = {}) const;
@@ -88,6 +89,8 @@ Kind<T> kind(std::string schema, Read read) {
 
 Kind<std::string> text();
 Kind<std::string> plain_text(std::size_t most, std::string_view wrong, std::string hint = {});
+// One that is_name() accepts, of what the object describes.
+Kind<std::string> name();
 Kind<bool> boolean();
 Kind<double> number(double least, double most);
 // More than 0.

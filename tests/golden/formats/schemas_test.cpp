@@ -11,9 +11,11 @@
 
 #include "formats/alignment/alignment_format.h"
 #include "formats/camera_keys/camera_keys.h"
+#include "formats/character/character_format.h"
 #include "formats/goals/goals.h"
 #include "formats/key_shapes/key_shapes.h"
 #include "formats/limits/limits_format.h"
+#include "formats/material/material_format.h"
 #include "formats/sequences/sequences.h"
 #include "formats/weights/weights.h"
 #include "support/this_build.h"
@@ -24,9 +26,11 @@ namespace {
 const std::pair<const char*, std::string (*)()> kSchemas[] = {
     {"alignment/alignment", alignment::schema},
     {"camera_keys/camera_keys", camera_keys::schema},
+    {"character/character", character_file::schema},
     {"goals/goals", goals::schema},
     {"key_shapes/key_shapes", key_shapes::schema},
     {"limits/limits", limits::schema},
+    {"material/material", material::schema},
     {"sequences/sequences", sequences::schema},
     {"weights/weights", weights::schema},
 };
