@@ -17,6 +17,7 @@
 #include "formats/limits/limits_format.h"
 #include "formats/material/material_format.h"
 #include "formats/sequences/sequences.h"
+#include "formats/timeline/timeline_file.h"
 #include "formats/weights/weights.h"
 #include "support/this_build.h"
 
@@ -32,6 +33,7 @@ const std::pair<const char*, std::string (*)()> kSchemas[] = {
     {"limits/limits", limits::schema},
     {"material/material", material::schema},
     {"sequences/sequences", sequences::schema},
+    {"timeline/timeline", timeline_file::schema},
     {"weights/weights", weights::schema},
 };
 
