@@ -16,6 +16,7 @@
 #include "formats/key_shapes/key_shapes.h"
 #include "formats/limits/limits_format.h"
 #include "formats/material/material_format.h"
+#include "formats/ragdoll/ragdoll_format.h"
 #include "formats/sequences/sequences.h"
 #include "formats/timeline/timeline_file.h"
 #include "formats/weights/weights.h"
@@ -32,6 +33,7 @@ const std::pair<const char*, std::string (*)()> kSchemas[] = {
     {"key_shapes/key_shapes", key_shapes::schema},
     {"limits/limits", limits::schema},
     {"material/material", material::schema},
+    {"ragdoll/ragdoll", ragdoll_file::schema},
     {"sequences/sequences", sequences::schema},
     {"timeline/timeline", timeline_file::schema},
     {"weights/weights", weights::schema},
