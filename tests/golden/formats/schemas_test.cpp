@@ -13,9 +13,14 @@
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/character/character_format.h"
 #include "formats/goals/goals.h"
+#include "formats/height_field/height_image.h"
 #include "formats/key_shapes/key_shapes.h"
+#include "formats/keys/keys.h"
+#include "formats/library/library_description.h"
 #include "formats/limits/limits_format.h"
 #include "formats/material/material_format.h"
+#include "formats/path/path_format.h"
+#include "formats/prints/prints.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "formats/sequences/sequences.h"
 #include "formats/timeline/timeline_file.h"
@@ -30,6 +35,11 @@ const std::pair<const char*, std::string (*)()> kSchemas[] = {
     {"camera_keys/camera_keys", camera_keys::schema},
     {"character/character", character_file::schema},
     {"goals/goals", goals::schema},
+    {"height_field/ground", height_field::schema},
+    {"keys/keys", keys::schema},
+    {"library/library", library::schema},
+    {"path/path", path_file::schema},
+    {"prints/prints", prints::schema},
     {"key_shapes/key_shapes", key_shapes::schema},
     {"limits/limits", limits::schema},
     {"material/material", material::schema},
