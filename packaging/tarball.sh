@@ -12,8 +12,11 @@ epoch=${SOURCE_DATE_EPOCH:-$(git -C "$source" log -1 --format=%ct)}
 
 rm -rf "$root" "$root.tar.gz"
 cmake --install "$build" --prefix "$root" --strip > /dev/null
+own=$(find "$root/lib" -name 'libkrok-tools.so.*' -type f)
+mv "$own" "$root/"
 rm -rf "$root/include" "$root/lib"
 mkdir -p "$root"/{lib,licenses} "$root/share/doc/krok/examples"
+mv "$root/$(basename "$own")" "$root/lib/"
 cp "$source"/{LICENSE,README.md,CHANGELOG.md} "$root/"
 cp -r "$source/samples/captures" "$root/share/doc/krok/examples/"
 
@@ -23,10 +26,11 @@ fonts-dejavu-core libceres-dev libcli11-dev libeigen3-dev libfast-float-dev libh
 nlohmann-json3-dev
 END
 )
-libraries=$(ldd "$root"/bin/* | awk '/=> not found/ { print $1; exit 1 } /=> \// { print $3 }') ||
+libraries=$(LD_LIBRARY_PATH=$root/lib ldd "$root"/bin/* | awk '/=> not found/ { print $1; exit 1 } /=> \// { print $3 }') ||
   { echo "tarball.sh: $libraries is not installed" >&2; exit 1; }
 libraries=$(sort -u <<< "$libraries")
 while read -r library; do
+  [[ $library != "$root"/lib/* ]] || continue
   file=$(readlink -f "$library")
   package=$(dpkg -S "$file" "${file#/usr}" 2> /dev/null | head -n 1 | cut -d : -f 1 || true)
   [ -n "$package" ] || { echo "tarball.sh: $file belongs to no package: its licence is not known" >&2; exit 1; }

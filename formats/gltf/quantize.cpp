@@ -60,6 +60,37 @@ std::array<std::uint16_t, 3> steps_of(const Vec3f& position, const PositionGrid&
   return steps;
 }
 
+// Displacements of a morph target.
+struct TargetSteps {
+  std::vector<std::array<std::int16_t, 3>> whole;
+  std::vector<Vec3f> exact;  // in units of kMiddle steps, where they are too long for whole steps
+};
+
+TargetSteps target_steps(std::span<const Vec3f> base, std::span<const Vec3f> positions,
+                         const PositionGrid& grid) {
+  TargetSteps steps{std::vector<std::array<std::int16_t, 3>>(base.size()),
+                    std::vector<Vec3f>(base.size())};
+  bool fits = true;
+  for (std::size_t v = 0; v < base.size(); ++v) {
+    // Against the rounded base, so that a whole target is off by half a step.
+    const auto from = steps_of(base[v], grid);
+    for (int c = 0; c < 3; ++c) {
+      const double place = (static_cast<double>(positions[v][c]) - grid.corner[c]) / grid.step -
+                           from[static_cast<std::size_t>(c)];
+      if (positions[v][c] == base[v][c]) {
+        steps.exact[v][c] = 0;
+        continue;
+      }
+      fits = fits && std::abs(place) < kMiddle;
+      steps.exact[v][c] = static_cast<float>(place / kMiddle);
+      steps.whole[v][static_cast<std::size_t>(c)] = static_cast<std::int16_t>(
+          std::clamp(std::round(place), -double(kMiddle), double(kMiddle)));
+    }
+  }
+  if (fits) steps.exact.clear();
+  return steps;
+}
+
 std::int8_t byte_of(float value) {
   return static_cast<std::int8_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * 127.0f));
 }
@@ -311,26 +342,9 @@ std::map<std::string, int> add_quantized_target(Document& document, const Model&
                                                 const MorphSet& morphs, int target,
                                                 const PositionGrid& grid) {
   std::map<std::string, int> attributes;
-  const auto positions = morphs.target_positions(target);
-  std::vector<std::array<std::int16_t, 3>> steps(positions.size());
-  bool fits = true;
-  std::vector<Vec3f> exact(positions.size());
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    // Against the rounded base, so that a whole target is off by half a step.
-    const auto base = steps_of(model.positions[v], grid);
-    for (int c = 0; c < 3; ++c) {
-      const double place = (static_cast<double>(positions[v][c]) - grid.corner[c]) / grid.step -
-                           base[static_cast<std::size_t>(c)];
-      const bool still = positions[v][c] == model.positions[v][c];
-      fits = fits && std::abs(place) < kMiddle;
-      exact[v][c] = still ? 0.0f : static_cast<float>(place / kMiddle);
-      steps[v][static_cast<std::size_t>(c)] =
-          still ? std::int16_t{0}
-                : static_cast<std::int16_t>(
-                      std::clamp(std::round(place), -double(kMiddle), double(kMiddle)));
-    }
-  }
-  attributes["POSITION"] = fits ? add_steps(document, steps) : document.add_positions(exact);
+  const TargetSteps steps = target_steps(model.positions, morphs.target_positions(target), grid);
+  attributes["POSITION"] =
+      steps.exact.empty() ? add_steps(document, steps.whole) : document.add_positions(steps.exact);
   if (morphs.normals.empty() || model.normals.empty()) return attributes;
   const auto normals = morphs.target_normals(target);
   std::vector<Vec3f> turns(normals.size());
@@ -407,6 +421,24 @@ Model quantized(const Model& model, const Quantization& quantization) {
   for (std::size_t i = 0; i < steps.size(); ++i) {
     result.influence_weights[i] = static_cast<float>(steps[i] / all);
     if (steps[i] == 0) result.influence_joints[i] = 0;
+  }
+  return result;
+}
+
+MorphSet quantized(const MorphSet& morphs, const Model& model, const Model& shown,
+                   const Quantization& quantization) {
+  MorphSet result = morphs;
+  const PositionGrid grid = PositionGrid::of(model.positions, quantization);
+  const std::size_t count = model.positions.size();
+  for (int t = 0; t < morphs.target_count(); ++t) {
+    const TargetSteps steps = target_steps(model.positions, morphs.target_positions(t), grid);
+    for (std::size_t v = 0; v < count; ++v) {
+      const auto& whole = steps.whole[v];
+      const Vec3 moved = steps.exact.empty() ? Vec3(Vec3(whole[0], whole[1], whole[2]))
+                                             : Vec3(kMiddle * steps.exact[v].cast<double>());
+      result.positions[static_cast<std::size_t>(t) * count + v] =
+          shown.positions[v] + (grid.step * moved).cast<float>();
+    }
   }
   return result;
 }

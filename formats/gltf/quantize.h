@@ -1,6 +1,7 @@
 #pragma once
 
 #include "scene/model.h"
+#include "scene/morph_set.h"
 
 namespace krok::gltf {
 
@@ -15,7 +16,12 @@ struct Quantization {
 // What a quantized file holds of a model, as a viewer decodes it, to measure what it loses.
 Model quantized(const Model& model, const Quantization& quantization);
 
-// The largest distance of a vertex from where it was, in the reference pose: metres.
+// The same of its morph targets: `shown` is quantized() of the model.
+MorphSet quantized(const MorphSet& morphs, const Model& model, const Model& shown,
+                   const Quantization& quantization);
+
+// The largest distance of a vertex from where it was, in the reference pose without morph targets:
+// metres.
 double quantization_bound(const Model& model, const Quantization& quantization);
 
 // The largest angle between a normal and what the file holds of it: radians.

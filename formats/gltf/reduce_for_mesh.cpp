@@ -6,6 +6,7 @@
 #include "core/index.h"
 #include "formats/gltf/reduce_tracks.h"
 #include "formats/gltf/track_poses.h"
+#include "skin/morph.h"
 
 namespace krok::gltf {
 
@@ -85,6 +86,16 @@ void choose_bits(std::span<const double> reaches, double error, bool filtered,
   }
 }
 
+// Moment 2 f is frame f, 2 f + 1 half a frame later, as in MeshReduction.
+ShapeAtMoment shape_of(const TrackedMesh& mesh) {
+  if (mesh.weights == nullptr || mesh.weights->values.empty()) return {};
+  return [mesh](int moment, std::span<Vec3f> positions) {
+    std::vector<float> weights;
+    weights_at(*mesh.weights, 0.5 * moment / mesh.weights->rate, weights);
+    apply_morphs(*mesh.morphs, weights, {mesh.model.positions, {}}, {positions, {}});
+  };
+}
+
 std::size_t key_count(const JointTracks& tracks) {
   std::size_t count = 0;
   for (const JointTrack& track : tracks.joints) {
@@ -95,25 +106,26 @@ std::size_t key_count(const JointTracks& tracks) {
 
 }  // namespace
 
-MeshError mesh_error(const Model& a, const JointTracks& a_tracks, const Model& b,
+MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const TrackedMesh& b,
                      const JointTracks& b_tracks, int jobs) {
   const int frames = static_cast<int>(a_tracks.times.size());
-  return krok::mesh_error({a, palettes_of(a, a_tracks)}, {b, palettes_of(b, b_tracks)},
+  return krok::mesh_error({a.model, palettes_of(a.model, a_tracks), shape_of(a)},
+                          {b.model, palettes_of(b.model, b_tracks), shape_of(b)},
                           std::max(1, 2 * frames - 1), jobs);
 }
 
-Result<MeshReduction> reduce_for_mesh(const Model& model, const Model& shown,
+Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& shown,
                                       const MeshReduceOptions& options, int jobs,
                                       JointTracks& tracks) {
   const JointTracks full = tracks;
-  const std::vector<double> shells = shells_of(model), reaches = reaches_of(model);
+  const std::vector<double> shells = shells_of(model.model), reaches = reaches_of(model.model);
   MeshReduction best;
   bool found = false;
   const auto attempt = [&](double factor) -> Result<bool> {
     JointTracks fewer = full;
     const double tolerance = factor * options.tolerance;
     auto reduction = reduce_tracks(
-        model.skeleton, {.tolerance = tolerance, .shell_distances = shells}, jobs, fewer);
+        model.model.skeleton, {.tolerance = tolerance, .shell_distances = shells}, jobs, fewer);
     if (!reduction) return std::move(reduction).error();
     if (options.short_keys) choose_bits(reaches, kBitsShare * tolerance, options.filtered, fewer);
     const MeshError error = mesh_error(model, full, shown, rounded(fewer, options.filtered), jobs);

@@ -2,6 +2,7 @@
 
 #include "formats/gltf/joint_tracks.h"
 #include "scene/model.h"
+#include "scene/morph_set.h"
 #include "skin/mesh_error.h"
 
 namespace krok::gltf {
@@ -11,6 +12,14 @@ namespace krok::gltf {
 struct MeshReduction {
   MeshError error;  // moment 2 f is frame f, 2 f + 1 half a frame later
   std::size_t keys_before = 0, keys_after = 0;
+};
+
+// A mesh as tracks move it, and its morph targets with their weights in each frame of the tracks;
+// null where shapes do not change.
+struct TrackedMesh {
+  const Model& model;
+  const MorphSet* morphs = nullptr;
+  const MorphWeights* weights = nullptr;
 };
 
 struct MeshReduceOptions {
@@ -23,15 +32,15 @@ struct MeshReduceOptions {
 // what is left of `model`, is further than the tolerance from that of `model` with all keys.
 // choose_keys() bounds the error of a sphere around each joint, with the radius of its vertices
 // here, which is more than what a vertex between several joints moves by, or less for vertices far
-// off. So its tolerance is searched for. Codes: reduce-tolerance, reduce-stretch (joints that
-// change scale).
-Result<MeshReduction> reduce_for_mesh(const Model& model, const Model& shown,
+// off. So its tolerance is searched for. All keys are kept where `shown` alone is further off.
+// Codes: reduce-tolerance, reduce-stretch (joints that change scale).
+Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& shown,
                                       const MeshReduceOptions& options, int jobs,
                                       JointTracks& tracks);
 
 // The largest distance between the vertices of two models of one mesh, moved by tracks of the same
 // frames, at the moments of MeshReduction.
-MeshError mesh_error(const Model& a, const JointTracks& a_tracks, const Model& b,
+MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const TrackedMesh& b,
                      const JointTracks& b_tracks, int jobs);
 
 }  // namespace krok::gltf

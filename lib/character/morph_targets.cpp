@@ -13,7 +13,7 @@ namespace krok::character {
 namespace {
 
 // The weight of a node's target without animation.
-double resting(const nodes::Scene& scene, const Actor::WeightSource& source) {
+double resting(const nodes::Scene& scene, const SceneActor::WeightSource& source) {
   const nodes::Node& node = scene.nodes[at(source.node)];
   const auto& weights = node.weights.empty() ? scene.meshes[at(node.mesh)].weights : node.weights;
   return weights[at(source.target)];
@@ -46,7 +46,7 @@ std::vector<const nodes::Channel*> TargetNames::channels_of(int node) const {
   return found;
 }
 
-std::uint64_t TargetNames::fingerprint(const Actor::WeightSource& source) const {
+std::uint64_t TargetNames::fingerprint(const SceneActor::WeightSource& source) const {
   Xxh3Stream stream;
   feed(stream, resting(scene_, source));
   for (const nodes::Channel* channel : channels_of(source.node)) {
@@ -61,7 +61,8 @@ std::uint64_t TargetNames::fingerprint(const Actor::WeightSource& source) const 
 }
 
 // Whether the weights are the same without animation, and have the same keys in each animation.
-bool TargetNames::same_weights(const Actor::WeightSource& a, const Actor::WeightSource& b) const {
+bool TargetNames::same_weights(const SceneActor::WeightSource& a,
+                               const SceneActor::WeightSource& b) const {
   if (resting(scene_, a) != resting(scene_, b)) return false;
   const auto channels = channels_of(a.node), others = channels_of(b.node);
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -88,7 +89,7 @@ void TargetNames::add(const nodes::Instance& instance) {
   const nodes::Primitive& shape = evaluator_.primitive(instance);
   const nodes::Mesh& mesh = scene_.meshes[at(instance.mesh)];
   for (int k = 0; k < static_cast<int>(shape.targets.size()); ++k) {
-    const Actor::WeightSource source{instance.node, k};
+    const SceneActor::WeightSource source{instance.node, k};
     if (indices_.contains({instance.node, k})) continue;  // an earlier primitive of the mesh
     std::string name = to_utf8(shape.targets[at(k)].name);
     if (name.empty()) {

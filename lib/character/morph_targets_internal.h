@@ -25,14 +25,14 @@ class TargetNames {
     return indices_.at({instance.node, target});
   }
   const std::vector<std::string>& names() const { return names_; }
-  const std::vector<Actor::WeightSource>& sources() const { return sources_; }
+  const std::vector<SceneActor::WeightSource>& sources() const { return sources_; }
 
  private:
   // A node's weights channel in each animation, null if there is none.
   std::vector<const nodes::Channel*> channels_of(int node) const;
-  bool same_weights(const Actor::WeightSource& a, const Actor::WeightSource& b) const;
+  bool same_weights(const SceneActor::WeightSource& a, const SceneActor::WeightSource& b) const;
   // Equal for all sources that same_weights() finds equal.
-  std::uint64_t fingerprint(const Actor::WeightSource& source) const;
+  std::uint64_t fingerprint(const SceneActor::WeightSource& source) const;
 
   const nodes::Scene& scene_;
   const nodes::Evaluator& evaluator_;
@@ -42,7 +42,7 @@ class TargetNames {
   std::map<std::pair<std::string, std::uint64_t>, std::vector<int>> by_name_;  // and fingerprint
   UniqueNames unique_;
   std::vector<std::string> names_;
-  std::vector<Actor::WeightSource> sources_;
+  std::vector<SceneActor::WeightSource> sources_;
 };
 
 }  // namespace krok::character

@@ -6,7 +6,7 @@
 
 namespace krok::character {
 
-Result<MorphWeights> make_weights(const Actor& actor, const nodes::Evaluator& evaluator,
+Result<MorphWeights> make_weights(const SceneActor& actor, const nodes::Evaluator& evaluator,
                                   int animation, const Sampling& sampling) {
   constexpr std::size_t kMax = 100'000'000;
   const std::size_t targets = actor.weight_sources.size();
@@ -23,7 +23,7 @@ Result<MorphWeights> make_weights(const Actor& actor, const nodes::Evaluator& ev
   nodes::Evaluation state;
   for (int frame = 0; frame < sampling.frames; ++frame) {
     evaluator.place_nodes(animation, sampling.time(frame), state);
-    for (const Actor::WeightSource& source : actor.weight_sources) {
+    for (const SceneActor::WeightSource& source : actor.weight_sources) {
       weights.values.push_back(
           static_cast<float>(state.node_weights[at(source.node)][at(source.target)]));
     }

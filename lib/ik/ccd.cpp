@@ -13,26 +13,28 @@ namespace {
 // the goal asks nothing of this joint.
 bool wanted_turn(const Tree& tree, const GoalRows& g, int j, Vec3& turn) {
   const Goal& goal = *g.goal;
-  if (g.effector < 0) return false;
+  // A joint that carries the target, too, changes nothing.
+  if (g.effector < 0 || tree.carries(j, g.anchor)) return false;
+  const Vec3 target = tree.target_of(g);
+  const Quat orientation = tree.orientation_of(g);
   const Transform& effector = tree.joints[at(g.effector)].world;
   const Vec3& origin = tree.joints[at(j)].world.position;
   const bool own = j == g.effector;
   switch (goal.kind) {
     case Goal::Kind::position:
-      turn = rotation_vector(shortest_arc(effector * goal.point - origin, goal.target - origin));
+      turn = rotation_vector(shortest_arc(effector * goal.point - origin, target - origin));
       return true;
     case Goal::Kind::orientation:
-      turn = rotation_vector(goal.orientation * effector.orientation.conjugate());
+      turn = rotation_vector(orientation * effector.orientation.conjugate());
       return true;
     case Goal::Kind::pose:
       // The effector's own joint gives the orientation, those above it the position.
-      turn =
-          own ? rotation_vector(goal.orientation * effector.orientation.conjugate())
-              : rotation_vector(shortest_arc(effector * goal.point - origin, goal.target - origin));
+      turn = own ? rotation_vector(orientation * effector.orientation.conjugate())
+                 : rotation_vector(shortest_arc(effector * goal.point - origin, target - origin));
       return true;
     case Goal::Kind::look_at:
       turn = rotation_vector(
-          shortest_arc(effector.orientation * goal.axis, goal.target - effector * goal.point));
+          shortest_arc(effector.orientation * goal.axis, target - effector * goal.point));
       return true;
     default:
       return false;

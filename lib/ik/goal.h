@@ -25,6 +25,11 @@ struct Goal {
   Quat orientation = Quat::Identity();
   Vec3 axis = Vec3::UnitZ();  // in the joint's frame, unit
 
+  // Target and orientation are in the frame of this joint, wherever the solution moves it to; -1:
+  // in the world. Not used by balance. The joint itself takes part only where it is on some goal's
+  // chain.
+  int anchor = -1;
+
   // For a pole: a joint above the middle one and one below it, by default (-1) its parent and its
   // first child. A limb that is straight, or a target on its line, has no bend to point: such a
   // goal counts as reached.

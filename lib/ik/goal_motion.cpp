@@ -17,9 +17,6 @@ namespace {
 
 // Frames that one thread solves in a row.
 constexpr std::size_t kGrain = 32;
-// Passes for goals relative to joints that the solution moves.
-constexpr int kPasses = 20;
-constexpr double kSettled = 1e-6;  // metres
 // A motion that is beyond its limits by so much, radians, is blended by a goal's strength alone.
 constexpr double kWhollyBlended = 0.1;
 
@@ -160,7 +157,6 @@ class FrameSolver {
     given_.resize(joints);
     solved_.resize(joints);
     for (const KeyedGoal& goal : goals) {
-      relative_ = relative_ || (goal.relative_to >= 0 && !goal.motion);
       if (goal.motion) {
         other_.resize(std::max(other_.size(), goal.motion->skeleton.names.size()));
       }
@@ -171,36 +167,42 @@ class FrameSolver {
   Status solve(int frame, std::span<GoalFrame> report, Clip& result, double& excess);
 
  private:
-  Transform anchor(const KeyedGoal& goal, double time, const std::vector<Transform>& pose);
-  void list_goals(double time, const std::vector<Transform>& anchors_from);
+  Transform anchor(const KeyedGoal& goal, double time);
+  void list_goals(double time);
   bool blend_in(double strength);
   double excess_of_chains() const;
 
   const Clip& clip_;
   std::span<const KeyedGoal> goals_;
   Solver solver_;
-  bool relative_ = false;
   std::vector<Transform> given_, solved_, other_, scratch_, local_, before_solving_;
-  std::vector<Goal> active_, before_;
+  std::vector<Goal> active_;
   std::vector<double> strengths_;
 };
 
-Transform FrameSolver::anchor(const KeyedGoal& goal, double time,
-                              const std::vector<Transform>& pose) {
+// As the motion is given.
+Transform FrameSolver::anchor(const KeyedGoal& goal, double time) {
   if (goal.relative_to < 0) return {};
-  if (!goal.motion) return pose[at(goal.relative_to)];
+  if (!goal.motion) return given_[at(goal.relative_to)];
   const std::size_t joints = goal.motion->skeleton.names.size();
   sample(*goal.motion, time, std::span(other_).first(joints), scratch_);
   return other_[at(goal.relative_to)];
 }
 
-void FrameSolver::list_goals(double time, const std::vector<Transform>& anchors_from) {
+void FrameSolver::list_goals(double time) {
   active_.clear();
   for (std::size_t g = 0; g < goals_.size(); ++g) {
     if (!(strengths_[g] > 0)) continue;
     const KeyedGoal& keyed = goals_[g];
-    Goal goal = placed(keyed, time, anchor(keyed, time, anchors_from), given_);
+    const Transform frame = anchor(keyed, time);
+    Goal goal = placed(keyed, time, frame, given_);
     if (strengths_[g] < 1) fade_goal(goal, strengths_[g], clip_.skeleton, given_);
+    if (keyed.relative_to >= 0 && keyed.motion == nullptr) {
+      // The solution moves its frame.
+      goal.anchor = keyed.relative_to;
+      goal.target = frame.inverse() * goal.target;
+      goal.orientation = (frame.orientation.conjugate() * goal.orientation).normalized();
+    }
     active_.push_back(std::move(goal));
   }
 }
@@ -256,24 +258,11 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
   }
   if (!(strength > 0)) return {};
   clip_.get_pose(frame, given_);
-  list_goals(time, given_);
-  const Outcome* outcome = nullptr;
-  for (int pass = 0; pass < (relative_ ? kPasses : 1); ++pass) {
-    if (pass > 0) {
-      before_ = active_;
-      list_goals(time, solved_);
-      double moved = 0;
-      for (std::size_t i = 0; i < active_.size(); ++i) {
-        moved = std::max({moved, (active_[i].target - before_[i].target).norm(),
-                          angle_between(active_[i].orientation, before_[i].orientation)});
-      }
-      if (moved < kSettled) break;
-    }
-    solved_ = given_;
-    const auto solution = solver_.solve(active_, solved_);
-    if (!solution) return solution.error();
-    outcome = *solution;
-  }
+  list_goals(time);
+  solved_ = given_;
+  const auto solution = solver_.solve(active_, solved_);
+  if (!solution) return solution.error();
+  const Outcome* const outcome = *solution;
   if (strength >= 1) excess = std::max(excess, excess_of_chains());
   std::vector<Residual> missed = outcome->goals;
   if (blend_in(strength)) {

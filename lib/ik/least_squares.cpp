@@ -52,8 +52,8 @@ void LeastSquares::list_columns(const Tree& tree, const Options& options) {
     if (!joint.moves && !root_shifts) continue;
     int first_row = tree.rows, last_row = 0;
     for (const GoalRows& goal : tree.goals) {
-      const auto begin = tree.path.begin() + goal.first_path;
-      if (std::find(begin, begin + goal.paths, static_cast<int>(j)) == begin + goal.paths) continue;
+      const auto begin = tree.path.begin() + goal.first_reach, end = begin + goal.reaches;
+      if (std::find(begin, end, static_cast<int>(j)) == end) continue;
       first_row = std::min(first_row, goal.row);
       last_row = std::max(last_row, goal.row + goal.rows);
     }
@@ -99,10 +99,10 @@ void LeastSquares::fill_columns(Tree& tree) {
   }
   std::fill(entries_.begin(), entries_.end(), 0.0);
   for (const GoalRows& goal : tree.goals) {
-    // Columns lie in the order of joints; the path runs from the effector up.
+    // Columns lie in the order of joints, those that a goal depends on from the last one up.
     std::size_t c = columns_.size();
-    for (int i = 0; i < goal.paths; ++i) {
-      const int joint = tree.path[at(goal.first_path + i)];
+    for (int i = 0; i < goal.reaches; ++i) {
+      const int joint = tree.path[at(goal.first_reach + i)];
       while (c > 0 && columns_[c - 1].freedom.joint > joint) --c;
       for (; c > 0 && columns_[c - 1].freedom.joint == joint; --c) {
         tree.column(goal, columns_[c - 1].freedom, entries(c - 1));

@@ -27,7 +27,7 @@ Vec3 hinge_of(const ChainJoint& middle) {
 
 Vec3 pole_for(const Tree& tree, int middle, const Vec3& root) {
   for (const GoalRows& g : tree.goals) {
-    if (g.goal->kind == Goal::Kind::pole && g.effector == middle) return g.goal->target - root;
+    if (g.goal->kind == Goal::Kind::pole && g.effector == middle) return tree.target_of(g) - root;
   }
   return Vec3::Zero();
 }
@@ -45,15 +45,16 @@ void solve_limbs(Tree& tree, const Options& options) {
     const int root = middle < 0 ? -1 : tree.joints[at(middle)].parent;
     if (root < 0) continue;
     const Transform& effector = tree.joints[at(end)].world;
+    const Quat orientation = tree.orientation_of(g);
     // The end joint's own turn comes first, so that its point hangs on it as it will in the end.
-    const Quat turned = pose ? goal.orientation : effector.orientation;
+    const Quat turned = pose ? orientation : effector.orientation;
     TwoBoneChain chain;
     chain.root = tree.joints[at(root)].world.position;
     chain.middle = tree.joints[at(middle)].world.position;
     chain.end = effector.position;
     chain.hinge = hinge_of(tree.joints[at(middle)]);
     TwoBoneGoal two;
-    two.target = goal.target - turned * goal.point;
+    two.target = tree.target_of(g) - turned * goal.point;
     two.pole = pole_for(tree, middle, chain.root);
     const TwoBoneSolution solution = solve_two_bone(chain, two);
     const Quat keeps = effector.orientation;
@@ -61,7 +62,7 @@ void solve_limbs(Tree& tree, const Options& options) {
     // The solution's second rotation is of the middle joint as it was; the root's turn moved it.
     turn_joint(tree, middle, solution.middle_rotation * solution.root_rotation.conjugate());
     const Quat now = tree.joints[at(end)].world.orientation;
-    turn_joint(tree, end, (pose ? goal.orientation : keeps) * now.conjugate());
+    turn_joint(tree, end, (pose ? orientation : keeps) * now.conjugate());
   }
 }
 

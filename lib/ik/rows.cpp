@@ -46,8 +46,8 @@ Pole pole_of(const Vec3& target, const Vec3& upper, const Vec3& lower, const Vec
   return pole;
 }
 
-Vec3 line_of_sight(const Transform& joint, const Goal& goal) {
-  const Vec3 line = goal.target - joint * goal.point;
+Vec3 line_of_sight(const Transform& joint, const Goal& goal, const Vec3& target) {
+  const Vec3 line = target - joint * goal.point;
   const double length = line.norm();
   return length > kShortest ? Vec3(line / length) : Vec3(joint.orientation * goal.axis);
 }
@@ -104,22 +104,23 @@ double Tree::errors(std::span<double> rows_of) const {
       continue;
     }
     const Transform& joint = joints[at(g.effector)].world;
+    const Vec3 target = target_of(g);
     switch (goal.kind) {
       case Goal::Kind::pose:
-        put(out + 3, goal.weight * rotation_between(joint.orientation, goal.orientation));
+        put(out + 3, goal.weight * rotation_between(joint.orientation, orientation_of(g)));
         [[fallthrough]];
       case Goal::Kind::position:
-        put(out, goal.weight * (goal.target - joint * goal.point));
+        put(out, goal.weight * (target - joint * goal.point));
         break;
       case Goal::Kind::orientation:
-        put(out, goal.weight * rotation_between(joint.orientation, goal.orientation));
+        put(out, goal.weight * rotation_between(joint.orientation, orientation_of(g)));
         break;
       case Goal::Kind::look_at:
         put(out, goal.weight * rotation_vector(shortest_arc(joint.orientation * goal.axis,
-                                                            line_of_sight(joint, goal))));
+                                                            line_of_sight(joint, goal, target))));
         break;
       default: {
-        const Pole pole = pole_of(goal.target, joints[at(g.upper)].world.position,
+        const Pole pole = pole_of(target, joints[at(g.upper)].world.position,
                                   joints[at(g.lower)].world.position, joint.position);
         out[0] = pole.defined ? -goal.weight * pole.angle : 0;
         break;
@@ -136,12 +137,17 @@ void Tree::column(const GoalRows& g, const Freedom& freedom, double* column) con
   double* const out = column + g.row;
   const Vec3& axis = freedom.world;
   const ChainJoint& turning = joints[at(freedom.joint)];
-  const Vec3& origin = turning.world.position;
-  // How a point that hangs on the joint moves.
+  // How a point moves that hangs on the joint, or on one that it may not carry.
   const auto moved = [&](const Vec3& point) {
-    return freedom.shift ? axis : Vec3(axis.cross(point - origin));
+    return freedom.shift ? axis : Vec3(axis.cross(point - turning.world.position));
   };
-  const Vec3 turned = freedom.shift ? Vec3(Vec3::Zero()) : axis;
+  const auto moved_with = [&](int carried, const Vec3& point) {
+    const bool moves = freedom.shift ? carried >= 0 : carries(freedom.joint, carried);
+    return moves ? moved(point) : Vec3(Vec3::Zero());
+  };
+  const auto turned_with = [&](int carried) {
+    return !freedom.shift && carries(freedom.joint, carried) ? axis : Vec3(Vec3::Zero());
+  };
   if (goal.kind == Goal::Kind::balance) {
     const double total = joints.front().mass;
     if (!(total > 0) || !(turning.mass > 0)) return;
@@ -151,43 +157,42 @@ void Tree::column(const GoalRows& g, const Freedom& freedom, double* column) con
     return;
   }
   const Transform& joint = joints[at(g.effector)].world;
+  const Vec3 target = target_of(g);
   switch (goal.kind) {
     case Goal::Kind::pose:
-      put(out + 3, goal.weight * turned);
+      put(out + 3, goal.weight * Vec3(turned_with(g.effector) - turned_with(g.anchor)));
       [[fallthrough]];
     case Goal::Kind::position:
-      put(out, goal.weight * moved(joint * goal.point));
+      put(out, goal.weight *
+                   Vec3(moved_with(g.effector, joint * goal.point) - moved_with(g.anchor, target)));
       break;
     case Goal::Kind::orientation:
-      put(out, goal.weight * turned);
+      put(out, goal.weight * Vec3(turned_with(g.effector) - turned_with(g.anchor)));
       break;
     case Goal::Kind::look_at: {
       // The axis turns by what of the rotation is across it; the line of sight turns back as the
       // eye moves sideways.
       const Vec3 eye = joint * goal.point;
       const Vec3 facing = joint.orientation * goal.axis;
-      const Vec3 line = line_of_sight(joint, goal);
-      const double distance = std::max(kShortest, (goal.target - eye).norm());
-      put(out, goal.weight *
-                   Vec3(turned - facing * facing.dot(turned) + line.cross(moved(eye)) / distance));
+      const Vec3 line = line_of_sight(joint, goal, target);
+      const Vec3 turned = turned_with(g.effector);
+      const Vec3 way = moved_with(g.effector, eye) - moved_with(g.anchor, target);
+      const double distance = std::max(kShortest, (target - eye).norm());
+      put(out,
+          goal.weight * Vec3(turned - facing * facing.dot(turned) + line.cross(way) / distance));
       break;
     }
     default: {
-      const ChainJoint& upper = joints[at(g.upper)];
-      const ChainJoint& lower = joints[at(g.lower)];
-      const Pole pole =
-          pole_of(goal.target, upper.world.position, lower.world.position, joint.position);
+      const Vec3 &upper = joints[at(g.upper)].world.position,
+                 &lower = joints[at(g.lower)].world.position;
+      const Pole pole = pole_of(target, upper, lower, joint.position);
       if (!pole.defined) break;
-      // On one chain a joint moves those after it; for those at or before it the turn is about
-      // themselves or nothing.
-      double rate = pole.by_lower.dot(moved(lower.world.position));
-      if (freedom.shift || freedom.joint <= g.effector) {
-        rate += pole.by_middle.dot(moved(joint.position));
-      }
-      if (freedom.shift || freedom.joint <= g.upper) {
-        rate += pole.by_upper.dot(moved(upper.world.position));
-      }
-      out[0] = goal.weight * rate;
+      // The angle stays as all points move alike, so that these are the derivatives by the target.
+      const Vec3 by_target = -(pole.by_upper + pole.by_middle + pole.by_lower);
+      out[0] = goal.weight * (pole.by_lower.dot(moved_with(g.lower, lower)) +
+                              pole.by_middle.dot(moved_with(g.effector, joint.position)) +
+                              pole.by_upper.dot(moved_with(g.upper, upper)) +
+                              by_target.dot(moved_with(g.anchor, target)));
       break;
     }
   }
@@ -204,19 +209,20 @@ Residual Tree::residual(const GoalRows& g, const Options& options) const {
     }
   } else {
     const Transform& joint = joints[at(g.effector)].world;
+    const Vec3 target = target_of(g);
     if (goal.kind == Goal::Kind::position || goal.kind == Goal::Kind::pose) {
-      residual.distance = (goal.target - joint * goal.point).norm();
+      residual.distance = (target - joint * goal.point).norm();
     }
     if (goal.kind == Goal::Kind::orientation || goal.kind == Goal::Kind::pose) {
-      residual.angle = angle_between(joint.orientation, goal.orientation);
+      residual.angle = angle_between(joint.orientation, orientation_of(g));
     }
     if (goal.kind == Goal::Kind::look_at) {
       const Vec3 facing = joint.orientation * goal.axis;
-      const Vec3 line = line_of_sight(joint, goal);
+      const Vec3 line = line_of_sight(joint, goal, target);
       residual.angle = std::atan2(facing.cross(line).norm(), facing.dot(line));
     }
     if (goal.kind == Goal::Kind::pole) {
-      const Pole pole = pole_of(goal.target, joints[at(g.upper)].world.position,
+      const Pole pole = pole_of(target, joints[at(g.upper)].world.position,
                                 joints[at(g.lower)].world.position, joint.position);
       residual.angle = pole.defined ? std::abs(pole.angle) : 0;
     }

@@ -57,6 +57,7 @@ Status check(const Goal& goal, std::size_t index, const Tree& tree) {
   }
   if (goal.kind == Goal::Kind::balance) return {};
   if (goal.joint < 0 || goal.joint >= joints) return wrong("its joint does not exist");
+  if (goal.anchor >= joints) return wrong("the joint that it is relative to does not exist");
   if (goal.kind != Goal::Kind::pole) return {};
   const auto is_above = [&](int upper, int lower) {
     while (lower > upper) lower = tree.parents()[at(lower)];

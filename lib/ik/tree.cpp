@@ -66,8 +66,8 @@ void Tree::mark_chain(const Goal& goal) {
   }
   int joint = goal.joint;
   if (goal.kind == Goal::Kind::pole) joint = goal.lower >= 0 ? goal.lower : first_child(joint);
-  for (; joint >= 0 && chain_of_[at(joint)] < 0; joint = parents_[at(joint)]) {
-    chain_of_[at(joint)] = 0;
+  for (const int first : {joint, goal.anchor}) {
+    for (int j = first; j >= 0 && chain_of_[at(j)] < 0; j = parents_[at(j)]) chain_of_[at(j)] = 0;
   }
 }
 
@@ -143,8 +143,42 @@ void Tree::add_paths(std::span<const Goal> wanted) {
       ChainJoint& joint = joints[at(path[at(added.first_path + i)])];
       joint.moves = joint.weight > 0;
     }
+    if (goal.kind != Goal::Kind::balance && goal.anchor >= 0) {
+      added.anchor = chain_index(goal.anchor);
+    }
+    add_reach(added);
     goals.push_back(added);
   }
+}
+
+void Tree::add_reach(GoalRows& to) {
+  to.first_reach = to.first_path;
+  to.reaches = to.paths;
+  if (to.anchor < 0) return;
+  to.first_reach = static_cast<int>(path.size());
+  // Both run from the last joint up; they meet and go on as one.
+  int own = path[at(to.first_path)], other = to.anchor;
+  while (own >= 0 || other >= 0) {
+    const int next = std::max(own, other);
+    path.push_back(next);
+    if (own == next) own = joints[at(own)].parent;
+    if (other == next) other = joints[at(other)].parent;
+  }
+  to.reaches = static_cast<int>(path.size()) - to.first_reach;
+}
+
+bool Tree::carries(int upper, int lower) const {
+  while (lower > upper) lower = joints[at(lower)].parent;
+  return lower == upper && lower >= 0;
+}
+
+Vec3 Tree::target_of(const GoalRows& g) const {
+  return g.anchor < 0 ? g.goal->target : joints[at(g.anchor)].world * g.goal->target;
+}
+
+Quat Tree::orientation_of(const GoalRows& g) const {
+  return g.anchor < 0 ? g.goal->orientation
+                      : joints[at(g.anchor)].world.orientation * g.goal->orientation;
 }
 
 void Tree::order_rows() {

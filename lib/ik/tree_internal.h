@@ -39,10 +39,14 @@ struct ChainJoint {
 struct GoalRows {
   const Goal* goal = nullptr;
   int effector = -1;              // in Tree::joints; -1 for balance
+  int anchor = -1;                // the same of Goal::anchor; -1 for none
   int upper = -1, lower = -1;     // of a pole
   int first_path = 0, paths = 0;  // its joints, in Tree::path, from the effector up
   int row = 0, rows = 0;
   int moving = 0;  // the first `moving` of its joints are within its depth
+  // All joints that change its error, in Tree::path: its chain and that of its anchor, from the
+  // last in Tree::joints to the first.
+  int first_reach = 0, reaches = 0;
 };
 
 // A direction in which the pose can change: a turn of a joint about an axis, or a shift of the
@@ -72,6 +76,12 @@ class Tree {
   // The derivatives of minus the errors by one freedom, added to a column that is zero, [rows].
   void column(const GoalRows& rows, const Freedom& freedom, double* column) const;
 
+  // The goal's target and orientation in the world, as its anchor stands now.
+  Vec3 target_of(const GoalRows& rows) const;
+  Quat orientation_of(const GoalRows& rows) const;
+  // Whether turning a joint moves another, both in `joints`. Any joint moves itself, none moves -1.
+  bool carries(int upper, int lower) const;
+
   // Whether all goals are reached, from errors().
   bool reached(std::span<const double> errors, const Options& options) const;
   // A goal's residual from the world transforms as they are now.
@@ -94,6 +104,7 @@ class Tree {
   int chain_index(int joint) const { return chain_of_[static_cast<std::size_t>(joint)]; }
   void mark_chain(const Goal& goal);
   void add_paths(std::span<const Goal> goals);
+  void add_reach(GoalRows& rows);
   void order_rows();
   void place_balance_path(GoalRows& rows);
   void gather_masses();

@@ -19,13 +19,20 @@ MeshError mesh_error(const MovedModel& a, const MovedModel& b, int moments, int 
     std::vector<SkinMatrix> palettes[2] = {std::vector<SkinMatrix>(a.model.skeleton.names.size()),
                                            std::vector<SkinMatrix>(b.model.skeleton.names.size())};
     std::vector<Vec3f> positions[2] = {std::vector<Vec3f>(vertices), std::vector<Vec3f>(vertices)};
+    std::vector<Vec3f> shapes[2] = {std::vector<Vec3f>(a.shape ? vertices : 0),
+                                    std::vector<Vec3f>(b.shape ? vertices : 0)};
     for (std::size_t moment = begin; moment < end; ++moment) {
       a.palette(static_cast<int>(moment), palettes[0]);
       b.palette(static_cast<int>(moment), palettes[1]);
       for (int k = 0; k < 2; ++k) {
         poses[k].set_palette(palettes[k]);
-        const Model& model = k == 0 ? a.model : b.model;
-        skin(bindings[k], poses[k], {model.positions, {}, {}}, {positions[k], {}, {}});
+        const MovedModel& moved = k == 0 ? a : b;
+        std::span<const Vec3f> shape = moved.model.positions;
+        if (moved.shape) {
+          moved.shape(static_cast<int>(moment), shapes[k]);
+          shape = shapes[k];
+        }
+        skin(bindings[k], poses[k], {shape, {}, {}}, {positions[k], {}, {}});
       }
       MeshError& worst = errors[moment];
       worst.moment = static_cast<int>(moment);

@@ -11,10 +11,14 @@ namespace krok {
 // The palette of a moment of a motion; thread-safe. [joints] matrices.
 using PaletteSource = std::function<void(int moment, std::span<SkinMatrix> palette)>;
 
+// The vertices of a moment before joints move them; thread-safe. [vertices] positions.
+using ShapeAtMoment = std::function<void(int moment, std::span<Vec3f> positions)>;
+
 // A model moved by linear blend skinning.
 struct MovedModel {
   const Model& model;
   PaletteSource palette;
+  ShapeAtMoment shape = {};  // none: the model's own vertices at all moments
 };
 
 // How far apart two moved meshes come.

@@ -30,6 +30,31 @@ TEST_F(Krok, PassesArgumentsAndExitCodesThrough) {
   EXPECT_EQ(run_tool("krok", {"info", "--help"}).out, run_tool("krok-info", {"--help"}).out);
 }
 
+TEST_F(Krok, HelpOfAVerbIsThatOfItsTool) {
+  const std::string help = run_tool("krok-synth", {"--help"}).out;
+  EXPECT_EQ(run_tool("krok", {"help", "synth"}).out, help);
+  EXPECT_EQ(run_tool("krok", {"synth", "help"}).out, help);
+  EXPECT_EQ(run_tool("krok", {"help", "dance"}).exit_code, 2);
+  const std::string of_fit = run_tool("krok-fit", {"--help"}).out;  // a program of its own
+  EXPECT_NE(of_fit, "");
+  EXPECT_EQ(run_tool("krok", {"help", "fit"}).out, of_fit);
+  EXPECT_EQ(run_tool("krok", {"fit", "--help"}).out, of_fit);
+}
+
+// `krok --help` says of each verb what its tool says of itself.
+TEST_F(Krok, HelpHasTheSummariesOfTheTools) {
+  const std::string help = run_tool("krok", {"--help"}).out;
+  std::istringstream lines(help.substr(help.find("Verbs:\n") + 7));
+  int verbs = 0;
+  for (std::string line; std::getline(lines, line) && !line.empty(); ++verbs) {
+    const std::string verb = line.substr(2, line.find(' ', 2) - 2);
+    const std::string own = run_tool("krok-" + verb, {"--help"}).out;
+    EXPECT_EQ(line.substr(12), own.substr(0, own.find('\n'))) << verb;
+    EXPECT_LE(line.size(), 88u) << line;
+  }
+  EXPECT_GT(verbs, 20);
+}
+
 TEST_F(Krok, TellsWhichVerbThereIsNot) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"dance"}, {"dance", "--help"}, {"../krok-info"}, {}}) {

@@ -7,28 +7,180 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <optional>
 #include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
 
+#include "core/file.h"
+#include "core/hash.h"
 #include "core/in_order.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "core/result.h"
 #include "formats/io/takes.h"
 #include "tools/batch/journal.h"
 #include "tools/batch/list.h"
-#include "tools/batch/made_with.h"
-#include "tools/batch/names.h"
 #include "tools/batch/option_sets.h"
 #include "tools/batch/ready_lines.h"
-#include "tools/batch/report.h"
 #include "tools/batch/tally.h"
+#include "tools/cli/json_line.h"
 #include "tools/cli/json_object.h"
 #include "tools/cli/paths.h"
+#include "tools/cli/report.h"
+#include "tools/cli/tool.h"
 
 namespace krok::cli::batch {
 
 namespace {
+
+// Checksum for the journal of everything except the inputs' bytes that determines an output: tool,
+// version, options, names of inputs and outputs. `context` is that of the file before it is
+// processed; `fixed_positionals` are the inputs shared by all files.
+std::string made_with(const BatchFile& file, const BatchList& list,
+                      const std::vector<std::string>& fixed_positionals,
+                      const ToolContext& context) {
+  const std::vector<GivenOption>& options = list.option_sets[file.options].options;
+  Json all = object_for(6);
+  all["tool"] = context.report.tool;
+  all["version"] = context.report.version;
+  all["input"] = base_name(file.input);  // it is in the result's provenance
+  all["options"] = context.result_options;
+  // Other inputs by full path: the journal has checksums of their content under these paths.
+  all["inputs"] = fixed_positionals;
+  for (const GivenOption& option : options) {
+    if (!option.names_input) continue;
+    for (const std::string& value : option.values) all["inputs"].push_back(value);
+  }
+  all["outputs"] = Json::array();
+  for (const GivenOption& option : options) {
+    if (!option.names_output) continue;
+    for (const std::string& value : option.values) {
+      all["outputs"].push_back(expanded(value, file, ""));
+    }
+  }
+  const std::string text = json_line(all);
+  return hex(xxh3(std::as_bytes(std::span(text))));
+}
+
+// Assigns outputs whose names are not known from the list ("hero_{clip}.anim") to files of a batch.
+class BatchNames {
+ public:
+  // The list must outlive this.
+  BatchNames(const BatchList& list, std::string out_dir)
+      : list_(list), out_dir_(std::move(out_dir)) {}
+
+  // Fails (code usage) if `path` is an input of the batch or an output known from the list.
+  // Thread-safe.
+  Status check(const std::string& path);
+
+  // Assigns the paths to the file `input`, all or none: fails (code usage) if another file has one
+  // of them. Call in list order, so that the winner does not depend on -j.
+  Status claim(const std::vector<std::string>& paths, const std::string& input);
+
+ private:
+  const BatchList& list_;
+  std::string out_dir_;
+  std::once_flag listed_once_;
+  std::unordered_map<std::string, std::string> listed_;  // known canonical path -> input
+  std::map<std::string, std::string> owners_;            // claimed path -> input
+};
+
+constexpr const char* kHint = "use a --manifest to name each output";
+
+// The outputs of a file that are known from the list: its output, and those that options name.
+std::vector<std::string> outputs_of(const BatchFile& file, const BatchList& list,
+                                    const std::string& out_dir) {
+  std::vector<std::string> paths = {file.output};
+  for (const GivenOption& option : options_of(file, list, out_dir)) {
+    if (option.names_output) paths.insert(paths.end(), option.values.begin(), option.values.end());
+  }
+  return paths;
+}
+
+Status BatchNames::check(const std::string& path) {
+  if (const auto number = file_number(path)) {
+    const auto read = list_.read_files.find(*number);
+    if (read != list_.read_files.end()) return replaced_error(read->second);
+  }
+  std::call_once(listed_once_, [this] {
+    for (const BatchFile& file : list_.files) {
+      for (const std::string& output : outputs_of(file, list_, out_dir_)) {
+        listed_[place_of(output)] = file.input;
+      }
+    }
+  });
+  const auto listed = listed_.find(place_of(path));
+  if (listed == listed_.end()) return {};
+  return Error("usage", fmt::format("{} would also be written by {}", path, listed->second), kHint);
+}
+
+Status BatchNames::claim(const std::vector<std::string>& paths, const std::string& input) {
+  for (const std::string& path : paths) {
+    const auto owner = owners_.find(place_of(path));
+    if (owner == owners_.end()) continue;
+    return Error("usage",
+                 fmt::format("{} and {} would both be written to {}", owner->second, input, path),
+                 kHint);
+  }
+  for (const std::string& path : paths) owners_[place_of(path)] = input;
+  return {};
+}
+
+// The report of a batch as JSON (schema krok.batch/1), streamed while files are processed to bound
+// memory:
+//
+//   {"schema", "tool", "version", "options",
+//    "files": [{"input", "output", "status", "options", "inputs", "outputs", "issues", "result"}],
+//    "issues": [], "result": {"files", "done", "unchanged", "failed", "left"}}
+//
+// One file per line, in list order for any number of threads; the status is done, unchanged or
+// failed. The last "issues" are those of the batch as a whole, as in krok.report/1.
+class BatchReport {
+ public:
+  // No report if `path` is empty.
+  Status begin(const std::string& path, OutputFile::Options how, const std::string& tool,
+               const std::string& version, const Json& options);
+  bool is_wanted() const { return file_.has_value(); }
+  void add(const Json& file);
+  Status end(const Diagnostics& issues, const Json& result);
+
+ private:
+  std::optional<OutputFile> file_;
+  bool first_ = true;
+};
+
+Status BatchReport::begin(const std::string& path, OutputFile::Options how, const std::string& tool,
+                          const std::string& version, const Json& options) {
+  if (path.empty()) return {};
+  auto file = OutputFile::create(path, how);
+  if (!file) return file.error();
+  file_ = std::move(*file);
+  return file_->write(
+      fmt::format("{{\n  \"schema\": \"krok.batch/1\",\n  \"tool\": {},\n  \"version\": {},\n"
+                  "  \"options\": {},\n  \"files\": [",
+                  json_line(tool), json_line(version), json_line(options)));
+}
+
+// The file keeps write errors; end() returns them.
+void BatchReport::add(const Json& file) {
+  if (!file_) return;
+  (void)file_->write((first_ ? "\n    " : ",\n    ") + json_line(rounded(file))).ok();
+  first_ = false;
+}
+
+Status BatchReport::end(const Diagnostics& issues, const Json& result) {
+  if (!file_) return {};
+  const Status status = file_->write(fmt::format("{}],\n  \"issues\": {},\n  \"result\": {}\n}}\n",
+                                                 first_ ? "" : "\n  ", json_line(to_json(issues)),
+                                                 json_line(rounded(result))));
+  const Status done = file_->commit();
+  file_.reset();
+  return status ? done : status;
+}
 
 namespace fs = std::filesystem;
 
@@ -87,6 +239,7 @@ class Batch {
     list_ = list_files(line_, make_spec_, errors);
     tally_ = BatchTally(list_.files.size());
     if (!errors.empty()) return stop(errors);
+    context_.diagnose(list_.left_out);
     if (Status status = prepare(); !status) return stop({status.error()});
     if (Status status = begin_report(); !status) return stop({status.error()});
     do_files();
@@ -195,6 +348,13 @@ class Batch {
     }
     const Result<int> done = run_guarded(ready->spec, context);
     ready_lines_->put_back(file.options, std::move(ready));
+    if (!done && file.found && done.error().code == "motion-missing") {
+      Error error = done.error();
+      error.severity = Severity::warning;
+      error.message += ": it is left out";
+      fail(file, std::move(error), outcome, FileState::left_out);
+      return;
+    }
     if (!done) return fail(file, done.error(), outcome);
     if (*done != kExitDone) {
       return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), outcome);
@@ -261,7 +421,8 @@ class Batch {
     outcome.report["result"] = std::move(record["result"]);
   }
 
-  void fail(const BatchFile& file, Error error, Outcome& outcome) const {
+  void fail(const BatchFile& file, Error error, Outcome& outcome,
+            FileState state = FileState::failed) const {
     ToolContext& context = outcome.context;
     // The location is a manifest word, or else the file.
     const bool of_line = error.code == "usage" && !list_.option_sets[file.options].options.empty();
@@ -270,7 +431,7 @@ class Batch {
     context.one_of_many = &outcome.run;
     context.subject.file = file.input;
     context.diagnose(error);
-    outcome.state = FileState::failed;
+    outcome.state = state;
     outcome.run.held_files.clear();
     context.report.outputs.clear();
     context.report.result = Json::object();

@@ -140,7 +140,8 @@ struct ToolSpec {
     std::function<Result<std::string>()> ending;
   };
   std::string name;                // "krok-import"
-  std::string summary;             // one sentence, no full stop
+  std::string summary;             // in a line of 75 characters, no full stop; krok --help has it, too
+  std::string details;             // sentences that follow it in the help, or empty
   std::string inputs;              // for the usage line: "IN.bvh"
   std::vector<Example> examples;   // at least two
   std::string exit_done = "done";  // meaning of exit code 0

@@ -60,9 +60,8 @@ Status check(const Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-body", options, declare, check, run);
-  spec.summary =
-      "Generates a smooth closed body mesh around any skeleton, skinned to its joints, so that a "
-      "capture can be viewed as a character";
+  spec.summary = "Generates a smooth, closed, skinned body for any skeleton";
+  spec.details = "It shows a capture as a character.";
   spec.inputs = "IN.anim|IN.bvh|IN.amc|IN.model";
   spec.examples = {{"krok-body walk.anim -o walker.model",
                     "a body for the actor of a capture, about 10,000 vertices"},

@@ -128,9 +128,8 @@ std::string ending(const Arguments& arguments) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-cam", arguments, declare, understand, run);
-  spec.summary =
-      "Makes a camera from keys, or films a motion by following, orbiting or static "
-      "framing; writes a .cam file or glTF, separate or added to a character";
+  spec.summary = "Makes cameras: keyed, following, orbiting or fixed";
+  spec.details = "Written as .cam or glTF, apart or added to a character.";
   spec.inputs = "IN.json|IN.cam|IN.glb|IN.anim|IN.bvh|IN.amc";
   spec.examples = {{"krok-cam shot.json -o shot.cam", "a camera from hand-written keys"},
                    {"krok-cam walk.anim --follow hips -o shot.cam",

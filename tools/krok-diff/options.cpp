@@ -89,11 +89,11 @@ bool Options::has_page() const {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-diff", arguments, declare, parse, run);
-  spec.summary =
-      "Measures the differences of two motions, models, cameras or glTF files. glTF "
-      "files are compared as displayed: vertices and joints in world space at the key "
-      "times of both (and between them where there are steps or splines), whether "
-      "skinned, morphed or moved by nodes";
+  spec.summary = "Measures the differences of two motions, models, cameras or glTF files";
+  spec.details =
+      "glTF files are compared as displayed: vertices and joints in world space at the key times "
+      "of both (and between them where there are steps or splines), whether skinned, morphed or "
+      "moved by nodes.";
   spec.inputs = "A B";
   spec.examples = {
       {"krok-diff walk.anim walk_again.anim --tolerance 0.1mm --angle 0.1deg",

@@ -176,10 +176,8 @@ void declare(CommandOptions& command, Arguments& arguments) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-edit", arguments, declare, understand, run);
-  spec.summary =
-      "Cleans, cuts, mirrors, retimes, joins, loops, scales and positions a motion. Steps run in "
-      "the "
-      "order listed here, regardless of the order of the options";
+  spec.summary = "Cleans, cuts, mirrors, retimes, joins, loops, scales and places motions";
+  spec.details = "Steps run in the order listed here, regardless of the order of the options.";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";
   spec.examples = {
       {"krok-edit take.anim -o clean.anim --spikes --filter butterworth --cutoff 8Hz",

@@ -165,8 +165,8 @@ void declare(CommandOptions& command, Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-export", options, declare, check, run);
-  spec.summary =
-      "Exports a motion as BVH, glTF, or tables of positions, angles and others (CSV, OpenSim)";
+  spec.summary = "Exports a motion as BVH, glTF or tables (CSV, OpenSim)";
+  spec.details = "Tables have positions, angles, velocities, contacts and others.";
   spec.inputs = "IN";
   spec.examples = {
       {"krok-export walk.anim -o walk.glb", "the animated skeleton, for any glTF viewer"},

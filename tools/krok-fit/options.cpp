@@ -93,9 +93,8 @@ Status check(const Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-fit", options, declare, check, run);
-  spec.summary =
-      "Fits a step library to example motions, so that krok-synth can make motions for any "
-      "parameters between them, with a measured error";
+  spec.summary = "Fits a step library to example motions, with a measured error";
+  spec.details = "krok-synth then makes motions for any parameters between them.";
   spec.inputs = "LIBRARY.json";
   spec.examples = {
       {"krok-fit walking.json -o walking.steps",

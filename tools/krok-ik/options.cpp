@@ -244,9 +244,8 @@ Result<Options> understand(const Arguments& a) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-ik", arguments, declare, understand, run);
-  spec.summary =
-      "Brings joints of a motion to goals by inverse kinematics, within the joints' ranges of "
-      "motion; keeps feet where they stand";
+  spec.summary = "Brings joints of a motion to goals by inverse kinematics";
+  spec.details = "Joints stay within their ranges of motion, and feet where they stand.";
   spec.inputs = "IN.anim";
   spec.needs_output = false;  // --write-limits alone is enough
   spec.examples = {

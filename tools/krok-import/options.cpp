@@ -188,6 +188,9 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-import", options, declare, check, run);
   spec.summary = "Converts motion captures and characters to Krok's formats";
+  spec.details =
+      "Captures: BVH, Acclaim. Characters: glTF (meshopt and Draco, too), FBX, COLLADA, SMD, MS3D, "
+      "3DS, ASE, MD5.";
   spec.inputs = "IN";
   spec.needs_output = false;  // --model or --cam alone is enough
   spec.examples = {
@@ -207,13 +210,7 @@ ToolSpec make_spec() {
       {"krok-import captures --out-dir motions --keep-going",
        "all captures in a folder; run again, it processes only new, changed and failed files"}};
   // Only files with motion; an Acclaim skeleton or an MD5 mesh is read with the motion beside it.
-  std::vector<std::string> endings = io::motion_endings();
-  std::erase(endings, ".anim");
-  std::erase(endings, registry::kOtherAnimEnding);
-  for (const char* scene : {".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"}) {
-    endings.emplace_back(scene);
-  }
-  spec.batch = {std::move(endings), [options]() -> Result<std::string> {
+  spec.batch = {io::foreign_motion_endings(), [options]() -> Result<std::string> {
                   return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
                 }};
   return spec;

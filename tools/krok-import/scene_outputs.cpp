@@ -1,22 +1,246 @@
 #include <fmt/format.h>
 
-#include "capture/rest_frame.h"
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "capture/unique_names.h"
+#include "character/mesh.h"
+#include "core/file.h"
 #include "core/numbers.h"
+#include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
+#include "formats/character/character_format.h"
+#include "formats/container/packed_orientation.h"
 #include "formats/csv/csv_writer.h"
+#include "formats/material/material_format.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "nodes/moving.h"
+#include "nodes/scene.h"
+#include "roles/eyes.h"
+#include "scene/character.h"
+#include "scene/encoded_image.h"
+#include "tools/cli/file_name.h"
+#include "tools/cli/new_folders.h"
 #include "tools/cli/output_kind.h"
-#include "tools/krok-import/character_files.h"
+#include "tools/cli/output_set.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
 
 // Outputs of a scene import: the actor, its motions, a camera.
 
 namespace krok::cli::import {
+
+namespace {
+
+// Input of --character hero.character, which writes hero.model, hero.material with its images in
+// hero_textures/, hero_morphs.exr, and hero.character, which refers to them. Files without content
+// are not written.
+struct CharacterFiles {
+  std::string path;  // of the .character file
+  OrientationEncoding orientation = OrientationEncoding::xyz;
+  std::vector<float> weights;  // [targets] of the actor, at rest
+  Provenance provenance;       // of model and morph targets
+};
+
+// Summary for the report.
+struct AddedCharacter {
+  Character character;
+  std::size_t materials = 0, images = 0;
+};
+
+// Creates file names for images in their own folder.
+class ImageNames {
+ public:
+  // The image's name, or `fallback` ("Skin_normal") if it has none, with the extension of its kind.
+  // Always valid on common file systems and unique, ignoring case.
+  std::string make(const EncodedImage& image, ImageKind kind, const std::string& fallback);
+
+ private:
+  std::set<std::string> taken_;  // in lower case
+};
+
+// Removes the extension of an image file.
+std::string without_ending(const std::string& name) {
+  const std::string ending = extension(name);
+  for (const char* known : {".png", ".jpg", ".jpeg", ".jpe", ".tga", ".bmp", ".tif", ".dds"}) {
+    if (ending == known) return name.substr(0, name.size() - ending.size());
+  }
+  return name;
+}
+
+std::string ImageNames::make(const EncodedImage& image, ImageKind kind,
+                             const std::string& fallback) {
+  std::string path = image.path.empty() ? image.name : image.path;
+  std::replace(path.begin(), path.end(), '\\', '/');
+  std::string stem = without_ending(to_utf8(base_name(path)));
+  std::replace(stem.begin(), stem.end(), ' ', '_');
+  if (stem.empty()) stem = fallback;
+  stem = file_name_of(stem);
+  while (stem.ends_with('.')) stem.pop_back();
+  if (stem.empty()) stem = "picture";
+  std::string name = stem;
+  for (int number = 2; !taken_.insert(ascii_lower(name)).second; ++number) {
+    name = stem + "_" + std::to_string(number);
+  }
+  return name + std::string(extension_of(kind));
+}
+
+// For images without a name, in the order of textures_of().
+constexpr std::array<const char*, 5> kTextureNames = {"color", "surface", "normal", "occlusion",
+                                                      "emissive"};
+
+// A valid name made from `name`, see is_name.
+std::string usable_name(const std::string& name, const std::string& fallback) {
+  std::string text = name.substr(0, name.find('\0'));
+  if (text.size() > kLongestName) text = to_utf8(text.substr(0, kLongestName / 2));
+  return is_name(text) ? text : fallback;
+}
+
+class Adder {
+ public:
+  Adder(const CharacterFiles& files, const nodes::Scene& scene, character::SceneActor& actor,
+        OutputSet& outputs, NewFolders& folder)
+      : files_(files), scene_(scene), actor_(actor), outputs_(outputs), new_folders_(folder) {
+    const std::string end = extension(files.path);
+    stem_ = files.path.substr(0, files.path.size() - end.size());
+    name_ = base_name(stem_);
+  }
+
+  Result<AddedCharacter> add() {
+    name_parts();
+    // The model first: if its folder is missing, this fails before the image folder is created.
+    for (const auto step :
+         {&Adder::add_model, &Adder::add_materials, &Adder::add_morphs, &Adder::add_character}) {
+      if (Status status = (this->*step)(); !status) return status.error();
+    }
+    return std::move(added_);
+  }
+
+ private:
+  // Gives each part a unique name, so that the character can assign it a material.
+  void name_parts() {
+    std::vector<Model::Part>& parts = actor_.model.parts;
+    UniqueNames names;
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      parts[p].name = names.make(usable_name(parts[p].name, "part"));
+      const int material = actor_.part_materials[p];
+      parts[p].material =
+          material < 0 ? "" : scene_.materials[static_cast<std::size_t>(material)].name;
+      added_.character.parts.push_back({parts[p].name, parts[p].material});
+    }
+  }
+
+  Status add_text(const std::string& path, const Result<std::string>& text) {
+    if (!text) return Error(text.error()).in_file(path);
+    return outputs_.add(path, [&](OutputFile& file) { return file.write(*text); });
+  }
+
+  Status add_materials() {
+    std::vector<Material> used;
+    for (const Material& material : scene_.materials) {
+      const auto has = [&](const Model::Part& part) { return part.material == material.name; };
+      if (std::ranges::any_of(actor_.model.parts, has)) used.push_back(material);
+    }
+    if (used.empty()) return {};
+    for (Material& material : used) {
+      const auto textures = textures_of(material);
+      for (std::size_t t = 0; t < textures.size(); ++t) {
+        if (!*textures[t]) continue;
+        if (Status status = add_image(material.name + "_" + kTextureNames[t], *textures[t]);
+            !status) {
+          return status;
+        }
+      }
+    }
+    added_.materials = used.size();
+    added_.images = images_.size();
+    added_.character.materials = {name_ + ".material"};
+    return add_text(stem_ + ".material", material::write(used));
+  }
+
+  Status add_image(const std::string& fallback, Texture& texture) {
+    const auto [place, added] = images_.try_emplace(texture.image.get());
+    if (added) {
+      const EncodedImage& image = *texture.image;
+      const auto facts = image_info(image.bytes);
+      if (!facts) return facts.error();
+      const std::string file = image_names_.make(image, facts->kind, fallback);
+      if (Status status = new_folders_.make(stem_ + "_textures"); !status) return status;
+      const Status status = outputs_.add(stem_ + "_textures/" + file, [&](OutputFile& output) {
+        return output.write(image.bytes);
+      });
+      if (!status) return status;
+      place->second =
+          std::make_shared<const EncodedImage>(EncodedImage{{}, name_ + "_textures/" + file, {}});
+    }
+    texture.image = place->second;
+    return {};
+  }
+
+  Status add_model() {
+    added_.character.model = name_ + ".model";
+    actor_.model.provenance = files_.provenance;
+    return outputs_.add(stem_ + ".model", [&](OutputFile& file) {
+      return model::write(actor_.model, {.orientation = files_.orientation}, file);
+    });
+  }
+
+  Status add_morphs() {
+    MorphSet& morphs = actor_.morphs;
+    if (morphs.names.empty()) return {};
+    added_.character.morphs = name_ + "_morphs.exr";
+    morphs.provenance = files_.provenance;
+    for (std::size_t t = 0; t < morphs.names.size(); ++t) {
+      const float weight = t < files_.weights.size() ? files_.weights[t] : 0.0f;
+      const float most = Character::kMaxWeight;
+      added_.character.expressions.push_back(
+          {morphs.names[t], {}, std::clamp(weight, -most, most)});
+    }
+    return outputs_.add(stem_ + "_morphs.exr",
+                        [&](OutputFile& file) { return morph_exr::write(morphs, file); });
+  }
+
+  Status add_character() {
+    added_.character.name = usable_name(to_utf8(name_), "");
+    const Skeleton& skeleton = actor_.model.skeleton;
+    const EyeJoints eyes = find_eyes(skeleton);
+    for (const auto& [name, joint] : {std::pair{"left", eyes.left}, {"right", eyes.right}}) {
+      if (joint < 0) continue;
+      const auto j = static_cast<std::size_t>(joint);
+      added_.character.eyes.push_back(
+          {name, skeleton.names[j], skeleton.reference[j].position.cast<float>()});
+    }
+    return add_text(files_.path, character_file::write(added_.character));
+  }
+
+  const CharacterFiles& files_;
+  const nodes::Scene& scene_;
+  character::SceneActor& actor_;
+  OutputSet& outputs_;
+  NewFolders& new_folders_;
+  std::string stem_, name_;  // of all files, with and without folder
+  ImageNames image_names_;
+  std::map<const EncodedImage*, std::shared_ptr<const EncodedImage>>
+      images_;  // -> images with paths
+  AddedCharacter added_;
+};
+
+// Adds the files to `outputs`; `folder` is for the images. Parts of the actor get unique names and
+// the names of the scene's materials. Codes: those of the writers.
+Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
+                                     character::SceneActor& actor, OutputSet& outputs,
+                                     NewFolders& folder) {
+  return Adder(files, scene, actor, outputs, folder).add();
+}
+
+}  // namespace
 
 using registry::Kind;
 
@@ -39,10 +263,10 @@ Json to_json(const ChosenClip& clip) {
 Status SceneImporter::add_actor() {
   if (!wants_model() && !wants_character() && !wants_morphs()) return {};
   Diagnostics found;
-  auto actor = character::make_actor(scene_, evaluator_, *rig_, conversion_,
+  auto actor = character::make_actor(scene_, evaluator_, *rig_, place_.conversion,
                                      {.with_morphs = wants_morphs() || wants_character()}, found);
   if (!actor) return actor.error();
-  report_all(found);
+  context_.diagnose_in(path_, found);
   actor_ = std::move(*actor);
   if (wants_character() && actor_.model.triangles.empty()) {
     return missing(scene_.meshes.empty() ? "mesh" : "mesh with triangles", "--character",
@@ -59,7 +283,7 @@ Status SceneImporter::add_model() {
   if (!wants_model()) return {};
   Model& model = actor_.model;
   model.provenance = context_.provenance();
-  model.provenance.conversions = conversions_;
+  model.provenance.conversions = place_.conversions;
   report_model();
   return outputs_.add(options_.model, [&](OutputFile& file) {
     return model::write(model, {.orientation = options_.orientation}, file);
@@ -80,7 +304,7 @@ void SceneImporter::report_model() {
 
 Status SceneImporter::add_whole_character() {
   CharacterFiles files{options_.character, options_.orientation, {}, context_.provenance()};
-  files.provenance.conversions = conversions_;
+  files.provenance.conversions = place_.conversions;
   if (!actor_.morphs.names.empty()) {
     auto weights = character::make_weights(actor_, evaluator_, -1, {});
     if (!weights) return weights.error();
@@ -104,7 +328,7 @@ Status SceneImporter::add_morphs() {
   if (morphs.names.empty()) return missing("morph target", option, "");
   result_["morph_targets"] = morphs.names;
   morphs.provenance = context_.provenance();
-  morphs.provenance.conversions = conversions_;
+  morphs.provenance.conversions = place_.conversions;
   if (line_.empty()) {
     line_ = fmt::format("{}: {} of {}", base_name(path_),
                         counted(morphs.target_count(), "morph target"),
@@ -161,18 +385,13 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     }
     Stretches stretches;
     auto clip =
-        character::make_clip(evaluator_, *rig_, conversion_, chosen.animation, sampling->sampling,
-                             context_.jobs, context_.progress, found, &stretches);
+        character::make_motion(evaluator_, *rig_, roles_, place_, chosen.animation, *sampling,
+                               context_.jobs, context_.progress, found, &stretches);
     if (!clip) return clip.error();
-    report_all(found);
-    if (const RestPose rest = find_rest_pose(*clip, roles_); rest.first_frame_is_rest) {
-      warn("import-rest-frame", rest.reason + "; it was kept", "drop it with krok-edit --from 1f");
-    }
+    context_.diagnose_in(path_, std::exchange(found, {}));
+    auto conversions = std::move(clip->provenance.conversions);
     clip->provenance = context_.provenance();
-    clip->provenance.conversions = conversions_;
-    clip->provenance.conversions.push_back(
-        fmt::format("keys sampled at {} frames per second from {} s on",
-                    readable(1 / sampling->sampling.step), readable(sampling->keys_from)));
+    clip->provenance.conversions = std::move(conversions);
     const auto path = clip_path(context_.output, "-o", chosen, clips_.size() > 1, ".anim");
     if (!path) return path.error();
     if (Status status = check_output_kind(*path, "-o", Kind::anim); !status) return status;
@@ -191,7 +410,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     facts["output"] = *path;
     line_ = line_about(path_, frames, roles_);
   }
-  report_all(found);
+  context_.diagnose_in(path_, found);
   facts["source_rate"] = to_json(sampling->rate);
   facts["keys"] = {{"start", sampling->keys_from}, {"end", sampling->keys_to}};
   clip_facts_.push_back(std::move(facts));
@@ -203,12 +422,12 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
                                  const character::ChosenSampling& sampling) {
   Diagnostics found;
   auto track = character::make_camera(
-      scene_, evaluator_, camera_, conversion_, character::rotation_to_apply(scene_.space),
+      scene_, evaluator_, camera_, place_.conversion, character::rotation_to_apply(scene_.space),
       (camera_clip_ ? *camera_clip_ : clip).animation, sampling.sampling, found);
   if (!track) return track.error();
-  report_all(found);
+  context_.diagnose_in(path_, found);
   track->provenance = context_.provenance();
-  track->provenance.conversions = conversions_;
+  track->provenance.conversions = place_.conversions;
   const auto path = clip_path(options_.cam, "--cam", clip, clips_.size() > 1, ".cam");
   if (!path) return path.error();
   if (Status status = check_output_kind(*path, "--cam", Kind::cam); !status) return status;

@@ -21,11 +21,11 @@ void declare(CommandOptions& command, Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-info", options, declare, nullptr, run);
-  spec.summary =
-      "Prints the contents of files: motions (.anim), models (.model), cameras (.cam), step "
-      "libraries "
-      "(.steps), materials (.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, "
-      "3DS, ASE, MD5), captures (.bvh, .asf, .amc)";
+  spec.summary = "Prints the contents of files";
+  spec.details =
+      "Motions (.anim), models (.model), cameras (.cam), step libraries (.steps), materials "
+      "(.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5), "
+      "captures (.bvh, .asf, .amc).";
   spec.inputs = "FILE...";
   spec.examples = {
       {"krok-info walk.anim", "frames, rate, duration, size, provenance and joint roles"},

@@ -141,9 +141,8 @@ Status check(const Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-keys", options, declare, check, run);
-  spec.summary =
-      "Detects foot contacts and gait keytimes, shows them, and writes them to an editable file "
-      "beside the motion";
+  spec.summary = "Detects foot contacts and gait keytimes; shows and saves them";
+  spec.details = "They are written to an editable file beside the motion.";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";
   spec.examples = {
       {"krok-keys walk.anim", "prints what is detected, or walk.keys.json if that was edited"},

@@ -30,9 +30,8 @@ void declare(CommandOptions& command, Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-mix", options, declare, nullptr, run);
-  spec.summary =
-      "Bakes a timeline to a motion: a sequence of motions, transitions between them, layers on "
-      "top";
+  spec.summary = "Bakes a timeline of motions, transitions and layers to one motion";
+  spec.details = "Sequences, cross-fades, and layers for parts of the body.";
   spec.inputs = "IN.json";
   spec.examples = {
       {"krok-mix story.json -o story.anim --json=story.report.json",

@@ -245,8 +245,8 @@ Status check(const Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-morph", options, declare, check, run);
-  spec.summary =
-      "Packs morph targets into a float texture, unpacks and animates them; bakes key-frame meshes";
+  spec.summary = "Packs, unpacks and animates morph targets; bakes key-frame meshes";
+  spec.details = "Morph targets are packed into a float texture.";
   spec.inputs = "pack|unpack|info|bake|frames IN...";
   spec.examples = {
       {"krok-morph pack face.obj smile.obj blink.obj -o face.exr",

@@ -323,6 +323,7 @@ ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-plot", arguments, declare, understand, run);
   spec.summary = "Plots motions and numeric tables as charts in one SVG";
+  spec.details = "Contact sheets and strips of a motion are PNG.";
   spec.inputs = "IN...";
   spec.examples = {
       {"krok-plot walk.bvh -o walk.svg",

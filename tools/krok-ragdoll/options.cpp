@@ -198,8 +198,8 @@ Result<Options> understand(const Arguments& a) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-ragdoll", arguments, declare, understand, run);
-  spec.summary =
-      "Lets a motion's character fall: rigid bodies with joints take over from the motion";
+  spec.summary = "Lets a motion's character fall by physics";
+  spec.details = "Rigid bodies with joints take over from the motion.";
   spec.inputs = "IN.anim";
   spec.examples = {
       {"krok-ragdoll walk.anim --at 1.2s --push Spine2=120Ns,0,40Ns -o fall.anim",

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "core/index.h"
 #include "core/nearest_name.h"
@@ -13,20 +15,67 @@
 #include "formats/anim/anim.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/goals/goals.h"
+#include "formats/io/open_terrain.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/limits.h"
 #include "ragdoll/body_meshes.h"
+#include "ragdoll/world.h"
+#include "terrain/surface.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/fall.h"
-#include "tools/krok-ragdoll/ground.h"
 #include "tools/krok-ragdoll/push_table.h"
 #include "tools/krok-ragdoll/read_subject.h"
 
 namespace krok::cli::ragdoll {
 
 namespace {
+
+constexpr double kReach = 10;         // metres around the fall
+constexpr double kTolerance = 0.001;  // metres
+
+Result<std::vector<std::array<Vec3, 3>>> triangles_of(const Terrain& terrain, const Vec3& centre) {
+  // Around whole metres, so that the same ground has the same triangles wherever one falls there.
+  const Vec2 middle(std::round(centre.x()), std::round(centre.z()));
+  const Vec2 reach(kReach, kReach);
+  const auto surface = terrain::surface_of(terrain, {middle - reach, middle + reach, kTolerance});
+  if (!surface) return surface.error();
+  std::vector<std::array<Vec3, 3>> triangles;
+  for (const auto& corners : surface->triangles) {
+    std::array<Vec3, 3> triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle[k] = surface->positions[corners[k]].cast<double>();
+    }
+    triangles.push_back(triangle);
+  }
+  return triangles;
+}
+
+// The ground that --ground names, as io::open_terrain() opens it. What is not level becomes
+// triangles within 10 m of `centre`, to 1 mm (terrain::surface_of()). Codes: those of
+// open_terrain(); ragdoll-ground if there is none within that.
+Result<krok::ragdoll::Surroundings> open_surroundings(const std::string& ground, const Vec3& centre,
+                                                      ToolContext& context) {
+  const auto terrain = io::open_terrain(ground, {}, context);
+  if (!terrain) return terrain.error();
+  krok::ragdoll::Surroundings surroundings;
+  if (ground == "level" || ground.starts_with("level:")) {
+    surroundings.level = true;
+    const auto point = (*terrain)->at(centre.x(), centre.z());
+    surroundings.height = point ? point->height : 0;
+    return surroundings;
+  }
+  auto triangles = triangles_of(**terrain, centre);
+  if (!triangles) {
+    return Error("ragdoll-ground", "there is no ground within 10 m of where the fall begins",
+                 "krok-edit moves motions")
+        .in_file(ground);
+  }
+  surroundings.triangles = *std::move(triangles);
+  return surroundings;
+}
 
 constexpr double kTooFarBeyond = 45 * kRadiansPerDegree;
 

@@ -156,8 +156,8 @@ Result<Format> format_of(const Options& options, const std::string& output) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-render", arguments, declare, understand, run);
-  spec.summary =
-      "Renders films of motions and characters: mp4, gif and webp by ffmpeg, or PNG frames";
+  spec.summary = "Renders films of motions and characters: mp4, gif, webp, PNG frames";
+  spec.details = "ffmpeg makes mp4, gif and webp.";
   spec.inputs = "IN...";
   spec.examples = {
       {"krok-render walk.anim -o walk.mp4", "a generated body, followed by the camera"},
@@ -169,9 +169,7 @@ ToolSpec make_spec() {
        "a file per frame, filmed by a camera of krok-cam; needs no ffmpeg"},
       {"krok-render captures --out-dir films --format webp --keep-going",
        "a film of each capture in a folder"}};
-  std::vector<std::string> endings = io::motion_endings();
-  for (const char* scene : {".glb", ".gltf"}) endings.emplace_back(scene);
-  spec.batch = {std::move(endings), [arguments]() -> Result<std::string> {
+  spec.batch = {io::motion_endings(), [arguments]() -> Result<std::string> {
                   switch (arguments->format) {
                     case Format::gif:
                       return std::string(".gif");

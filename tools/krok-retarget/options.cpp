@@ -142,6 +142,7 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-retarget", options, declare, check, run);
   spec.summary = "Retargets a motion to another skeleton";
+  spec.details = "Feet stay where they stand, on any ground.";
   spec.inputs = "--onto IN.model|IN.character|IN.anim IN.anim";
   spec.needs_output = false;  // --save-alignment alone is enough
   spec.examples = {{"krok-retarget --onto hero.model walk.anim -o hero_walk.anim -v",

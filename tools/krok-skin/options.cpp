@@ -216,8 +216,8 @@ Result<double> pose_time(const Options& options, const Clip& clip) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-skin", options, declare, check, run);
-  spec.summary =
-      "Skins a mesh with a skeleton's motion and writes glTF, a point cache or OBJ files";
+  spec.summary = "Skins a mesh with a motion; writes glTF, a point cache or OBJ files";
+  spec.exit_no = "the file is written, but its error is larger than --reduce allows";
   spec.inputs = "IN.model IN.anim...";
   spec.examples = {
       {"krok-skin body.model walk.anim -o walk.glb", "a rig for a game engine or Blender"},

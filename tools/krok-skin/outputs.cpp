@@ -194,10 +194,10 @@ Status write_motion(const Subject& subject, ToolContext& context) {
   });
 }
 
-Status write_rig(const Options& chosen, const Subject& subject, ToolContext& context) {
+Result<bool> write_rig(const Options& chosen, const Subject& subject, ToolContext& context) {
   const auto rig = small_rig(chosen, subject, kMeshName, context);
   if (!rig) return rig.error();
-  return write_output(context, context.output, [&](OutputFile& file) {
+  Status status = write_output(context, context.output, [&](OutputFile& file) {
     gltf::WriteOptions options = write_options(subject, context);
     options.eyes = subject.eyes;
     if (rig->morphs.target_count() > 0) options.morphs = &rig->morphs;
@@ -206,6 +206,8 @@ Status write_rig(const Options& chosen, const Subject& subject, ToolContext& con
     options.compressed = chosen.compress;
     return gltf::write_rig(rig->model, rig->clips.named(), options, file);
   });
+  if (!status) return status.error();
+  return !rig->misses_tolerance;
 }
 
 Result<std::string> write_frames(const Subject& subject, const SkinBinding& binding,

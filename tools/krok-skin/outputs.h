@@ -21,8 +21,9 @@ Status write_pose(const Subject& subject, const SkinBinding& binding, double sec
 Status write_baked(const Subject& subject, const SkinBinding& binding, pc2::Up up,
                    ToolContext& context);
 
-// Joints, weights and the animations of all motions.
-Status write_rig(const Options& options, const Subject& subject, ToolContext& context);
+// Joints, weights and the animations of all motions. False if the error is larger than --reduce
+// allows.
+Result<bool> write_rig(const Options& options, const Subject& subject, ToolContext& context);
 
 // The same without the mesh.
 Status write_motion(const Subject& subject, ToolContext& context);

@@ -53,30 +53,40 @@ std::string clips_text(const Subject& subject) {
   return text + " frames";
 }
 
-// Writes the output; returns its names for display.
-Result<std::string> write(As as, const Options& options, const Subject& subject,
-                          ToolContext& context) {
+struct Written {
+  std::string names;  // for display
+  int exit_code = kExitDone;
+};
+
+Result<Written> write(As as, const Options& options, const Subject& subject, ToolContext& context) {
   if (as == As::rig || as == As::motion) {
     if (subject.clip.frame_count() == 0) {
       context.warn("skin-no-frames", "the motion has no frames; the rig is not animated");
     }
-    Status status =
-        as == As::rig ? write_rig(options, subject, context) : write_motion(subject, context);
-    if (!status) return status.error();
-    return context.output;
+    if (as == As::motion) {
+      if (Status status = write_motion(subject, context); !status) return status.error();
+      return Written{context.output};
+    }
+    const auto kept = write_rig(options, subject, context);
+    if (!kept) return kept.error();
+    return Written{context.output, *kept ? kExitDone : kExitNo};
   }
   const SkinBinding binding(subject.model, options.method);
-  if (as == As::frames) return write_frames(subject, binding, context);
+  if (as == As::frames) {
+    auto names = write_frames(subject, binding, context);
+    if (!names) return names.error();
+    return Written{*std::move(names)};
+  }
   if (as == As::baked) {
     Status status = write_baked(subject, binding, options.up, context);
     if (!status) return std::move(status.error()).in_file(motion_of(options));
-    return context.output;
+    return Written{context.output};
   }
   const auto seconds = pose_time(options, subject.clip);
   if (!seconds) return seconds.error();
   if (Status status = write_pose(subject, binding, *seconds, context); !status)
     return status.error();
-  return context.output;
+  return Written{context.output};
 }
 
 }  // namespace
@@ -99,13 +109,13 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto written = write(as, options, *subject, context);
   if (!written) return written.error();
   context.log(as == As::frames
-                  ? fmt::format("{}: {}", *written, counted(frames, "file"))
-                  : fmt::format("{}: {}, {}{}", *written,
+                  ? fmt::format("{}: {}", written->names, counted(frames, "file"))
+                  : fmt::format("{}: {}, {}{}", written->names,
                                 as == As::motion
                                     ? counted(subject->model.skeleton.joint_count(), "joint")
                                     : counted(subject->model.vertex_count(), "vertex", "vertices"),
                                 counted(frames, "frame"), clips_text(*subject)));
-  return kExitDone;
+  return written->exit_code;
 }
 
 }  // namespace krok::cli::skin

@@ -138,67 +138,116 @@ struct Reduction {
   std::size_t keys = 0, keys_before = 0;
 };
 
-Result<Reduction> reduce(const Model& model, const Model& shown,
-                         const gltf::MeshReduceOptions& options, int jobs,
-                         std::vector<gltf::JointTracks>& clips) {
-  Reduction all;
-  for (gltf::JointTracks& tracks : clips) {
-    const auto one = gltf::reduce_for_mesh(model, shown, options, jobs, tracks);
-    if (!one) return one.error();
-    all.keys += one->keys_after;
-    all.keys_before += one->keys_before;
-  }
-  return all;
+// What is left of a rig, as a viewer decodes it.
+struct Shown {
+  Model model;
+  MorphSet morphs;
+};
+
+// The meshes of a clip: shapes change in the first motion alone.
+gltf::TrackedMesh mesh_of(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
+                          std::size_t clip) {
+  if (clip > 0 || weights.values.empty()) return {model};
+  return {model, &morphs, &weights};
 }
 
-// The largest error on the mesh of all clips, and the clip's index.
-std::pair<MeshError, std::size_t> largest_error(const Model& model,
-                                                const std::vector<gltf::JointTracks>& full,
-                                                const Model& shown,
-                                                const std::vector<gltf::JointTracks>& clips,
-                                                int jobs) {
-  std::pair<MeshError, std::size_t> largest;
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    const MeshError error = gltf::mesh_error(model, full[i], shown, clips[i], jobs);
-    if (i == 0 || error.largest > largest.first.largest) largest = {error, i};
-  }
-  return largest;
-}
+class BitsLost {
+ public:
+  BitsLost(const SmallRig& rig, const MorphWeights& weights, int jobs)
+      : rig_(rig), full_(rig.clips.tracks), weights_(weights), jobs_(jobs) {}
 
-// The bits of weights whose error alone is less than `limit`, for vertices of the finest step.
-int weight_bits_within(double limit, const SmallRig& rig, bool filtered, int jobs) {
-  gltf::Quantization trial{.filtered = filtered};
-  const auto fits = [&](int bits) {
-    trial.weight_bits = bits;
-    const Model shown = gltf::quantized(rig.model, trial);
-    return largest_error(rig.model, rig.clips.tracks, shown, rig.clips.tracks, jobs).first.largest <
-           limit;
-  };
-  if (fits(8)) return 8;
-  if (!filtered) return 16;
-  int low = 8, high = 16;  // the first does not fit
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    (fits(middle) ? high : low) = middle;
+  Shown shown(const std::optional<gltf::Quantization>& quantization) const {
+    if (!quantization) return {rig_.model, rig_.morphs};
+    Model model = gltf::quantized(rig_.model, *quantization);
+    MorphSet morphs = gltf::quantized(rig_.morphs, rig_.model, model, *quantization);
+    return {std::move(model), std::move(morphs)};
   }
-  return high;
-}
 
-// How exactly vertices are stored, with a tolerance for them and their keys; 0 without one.
-gltf::Quantization quantization_for(double tolerance, const SmallRig& rig, bool filtered,
-                                    int jobs) {
-  gltf::Quantization result{.filtered = filtered};
-  if (filtered) result.coordinate_bits = 14;
-  if (tolerance == 0) return result;
-  // A vertex is off by half a step along each axis.
-  result.position_step = kVertexShare * tolerance * 2 / std::sqrt(3.0);
-  result.weight_bits = weight_bits_within(kVertexShare * tolerance, rig, filtered, jobs);
-  return result;
-}
+  Result<Reduction> reduce(const Shown& shown, const gltf::MeshReduceOptions& options,
+                           std::vector<gltf::JointTracks>& clips) const {
+    Reduction all;
+    for (std::size_t i = 0; i < clips.size(); ++i) {
+      const auto one = gltf::reduce_for_mesh(original(i), left(shown, i), options, jobs_, clips[i]);
+      if (!one) return one.error();
+      all.keys += one->keys_after;
+      all.keys_before += one->keys_before;
+    }
+    return all;
+  }
+
+  // The largest error on the mesh of all clips, and the clip's index.
+  std::pair<MeshError, std::size_t> largest(const Shown& shown,
+                                            const std::vector<gltf::JointTracks>& clips) const {
+    std::pair<MeshError, std::size_t> worst;
+    for (std::size_t i = 0; i < clips.size(); ++i) {
+      const MeshError error =
+          gltf::mesh_error(original(i), full_[i], left(shown, i), clips[i], jobs_);
+      if (i == 0 || error.largest > worst.first.largest) worst = {error, i};
+    }
+    return worst;
+  }
+
+  // How exactly vertices are stored, with a tolerance for them and their keys; 0 without one.
+  gltf::Quantization quantization_for(double tolerance, bool filtered) const {
+    gltf::Quantization result{.filtered = filtered};
+    if (filtered) result.coordinate_bits = 14;
+    if (tolerance == 0) return result;
+    // A vertex, and each of its targets, is off by half a step along each axis.
+    result.position_step = kVertexShare * tolerance * 2 / std::sqrt(3.0) / shapes_at_once();
+    result.weight_bits = weight_bits_within(kVertexShare * tolerance, filtered);
+    return result;
+  }
+
+ private:
+  gltf::TrackedMesh original(std::size_t clip) const {
+    return mesh_of(rig_.model, rig_.morphs, weights_, clip);
+  }
+  gltf::TrackedMesh left(const Shown& shown, std::size_t clip) const {
+    return mesh_of(shown.model, shown.morphs, weights_, clip);
+  }
+
+  // How many shapes' errors add up in a vertex: sum |w| of the targets, |1 - sum w| of the mesh.
+  double shapes_at_once() const {
+    const std::size_t targets = weights_.names.size();
+    double most = 1;
+    for (std::size_t i = 0; targets > 0 && i + targets <= weights_.values.size(); i += targets) {
+      double sum = 0, size = 0;
+      for (const float weight : std::span(weights_.values).subspan(i, targets)) {
+        sum += static_cast<double>(weight);
+        size += std::abs(static_cast<double>(weight));
+      }
+      most = std::max(most, size + std::abs(1 - sum));
+    }
+    return most;
+  }
+
+  // The bits of weights whose error alone is less than `limit`, for vertices of the finest step.
+  int weight_bits_within(double limit, bool filtered) const {
+    gltf::Quantization trial{.filtered = filtered};
+    const auto fits = [&](int bits) {
+      trial.weight_bits = bits;
+      return largest(shown(trial), full_).first.largest < limit;
+    };
+    if (fits(8)) return 8;
+    if (!filtered) return 16;
+    int low = 8, high = 16;  // the first does not fit
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      (fits(middle) ? high : low) = middle;
+    }
+    return high;
+  }
+
+  const SmallRig& rig_;
+  const std::vector<gltf::JointTracks> full_;
+  const MorphWeights& weights_;
+  int jobs_;
+};
 
 // Applies --reduce and --quantize, and reports the error of both.
-Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
-  const std::vector<gltf::JointTracks> full = rig.clips.tracks;
+Status lose_bits(const Options& options, const MorphWeights& weights, SmallRig& rig,
+                 ToolContext& context) {
+  const BitsLost lost(rig, weights, context.jobs);
   double tolerance = 0;
   if (!options.reduce.empty()) {
     const auto given = reduce_tolerance(options);
@@ -206,17 +255,14 @@ Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
     tolerance = *given;
   }
   const bool filtered = options.compress && options.quantize;
-  if (options.quantize) {
-    rig.quantization = quantization_for(tolerance, rig, filtered, context.jobs);
-  }
-  const Model shown = rig.quantization ? gltf::quantized(rig.model, *rig.quantization) : rig.model;
+  if (options.quantize) rig.quantization = lost.quantization_for(tolerance, filtered);
+  const Shown shown = lost.shown(rig.quantization);
   Json facts;
   std::string words;
   if (tolerance > 0) {
-    const auto reduction =
-        reduce(rig.model, shown,
-               {.tolerance = tolerance, .short_keys = options.quantize, .filtered = filtered},
-               context.jobs, rig.clips.tracks);
+    const auto reduction = lost.reduce(
+        shown, {.tolerance = tolerance, .short_keys = options.quantize, .filtered = filtered},
+        rig.clips.tracks);
     if (!reduction) return reduction.error();
     facts["keys"] = reduction->keys;
     facts["keys_before"] = reduction->keys_before;
@@ -231,12 +277,12 @@ Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
   for (const gltf::JointTracks& tracks : rig.clips.tracks) {
     stored.push_back(gltf::rounded(tracks, filtered));
   }
-  const auto [error, clip] = largest_error(rig.model, full, shown, stored, context.jobs);
+  const auto [error, clip] = lost.largest(shown, stored);
   facts["largest_error"] = error.largest;
   facts["vertex"] = error.vertex;
   facts["frame"] = 0.5 * error.moment;
   std::string where;
-  if (full.size() > 1) {
+  if (stored.size() > 1) {
     facts["clip"] = rig.clips.names[clip];
     where = rig.clips.names[clip] + ", ";
   }
@@ -245,10 +291,21 @@ Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
     facts["weight_bits"] = rig.quantization->weight_bits;
     facts["normal_error"] = gltf::normal_error(rig.model, *rig.quantization);
   }
+  rig.misses_tolerance = tolerance > 0 && error.largest > tolerance;
+  if (tolerance > 0) facts["within_tolerance"] = !rig.misses_tolerance;
   context.report.result["rig"] = std::move(facts);
   context.log(fmt::format("{}max error on the mesh {} (vertex {}, {}frame {})", words,
                           millimetres(error.largest), error.vertex, where,
                           readable(0.5 * error.moment)));
+  if (rig.misses_tolerance) {
+    context.warn(
+        "skin-tolerance",
+        fmt::format("--reduce {} asks for less error than the {} that remain with all keys",
+                    millimetres(tolerance), millimetres(error.largest)),
+        rig.quantization ? "leave out --quantize, which has 65535 steps for the mesh's "
+                           "longest side, or allow more"
+                         : "allow more: floats are not more exact");
+  }
   return {};
 }
 
@@ -285,7 +342,8 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
     drop_unused_sets(subject.materials, rig.model, context);
   }
   if (!options.reduce.empty() || options.quantize) {
-    if (Status status = lose_bits(options, rig, context); !status) return status.error();
+    if (Status status = lose_bits(options, subject.weights, rig, context); !status)
+      return status.error();
   }
   if (options.compress) gltf::order_for_compression(rig.model, rig.morphs, rig.quantization);
   return rig;

@@ -35,6 +35,7 @@ struct SmallRig {
   MorphSet morphs;
   Clips clips;
   std::optional<gltf::Quantization> quantization = {};
+  bool misses_tolerance = false;  // of --reduce, whatever is kept
 };
 
 // Reports the error of what is lost. Warns where the file needs a second set of influences. Codes:

@@ -56,7 +56,7 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-synth", options, declare, check, run);
   spec.exit_no = "with --strict: a motion differs from what was asked by more than the tolerance";
-  spec.summary = "Makes a motion with given parameters from a step library";
+  spec.summary = "Makes motions for given parameters from a step library";
   spec.inputs = "IN.steps";
   spec.examples = {{"krok-synth walking.steps --set length=70cm --set turn=15deg -o step.anim",
                     "one step of that length and turn; prints its measured parameters"},

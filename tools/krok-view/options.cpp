@@ -72,6 +72,7 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-view", options, declare, nullptr, run);
   spec.summary = "Makes an HTML page that plays motions offline in any browser";
+  spec.details = "It shows characters and cameras, too, on any ground with footprints.";
   spec.inputs = "IN...";
   spec.examples = {{"krok-view walk.bvh -o walk.html", "a capture, with a generated body"},
                    {"krok-view before.anim after.anim --difference -o change.html",

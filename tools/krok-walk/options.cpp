@@ -238,7 +238,7 @@ Result<Options> understand(const Arguments& a) {
 ToolSpec make_spec() {
   const auto arguments = std::make_shared<Arguments>();
   ToolSpec spec = spec_of("krok-walk", arguments, declare, understand, run);
-  spec.summary = "Walks a character along footprints, along a path or to goals, on any ground";
+  spec.summary = "Walks a character along footprints, a path or to goals, on any ground";
   spec.inputs = "IN.steps...";
   spec.examples = {
       {"krok-walk walking.steps --to 2m,6m -o walk.anim", "to a place on level ground"},

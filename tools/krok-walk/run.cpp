@@ -4,26 +4,182 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "formats/anim/anim.h"
+#include "formats/io/inputs.h"
+#include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
+#include "formats/io/open_scene.h"
 #include "formats/io/open_terrain.h"
 #include "formats/keys/keys.h"
+#include "formats/path/path_format.h"
 #include "formats/prints/prints.h"
+#include "formats/registry/registry.h"
 #include "formats/steps/steps.h"
+#include "gait/path.h"
+#include "gait/plan_prints.h"
+#include "gait/print.h"
+#include "gait/step_library.h"
+#include "gait/usual_step.h"
 #include "gait/walk.h"
+#include "motion/ground_frame.h"
+#include "nodes/evaluate.h"
+#include "roles/roles.h"
+#include "terrain/terrain.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-walk/chosen_prints.h"
+#include "tools/krok-walk/options.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/walk_page.h"
 
 namespace krok::cli::walk {
 
 namespace {
+
+constexpr double kRate = 60;           // places per second
+constexpr double kMaxPlaces = 1e6;     // of a node
+constexpr double kMinTravel = 0.05;    // metres from the first place
+constexpr double kStrideWindow = 1.1;  // seconds, see gait::way_of()
+
+// The places of all nodes: a clip of joints without parents.
+Clip places_of(const nodes::Scene& scene, const nodes::Evaluator& evaluator) {
+  Clip clip;
+  for (const nodes::Node& node : scene.nodes) {
+    clip.skeleton.add(node.name, Skeleton::kNoParent, {});
+  }
+  const std::vector<double> times = evaluator.key_times(0);
+  const double length = times.empty() ? 0 : times.back() - times.front();
+  clip.rate = std::min(kRate, kMaxPlaces / std::max(length * double(scene.nodes.size()), 1e-9));
+  clip.resize(static_cast<int>(std::floor(length * clip.rate)) + 2);
+  nodes::Evaluation state;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const double time = times.empty() ? 0 : std::min(times.front() + f / clip.rate, times.back());
+    evaluator.place_nodes(0, time, state);
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+      clip.frame_positions(f)[n] = state.node_to_world[n].block<3, 1>(0, 3).cast<float>();
+    }
+  }
+  return clip;
+}
+
+bool goes_anywhere(const Clip& clip, int node) {
+  const Vec3f from = clip.frame_positions(0)[at(node)];
+  for (int f = 1; f < clip.frame_count(); ++f) {
+    const Vec3f way = clip.frame_positions(f)[at(node)] - from;
+    if (std::hypot(way.x(), way.z()) > kMinTravel) return true;
+  }
+  return false;
+}
+
+// The way over the ground of an animated node of a glTF file, or of another scene, in its first
+// animation. Without a name, of the first node that goes anywhere. Joints of skins sway with steps,
+// which is taken out. Codes: those of reading the scene; path-node if there is no such node, or it
+// stays where it is.
+Result<std::vector<gait::PathPoint>> way_of_node(const InputFile& file, const std::string& name,
+                                                 io::Inputs& inputs) {
+  auto scene = io::open_scene(file, inputs);
+  if (!scene) return std::move(scene).error();
+  const auto fail = [&](std::string message, const char* hint) {
+    return Error("path-node", std::move(message), hint).in_file(file.path());
+  };
+  if (scene->animations.empty()) {
+    return fail("nothing is animated, so that no node has a way",
+                "animate the node that goes ahead");
+  }
+  const auto evaluator = nodes::Evaluator::create(*scene);
+  if (!evaluator) return Error(evaluator.error()).in_file(file.path());
+  const Clip clip = places_of(*scene, *evaluator);
+  int found = -1;
+  for (int node = 0; node < clip.joint_count() && found < 0; ++node) {
+    const bool named = clip.skeleton.names[at(node)] == name;
+    if (name.empty() ? goes_anywhere(clip, node) : named) found = node;
+  }
+  if (found < 0 && !name.empty()) {
+    return fail(fmt::format("no node is called '{}'", shown(name)), "krok-info lists the nodes");
+  }
+  if (found < 0 || !goes_anywhere(clip, found)) {
+    return fail(
+        found < 0 ? "no node goes anywhere" : fmt::format("'{}' stays where it is", shown(name)),
+        "name an animated node with --path-id");
+  }
+  const bool sways = std::ranges::any_of(scene->skins, [&](const nodes::Skin& skin) {
+    return std::ranges::find(skin.joints, found) != skin.joints.end();
+  });
+  return gait::way_of(clip, found, sways ? kStrideWindow : 0);
+}
+
+Result<std::vector<gait::PathPoint>> read_way(const Options& options, ToolContext& context) {
+  const auto file = context.open_input(options.path);
+  if (!file) return file.error();
+  const registry::Kind kind = registry::kind_of_content(file->bytes());
+  if (kind == registry::Kind::unknown) {
+    return path_file::read(file->text(), options.path, {options.path_scale, options.path_id});
+  }
+  if (io::is_scene(kind)) return way_of_node(*file, options.path_id, context);
+  const auto clip = io::open_motion(*file, context);
+  if (!clip) return clip.error();
+  if (options.path_id.empty()) {
+    return gait::way_of(*clip, carrying_joint(find_roles(clip->skeleton)));
+  }
+  const int joint = clip->skeleton.find(options.path_id);
+  if (joint < 0) {
+    return Error("path-node", fmt::format("no joint is called '{}'", shown(options.path_id)),
+                 "krok-info lists the joints")
+        .in_file(options.path);
+  }
+  return gait::way_of(*clip, joint);
+}
+
+Result<gait::Path> make_path(const Options& options, bool backward, ToolContext& context) {
+  if (options.path.empty()) {
+    const double heading = options.heading + (backward ? kPi : 0);
+    return gait::Path::create(
+        gait::way_to_goals(options.from.x(), options.from.y(), heading, options.goals));
+  }
+  const auto way = read_way(options, context);
+  if (!way) return way.error();
+  auto path = gait::Path::create(*way);
+  if (!path) return std::move(path.error()).in_file(options.path);
+  return path;
+}
+
+// The footprints to walk on: those of a file, or planned along a way or to goals.
+Result<std::vector<gait::Print>> choose_prints(const Options& options,
+                                               std::span<const gait::StepLibrary> libraries,
+                                               const Terrain& ground, ToolContext& context) {
+  if (!options.prints.empty()) {
+    const auto file = context.open_input(options.prints);
+    if (!file) return file.error();
+    return prints::read(file->text(), options.prints);
+  }
+  auto usual = gait::usual_steps(libraries);
+  if (!usual) return usual.error();
+  const auto path = make_path(options, usual->backward, context);
+  if (!path) return path.error();
+  gait::PlanOptions& plan = *usual;
+  plan.first = options.first;
+  if (options.step_width) plan.step_width = *options.step_width;
+  if (options.step_length) {
+    plan.step_length = *options.step_length;
+    plan.max_step = std::max(plan.max_step, plan.step_length);
+    plan.min_step = std::min(plan.min_step, plan.step_length);
+  }
+  const auto planned = gait::plan_prints(*path, ground, plan);
+  if (!planned) return Error(planned.error()).in_file(options.path);
+  context.report.result["way"] = {{"length", path->length()},
+                                  {"step_length", plan.step_length},
+                                  {"step_width", plan.step_width},
+                                  {"fitted_to_ground", planned->fitted_to_ground}};
+  return planned->prints;
+}
 
 Result<std::vector<gait::StepLibrary>> open_libraries(const Options& options,
                                                       ToolContext& context) {

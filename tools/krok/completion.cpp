@@ -8,6 +8,10 @@ namespace krok::cli {
 
 namespace {
 
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
 struct CompletedOption {
   std::vector<std::string> names;
   bool takes_value = false;
@@ -15,23 +19,13 @@ struct CompletedOption {
   std::string description;
 };
 
-std::vector<std::string> split(std::string_view text, char at) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(at, begin), text.size());
-    parts.emplace_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
-}
-
 // The options of a verb; positionals, which have no name, are left out.
 std::vector<CompletedOption> options_of(const CompletedVerb& verb) {
   std::vector<CompletedOption> options;
-  for (const std::string& line : split(verb.options, '\n')) {
-    const auto fields = split(line, '\t');
-    if (fields.size() < 5 || fields[0].empty()) continue;
-    CompletedOption option{split(fields[0], ' '), fields[1] == "V", fields[3], fields[4]};
+  for (const OptionFacts& facts : verb.options) {
+    if (facts.names.empty()) continue;
+    CompletedOption option{facts.names, facts.takes_value, joined(facts.words), facts.description};
+    std::ranges::replace(option.description, '\n', ' ');
     // The first sentence, as lists of completions are narrow.
     for (const char* end : {". ", ": ", "; "}) {
       option.description = option.description.substr(0, option.description.find(end));

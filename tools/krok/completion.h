@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/result.h"
+#include "tools/cli/command_options.h"
 
 // Completion of krok and its tools in shells, generated from the options that the tools declare.
 
@@ -14,7 +14,7 @@ namespace krok::cli {
 struct CompletedVerb {
   std::string name;  // "skin"
   std::string does;
-  std::string options;  // what krok-skin --list-options prints
+  std::vector<OptionFacts> options;
 };
 
 enum class Shell : unsigned char { bash, zsh, fish };

@@ -79,6 +79,31 @@ TEST_F(SkinMorphs, PointCachesAndObjFilesHoldTheSameVertices) {
   expect_same("f15.glb", "bent.glb");
 }
 
+// The error of each target that is active adds up; krok-diff evaluates the files as a viewer does.
+TEST_F(SkinMorphs, TheErrorOfSmallFilesIsThatOfTheMovedShapes) {
+  tool("krok-skin", {"in.model", "in.anim", "--as", "frames", "--every", "3", "-o", "f.obj"});
+  tool("krok-morph", {"pack", "in.model", "f_0000.obj", "f_0003.obj", "f_0006.obj", "f_0009.obj",
+                      "f_0012.obj", "-o", "five.exr"});
+  put("five.csv",
+      "frame,time,f_0000,f_0003,f_0006,f_0009,f_0012\n0,0,1,-1,1,-1,1\n1,0.5,2,-2,2,-2,1\n");
+  const auto skin = [&](std::vector<std::string> more, int expected) {
+    more.insert(more.begin(), {"in.model", "in.anim", "--morph", "five.exr", "--weights",
+                               "five.csv", "--json", "-q"});
+    return nlohmann::json::parse(tool("krok-skin", more, expected).out)["result"];
+  };
+  skin({"-o", "full.glb"}, 0);
+  for (const char* reduce : {"1mm", "0.3mm", "0.01mm"}) {
+    const bool can = reduce != std::string("0.01mm");
+    const auto rig =
+        skin({"-o", "small.glb", "--reduce", reduce, "--quantize"}, can ? 0 : 1)["rig"];
+    EXPECT_EQ(rig["within_tolerance"], can);
+    const auto seen = nlohmann::json::parse(
+        tool("krok-diff", {"full.glb", "small.glb", "--match", "order", "--json"}, 1).out);
+    const double largest = seen["result"]["measures"][0]["largest"];
+    EXPECT_NEAR(largest, rig["largest_error"].get<double>(), 0.05 * largest) << reduce;
+  }
+}
+
 TEST_F(SkinMorphs, WhatCannotBeIsToldAndNothingIsWritten) {
   put("wrong.json", weights("[0, 1]", "bend"));
   const std::string told =

@@ -120,6 +120,62 @@ TEST(GoalMotion, FollowsAJointThatMovesWithTheSolution) {
   EXPECT_LT((place(made->clip, 30, "RightHand") - wanted).norm(), 1e-3);
 }
 
+// Goals that move each other: each hand seeks the other one, which the trunk carries, too, and the
+// head looks at one of them. What is reported is what is in the motion, whether reached or not.
+TEST(GoalMotion, ReportsWhatIsInTheMotionWhereGoalsMoveEachOther) {
+  const Clip clip = calm_human(20);
+  const auto joint = [&](const char* name) { return clip.skeleton.find(name); };
+  std::vector<KeyedGoal> goals = {reach_of(clip, "LeftHand", 0.0, Vec3(0, 0.05, 0)),
+                                  reach_of(clip, "RightHand", 0.0, Vec3(0, 0.05, 0)),
+                                  reach_of(clip, "Head", 0.0, Vec3::Zero()),
+                                  reach_of(clip, "LeftHand", 0.0, Vec3::Zero())};
+  goals[0].relative_to = joint("RightHand");
+  goals[1].relative_to = joint("LeftHand");
+  goals[1].goal.kind = Goal::Kind::pose;
+  goals[2].relative_to = joint("RightHand");
+  goals[2].goal.kind = Goal::Kind::look_at;
+  goals[3].goal.kind = Goal::Kind::orientation;
+  goals[3].relative_to = joint("Spine1");
+  for (KeyedGoal& goal : goals) goal.to = 1.0;
+  for (const Method method : {Method::least_squares, Method::ccd, Method::two_bone}) {
+    GoalMotionOptions options;
+    options.solver.method = method;
+    for (std::size_t first = 0; first < goals.size(); ++first) {
+      const std::span<const KeyedGoal> some(goals.data() + first,
+                                            std::min<std::size_t>(2, 4 - first));
+      const auto made = apply_goals(clip, some, {}, options);
+      ASSERT_TRUE(made.ok());
+      for (std::size_t g = 0; g < some.size(); ++g) {
+        for (const GoalFrame& frame : made->goals[g]) {
+          std::vector<Transform> pose(clip.skeleton.names.size());
+          made->clip.get_pose(frame.frame, pose);
+          const Goal sought = goal_in_frame(some[g], made->clip, frame.frame);
+          const Residual seen =
+              residuals({&sought, 1}, clip.skeleton.parents, pose, options.solver)[0];
+          EXPECT_NEAR(seen.distance, frame.residual.distance, 2e-6) << first << " " << g;
+          EXPECT_NEAR(seen.angle, frame.residual.angle, 2e-5) << first << " " << g;
+        }
+      }
+    }
+  }
+}
+
+// The derivatives by the joints that move an anchor: a hand seeks the other one, which hangs on the
+// same trunk, to a thousandth of a millimetre.
+TEST(GoalMotion, ReachesAJointThatTheTrunkMoves) {
+  const Clip clip = calm_human(60);
+  KeyedGoal goal = reach_of(clip, "LeftHand", 0.0, Vec3::Zero());
+  goal.relative_to = clip.skeleton.find("RightForeArm");
+  goal.to = 2.0;
+  GoalMotionOptions options;
+  options.solver.distance = 1e-6;
+  const auto made = apply_goals(clip, {&goal, 1}, {}, options);
+  ASSERT_TRUE(made.ok());
+  for (int f = 0; f < 60; ++f) {
+    EXPECT_LT((place(made->clip, f, "LeftHand") - place(made->clip, f, "RightForeArm")).norm(), 3e-6);
+  }
+}
+
 TEST(GoalMotion, FollowsAJointOfAnotherMotion) {
   const Clip clip = calm_human(60);
   Clip other = krok::test::swinging_human(30);  // 30 Hz: sampled between its frames

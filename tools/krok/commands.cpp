@@ -1,0 +1,63 @@
+#include "tools/krok/commands.h"
+
+#include <algorithm>
+#include <array>
+
+#include "tools/batch/batch.h"
+#include "tools/krok/krok.h"
+#include "tools/krok/program.h"
+
+// Verbs, and the namespaces of their tools. OWN: see Command::own_program.
+#define KROK_COMMANDS(ROW, OWN) \
+  ROW("import", import)         \
+  ROW("export", exporting)      \
+  ROW("info", info)             \
+  ROW("body", body)             \
+  ROW("skin", skin)             \
+  ROW("morph", morph)           \
+  ROW("retarget", retarget)     \
+  ROW("ik", ik)                 \
+  ROW("ragdoll", ragdoll)       \
+  ROW("edit", edit)             \
+  ROW("keys", keys)             \
+  ROW("blend", blend)           \
+  ROW("mix", mix)               \
+  ROW("cam", cam)               \
+  OWN("fit", fit)               \
+  ROW("synth", synth)           \
+  ROW("walk", walk)             \
+  ROW("view", view)             \
+  ROW("render", film)           \
+  ROW("plot", plot)             \
+  ROW("diff", diff)
+
+namespace krok::cli {
+
+#define KROK_DECLARE(verb, space) \
+  namespace space {               \
+  ToolSpec make_spec();           \
+  }
+KROK_COMMANDS(KROK_DECLARE, KROK_DECLARE)
+#undef KROK_DECLARE
+
+std::span<const Command> commands() {
+#define KROK_ROW(verb, space) Command{verb, space::make_spec, false},
+#define KROK_OWN(verb, space) Command{verb, space::make_spec, true},
+  static constexpr auto kCommands = std::to_array<Command>({KROK_COMMANDS(KROK_ROW, KROK_OWN)});
+#undef KROK_ROW
+#undef KROK_OWN
+  return kCommands;
+}
+
+const Command* find_command(std::string_view verb) {
+  const auto found = std::ranges::find(commands(), verb, &Command::verb);
+  return found == commands().end() ? nullptr : &*found;
+}
+
+int run_program(const char* verb, int argc, char** argv) {
+  const Command* command = find_command(verb);
+  return command != nullptr ? batch::run_tool(command->make_spec, argc, argv)
+                            : run_krok(argc, argv);
+}
+
+}  // namespace krok::cli

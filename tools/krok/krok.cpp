@@ -1,0 +1,160 @@
+#include "tools/krok/krok.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/file.h"
+#include "core/nearest_name.h"
+#include "tools/cli/command_line.h"
+#include "tools/cli/report.h"
+#include "tools/cli/tool.h"
+#include "tools/krok/commands.h"
+#include "tools/krok/completion.h"
+#include "tools/krok/program.h"
+
+namespace krok::cli {
+
+namespace {
+
+std::string krok_help() {
+  std::string text =
+      "Usage: krok VERB [options] ...\n       krok help VERB\n\n"
+      "Motion processing, from motion capture to character animation.\n\nVerbs:\n";
+  for (const Command& command : commands()) {
+    text += fmt::format("  {:<10}{}\n", command.verb, command.make_spec().summary);
+  }
+  text +=
+      "\nOther:\n  help VERB           Print the help of a verb\n"
+      "  completion SHELL    Print completion for bash, zsh or fish\n";
+  text +=
+      "\nExamples:\n"
+      "  krok import walk.bvh -o walk.anim\n      converts a capture to Krok's format\n"
+      "  krok skin hero.model walk.anim -o walk.glb\n      an animated character\n"
+      "  source <(krok completion bash)\n      completes verbs, options and their values\n"
+      "\nExit codes:\n  those of the verb; 2 for an unknown verb\n";
+  return text;
+}
+
+std::vector<std::string> verb_names() {
+  std::vector<std::string> names;
+  for (const Command& command : commands()) names.emplace_back(command.verb);
+  return names;
+}
+
+// The folder of this program; empty if it is not known.
+std::string own_folder() {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? std::string() : self.parent_path().string();
+}
+
+int fail(const std::string& message, const std::string& hint) {
+  fmt::print(stderr, "krok: error: {} [usage]\n  hint: {}\n", message, hint);
+  return kExitTrouble;
+}
+
+std::string hint_for(const std::string& verb) {
+  // A usual word for what two verbs do.
+  if (verb == "convert" || verb == "conv") {
+    return "krok import reads captures and characters, krok export writes BVH, glTF and tables";
+  }
+  const std::string near = verb.empty() ? "" : nearest_name(verb, verb_names());
+  return near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near);
+}
+
+// Where --json asks for a report: a path, "-", or empty.
+std::string report_path(int argc, char** argv) {
+  constexpr std::string_view kOption = "--json";
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view one = argv[i];
+    if (one == kOption) return "-";
+    if (one.starts_with("--json=")) return std::string(one.substr(kOption.size() + 1));
+  }
+  return {};
+}
+
+Status write_report(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    fmt::print("{}", text);
+    return {};
+  }
+  if (!only_a_report_stands_at(path)) return {};
+  auto file = OutputFile::create(path);
+  if (!file) return file.error();
+  if (Status status = file->write(text); !status) return status;
+  return file->commit();
+}
+
+// A script that asked for a report gets it from here, too.
+int refuse_verb(const std::string& verb, int argc, char** argv) {
+  const std::string message =
+      verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb);
+  const std::string hint = hint_for(verb);
+  if (const std::string path = report_path(argc, argv); !path.empty()) {
+    Report report;
+    report.tool = "krok";
+    report.version = version();
+    report.issues.push_back(Error("usage", message, hint));
+    const Status status = write_report(path, report.to_json().dump(2) + "\n");
+    if (!status) fail(status.error().message, status.error().hint);
+  }
+  return fail(message, hint);
+}
+
+int complete(const std::string& shell) {
+  if (shell != "bash" && shell != "zsh" && shell != "fish") {
+    return fail(shell.empty() ? "no shell given" : fmt::format("unknown shell '{}'", shell),
+                "krok completion bash, zsh or fish");
+  }
+  std::vector<CompletedVerb> verbs;
+  for (const Command& command : commands()) {
+    const ToolSpec spec = command.make_spec();
+    verbs.push_back({std::string(command.verb), spec.summary,
+                     CommandLine(spec, CommandLine::Form::single).options()});
+  }
+  const Shell chosen = shell == "bash" ? Shell::bash : shell == "zsh" ? Shell::zsh : Shell::fish;
+  return print_and_end("krok", completion_script(chosen, verbs));
+}
+
+// A verb whose program is not this library's runs in its place.
+int run_own_program(const std::string& verb, char** argv) {
+  const std::string program = "krok-" + verb, beside = own_folder() + "/" + program;
+  if (execv(beside.c_str(), argv) != 0) execvp(program.c_str(), argv);
+  return fail(fmt::format("cannot run {}: {}", program, std::strerror(errno)),
+              "it must be in the same folder as krok");
+}
+
+}  // namespace
+
+int run_krok(int argc, char** argv) {
+  std::vector<char*> arguments(argv + std::min(argc, 1), argv + argc);
+  std::string help = "--help";
+  const auto is = [&](std::size_t i, std::string_view word) {
+    return i < arguments.size() && arguments[i] == word;
+  };
+  // `krok help VERB` and `krok VERB help` are `krok VERB --help`.
+  if (is(0, "help") && arguments.size() > 1) std::swap(arguments[0], arguments[1]);
+  if (arguments.size() == 2 && is(1, "help")) arguments[1] = help.data();
+  const std::string verb = arguments.empty() ? "" : arguments[0];
+  if (verb == "--help" || verb == "-h" || verb == "help") return print_and_end("krok", krok_help());
+  if (verb == "--version") return print_and_end("krok", fmt::format("krok {}\n", version()));
+  if (verb == "completion") return complete(arguments.size() > 1 ? arguments[1] : "");
+  const Command* command = find_command(verb);
+  if (command == nullptr) return refuse_verb(verb, argc, argv);
+  std::string name = "krok-" + verb;
+  arguments[0] = name.data();
+  arguments.push_back(nullptr);
+  if (command->own_program) return run_own_program(verb, arguments.data());
+  return run_program(verb.c_str(), static_cast<int>(arguments.size()) - 1, arguments.data());
+}
+
+}  // namespace krok::cli
