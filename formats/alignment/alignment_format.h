@@ -25,4 +25,7 @@ Result<AlignedPoses> read(std::string_view text, const Skeleton& source, const S
 // A file that read() gives the same poses from, bit for bit.
 std::string write(const AlignedPoses& poses, const Skeleton& source, const Skeleton& target);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::alignment

@@ -3,240 +3,163 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
-#include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
-#include "formats/json/members.h"
-#include "scene/frame_moment.h"
+#include "formats/json/fields.h"
 
 namespace krok::camera_keys {
 
 namespace {
 
-using json::Value;
-using Kind = Value::Kind;
+using json::Given;
 
-constexpr std::string_view kSchema = "krok.camera-keys/1";
-constexpr std::size_t kMaxKeys = 100'000;
-constexpr double kFurthest = 1e6;       // metres
-constexpr double kLatest = 1e6;         // seconds
 constexpr double kSensorHeight = 24.0;  // millimetres
 constexpr double kNearest = 1e-6;       // metres, min distance of camera and target
 
-class Reader {
- public:
-  explicit Reader(std::string_view text) : text_(text), in_(text, "camera-keys") {}
+// Metres of a unit by its name.
+json::Kind<double> length_unit() {
+  return json::kind<double>(
+      R"({"enum": ["m", "dm", "cm", "mm", "um", "in", "ft"]})",
+      [](const Given& given, double& to) -> Status {
+        if (Status status = given.is(json::Value::Kind::string); !status) return status;
+        const std::string& name = given.value.text;
+        const bool letters =
+            !name.empty() && std::ranges::all_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
+        const auto unit = parse_length("1" + name);
+        if (!letters || !unit) {
+          return given.wrong(fmt::format("'{}' is not a length unit", shown(name)),
+                             "use m, cm, mm, in or ft");
+        }
+        to = *unit;
+        return {};
+      });
+}
 
-  Result<CameraKeyFile> read() {
-    const auto root = json::parse(text_);
-    if (!root) return root.error();
-    if (Status status = in_.only(*root, kWhole,
-                                 {"schema", "comment", "length_unit", "angle_unit", "rate",
-                                  "between", "tension", "closed", "keys"});
-        !status) {
-      return status.error();
-    }
-    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
-    for (const auto part :
-         {&Reader::read_units, &Reader::read_defaults, &Reader::read_keys, &Reader::check_closed}) {
-      if (Status status = (this->*part)(*root); !status) return status.error();
-    }
-    return std::move(file_);
+struct File {
+  CameraKey usual = {};
+  std::optional<double> rate = {};  // if the file has one
+  double metres = 1, radians = kRadiansPerDegree;
+
+  // In the file's unit of angles.
+  json::Kind<double> angle(double min, double max) const {
+    return json::kind<double>(R"({"type": "number"})", [=, this](const Given& given, double& to) {
+      Status status = json::number(min / radians, max / radians).read(given, &to);
+      to *= radians;
+      return status;
+    });
   }
 
- private:
-  static constexpr std::string_view kWhole = "the file";
-
-  Status read_units(const Value& root) {
-    const auto length = in_.find(root, kWhole, "length_unit", Kind::string);
-    if (!length) return length.error();
-    if (*length != nullptr) {
-      const std::string& name = (*length)->text;
-      const bool letters =
-          !name.empty() && std::ranges::all_of(name, [](char c) { return c >= 'a' && c <= 'z'; });
-      const auto unit = parse_length("1" + name);
-      if (!letters || !unit) {
-        return in_.wrong(**length, fmt::format("'{}' is not a length unit", shown(name)),
-                         "use m, cm, mm, in or ft");
-      }
-      metres_ = *unit;
-    }
-    const auto angle = in_.choice(root, kWhole, "angle_unit", {"deg", "rad"});
-    if (!angle) return angle.error();
-    if (*angle && **angle == 1) radians_ = 1;
-    return {};
+  static json::Kind<double> focal_length() {
+    return json::kind<double>(R"({"type": "number", "minimum": 0.1, "maximum": 1e5})",
+                              [](const Given& given, double& to) {
+                                Status status = json::number(0.1, 1e5).read(given, &to);
+                                to = 2 * std::atan(kSensorHeight / 2 / to);
+                                return status;
+                              });
   }
 
-  Status read_defaults(const Value& root) {
-    if (root.find("rate") != nullptr) {
-      const auto rate = in_.number(root, kWhole, "rate", kMinRate, kMaxRate);
-      if (!rate) return rate.error();
-      rate_ = *rate;
-      file_.rate = *rate;
-    }
-    const auto closed = in_.find(root, kWhole, "closed", Kind::boolean);
-    if (!closed) return closed.error();
-    file_.camera.closed = *closed != nullptr && (*closed)->truth;
-    return read_join(root, kWhole, usual_);
+  static Status one_direction(const Given& key, CameraKey&) {
+    if (key.has("target") != key.has("orientation")) return {};
+    return key.structure(fmt::format("{} needs one of \"target\" and \"orientation\"", key.what));
   }
 
-  // Optional "between" and "tension".
-  Status read_join(const Value& object, std::string_view what, CameraKey& key) const {
-    static constexpr std::array kJoins = {Between::smooth, Between::linear, Between::ease,
-                                          Between::step};
-    const auto between = in_.choice(object, what, "between", {"smooth", "linear", "ease", "step"});
-    if (!between) return between.error();
-    if (*between) key.between = kJoins[**between];
-    if (object.find("tension") == nullptr) return {};
-    const auto tension = in_.number(object, what, "tension", 0, 1);
-    if (!tension) return tension.error();
-    key.tension = *tension;
-    return {};
+  static Status look_away(const Given& key, CameraKey& to) {
+    if (!to.target || (*to.target - to.position).norm() >= kNearest) return {};
+    return key.member("target").wrong(
+        fmt::format("\"target\" of {} is at the camera's position", key.what),
+        "the camera needs a direction to look in");
   }
 
-  Result<Vec3> place(const Value& list, std::string_view what, std::string_view key) const {
-    const auto values = in_.numbers(list, what, key, 3);
-    if (!values) return values.error();
-    const Vec3 place = metres_ * Vec3((*values)[0], (*values)[1], (*values)[2]);
-    if (place.cwiseAbs().maxCoeff() <= kFurthest) return place;
-    return in_.wrong(list, fmt::format("\"{}\" of {} is farther away than 1000 km", key, what));
+  static Status one_lens(const Given& key, CameraKey&) {
+    if (!key.has("field_of_view") || !key.has("focal_length")) return {};
+    return key.structure(
+        fmt::format("{} has both \"field_of_view\" and \"focal_length\"", key.what));
   }
 
-  Status read_direction(const Value& item, std::string_view what, CameraKey& key) const {
-    const auto target = in_.find(item, what, "target", Kind::array);
-    if (!target) return target.error();
-    const auto orientation = in_.find(item, what, "orientation", Kind::array);
-    if (!orientation) return orientation.error();
-    if ((*target == nullptr) == (*orientation == nullptr)) {
-      return in_.structure(item,
-                           fmt::format("{} needs one of \"target\" and \"orientation\"", what));
-    }
-    if (*target != nullptr) {
-      const auto at = place(**target, what, "target");
-      if (!at) return at.error();
-      if ((*at - key.position).norm() < kNearest) {
-        return in_.wrong(**target,
-                         fmt::format("\"target\" of {} is at the camera's position", what),
-                         "the camera needs a direction to look in");
-      }
-      key.target = *at;
-      return {};
-    }
-    const auto values = in_.numbers(**orientation, what, "orientation", 4);
-    if (!values) return values.error();
-    const Quat turn((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
-    // Hand-written quaternions have few digits.
-    if (!(std::abs(turn.norm() - 1) < 0.01)) {
-      return in_.wrong(**orientation,
-                       fmt::format("\"orientation\" of {} has length {}, expected 1", what,
-                                   readable(turn.norm())),
-                       "it is a unit quaternion: x, y, z, w");
-    }
-    key.orientation = turn.normalized();
-    return {};
+  static json::Kind<Between> between() {
+    return json::choice<Between>({{"smooth", Between::smooth},
+                                  {"linear", Between::linear},
+                                  {"ease", Between::ease},
+                                  {"step", Between::step}});
   }
 
-  Status read_lens(const Value& item, std::string_view what, CameraKey& key) const {
-    const bool by_angle = item.find("field_of_view") != nullptr;
-    const bool by_length = item.find("focal_length") != nullptr;
-    if (by_angle && by_length) {
-      return in_.structure(item,
-                           fmt::format("{} has both \"field_of_view\" and \"focal_length\"", what));
-    }
-    if (by_angle) {
-      const double straight = kPi / radians_;
-      const auto view = in_.number(item, what, "field_of_view", straight * 1e-4, straight * 0.9999);
-      if (!view) return view.error();
-      key.field_of_view = *view * radians_;
-    } else if (by_length) {
-      const auto length = in_.number(item, what, "focal_length", 0.1, 1e5);
-      if (!length) return length.error();
-      key.field_of_view = 2 * std::atan(kSensorHeight / 2 / *length);
-    }
-    return {};
+  json::Object<CameraKey> key_table() {
+    json::Object<CameraKey> key;
+    key.check([this](const Given&, CameraKey& to) { return to = usual, Status(); });
+    key.field("time", &CameraKey::time, json::moment(rate, 1e6)).required();
+    key.field("position", &CameraKey::position, json::place(metres), "x, y, z").required();
+    key.check(one_direction);
+    key.field("target", &CameraKey::target, json::place(metres), "x, y, z").check(look_away);
+    key.field("orientation", &CameraKey::orientation, json::rotation(0.01, 0), "x, y, z, w");
+    key.field("roll", &CameraKey::roll, roll());
+    key.check(one_lens);
+    key.field("field_of_view", &CameraKey::field_of_view, angle(kPi * 1e-4, kPi * 0.9999));
+    key.field("focal_length", &CameraKey::field_of_view, focal_length(), "millimetres");
+    key.field("between", &CameraKey::between, between(), "to the next key");
+    key.field("tension", &CameraKey::tension, json::number(0, 1)).comment();
+    return key.also(json::schema_of_one("target", "orientation"));
   }
 
-  Result<CameraKey> read_key(const Value& item, std::size_t index) const {
-    const std::string what = fmt::format("key {}", index);
-    if (Status status =
-            in_.only(item, what,
-                     {"time", "position", "target", "orientation", "roll", "field_of_view",
-                      "focal_length", "between", "tension", "comment"});
-        !status) {
-      return status.error();
-    }
-    CameraKey key = usual_;
-    const auto when = in_.moment(item, what, "time", rate_, kLatest);
-    if (!when) return when.error();
-    key.time = *when;
-    const auto position = in_.get(item, what, "position", Kind::array);
-    if (!position) return position.error();
-    const auto at = place(**position, what, "position");
-    if (!at) return at.error();
-    key.position = *at;
-    if (Status status = read_direction(item, what, key); !status) return status.error();
-    if (item.find("roll") != nullptr) {
-      const auto roll = in_.number(item, what, "roll", -1e4, 1e4);
-      if (!roll) return roll.error();
-      key.roll = *roll * radians_;
-    }
-    if (Status status = read_lens(item, what, key); !status) return status.error();
-    if (Status status = read_join(item, what, key); !status) return status.error();
-    return key;
+  json::Kind<double> roll() const {
+    return json::kind<double>(R"({"type": "number", "minimum": -1e4, "maximum": 1e4})",
+                              [this](const Given& given, double& to) {
+                                Status status = json::number(-1e4, 1e4).read(given, &to);
+                                to *= radians;
+                                return status;
+                              });
   }
 
-  Status read_keys(const Value& root) {
-    const auto list = in_.get(root, kWhole, "keys", Kind::array);
-    if (!list) return list.error();
-    const std::size_t count = (*list)->items.size();
-    if (count == 0 || count > kMaxKeys) {
-      return in_.wrong(**list, fmt::format("{} keys, expected 1 to {}", count, kMaxKeys));
-    }
-    std::vector<CameraKey>& keys = file_.camera.keys;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Value& item = (*list)->items[i];
-      auto key = read_key(item, i);
-      if (!key) return key.error();
-      if (i > 0 && !(key->time > keys.back().time)) {
-        return json::error_at(
-            text_, item.find("time")->offset, "camera-keys-time",
-            fmt::format("key {} is at {} s, not after the previous key at {} s", i,
-                        readable(key->time, 9), readable(keys.back().time, 9)));
-      }
-      keys.push_back(*key);
-    }
-    return {};
-  }
-
-  Status check_closed(const Value& root) {
-    if (!file_.camera.closed) return {};
-    const std::vector<CameraKey>& keys = file_.camera.keys;
-    const Value& list = *root.find("keys");
+  static Status check_closed(const Given& file, CameraKeyFile& to) {
+    const std::vector<CameraKey>& keys = to.camera.keys;
+    if (!to.camera.closed) return {};
+    const json::Value& list = *file.value.find("keys");
     for (std::size_t i = 0; i + 1 < keys.size(); ++i) {
       if (keys[i].between == Between::smooth) continue;
-      return in_.wrong(list.items[i], fmt::format("key {} of a closed path is not smooth", i));
+      return Given{file.source, list.items[i], {}, {}}.wrong(
+          fmt::format("key {} of a closed path is not smooth", i));
     }
     if (keys.size() > 2 && (keys.back().position - keys.front().position).norm() < 1e-3) return {};
-    return in_.wrong(list.items.back(),
-                     "the path is closed, but its last key is not at the position of the first",
-                     "the last key must repeat the first");
+    return Given{file.source, list.items.back(), {}, {}}.wrong(
+        "the path is closed, but its last key is not at the position of the first",
+        "the last key must repeat the first");
   }
 
-  std::string_view text_;
-  json::Members in_;
-  CameraKeyFile file_;
-  CameraKey usual_;
-  std::optional<double> rate_;  // if the file has one
-  double metres_ = 1, radians_ = kRadiansPerDegree;
+  json::Object<CameraKeyFile> table() {
+    const auto in_camera = [](auto member) {
+      return [member](CameraKeyFile & of) -> auto& {
+        return of.camera.*member;
+      };
+    };
+    json::Object<CameraKeyFile> file;
+    file.file("krok.camera-keys/1", "Keys of a camera (krok.camera-keys/1)").comment();
+    file.context("length_unit", metres, length_unit());
+    file.context("angle_unit", radians,
+                 json::choice<double>({{"deg", kRadiansPerDegree}, {"rad", 1}}));
+    file.context("rate", rate, json::frame_rate(), "frames per second");
+    file.context("between", usual.between, between());
+    file.context("tension", usual.tension, json::number(0, 1));
+    file.field("closed", in_camera(&KeyedCamera::closed), json::boolean());
+    file.field("keys", in_camera(&KeyedCamera::keys),
+               json::list<CameraKey>(json::object(key_table()), {"key {0}", 1, 100'000},
+                                     json::times_increase<CameraKey>))
+        .required();
+    file.check(check_closed);
+    file.check([this](const Given&, CameraKeyFile& to) {
+      to.rate = rate.value_or(to.rate);
+      return Status();
+    });
+    return file;
+  }
 };
 
 }  // namespace
 
 Result<CameraKeyFile> read(std::string_view text) {
-  return Reader(text).read();
+  return File().table().read_text(text, "camera-keys");
+}
+
+std::string schema() {
+  return File().table().schema();
 }
 
 }  // namespace krok::camera_keys

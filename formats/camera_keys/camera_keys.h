@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "camera/keyed_camera.h"
@@ -18,5 +19,8 @@ struct CameraKeyFile {
 // Safe for untrusted input. Codes, each with line and column: json-syntax, json-limit,
 // camera-keys-structure, camera-keys-value, camera-keys-time.
 Result<CameraKeyFile> read(std::string_view text);
+
+// The JSON Schema of such files.
+std::string schema();
 
 }  // namespace krok::camera_keys

@@ -19,4 +19,7 @@ Result<Character> read(std::string_view text);
 // character-path.
 Result<std::string> write(const Character& character);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::character_file

@@ -2,367 +2,255 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <cmath>
-
 #include "core/index.h"
 #include "core/nearest_name.h"
 #include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
-#include "formats/json/members.h"
+#include "formats/json/fields.h"
 #include "motion/ground_frame.h"
-#include "scene/frame_moment.h"
 
 namespace krok::goals {
 
 namespace {
 
 using ik::Goal;
-using json::Value;
-using Kind = Value::Kind;
+using ik::GoalKey;
+using ik::KeyedGoal;
+using json::Given;
+using timeline::Easing;
+using JsonKind = json::Value::Kind;
 
-constexpr std::string_view kSchema = "krok.goals/1";
-constexpr std::string_view kWhole = "the file";
-constexpr std::size_t kMaxGoals = 1000;
 constexpr std::size_t kMaxKeys = 100'000;
-constexpr double kFurthest = 1e6;  // metres
-constexpr double kLatest = 1e6;    // seconds
+constexpr double kMaxNumber = 1e9;
+constexpr double kLatest = 1e6;  // seconds
 
-class Reader {
- public:
-  Reader(std::string_view text, const Skeleton& skeleton, const RoleMap& roles)
-      : text_(text), in_(text, "goals"), skeleton_(skeleton), roles_(roles) {}
-
-  Result<GoalFile> read() {
-    const auto root = json::parse(text_);
-    if (!root) return root.error();
-    if (Status status = in_.only(
-            *root, kWhole,
-            {"schema", "comment", "length_unit", "rate", "root_moves", "stiffness", "goals"});
-        !status) {
-      return status.error();
-    }
-    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
-    for (const auto part : {&Reader::read_units, &Reader::read_stiffness, &Reader::read_goals}) {
-      if (Status status = (this->*part)(*root); !status) return status.error();
-    }
-    return std::move(file_);
-  }
-
- private:
-  Status read_units(const Value& root) {
-    const auto unit = in_.choice(root, kWhole, "length_unit", {"m", "cm", "mm", "in", "ft"});
-    if (!unit) return unit.error();
-    static constexpr std::array kMetres = {1.0, 0.01, 0.001, 0.0254, 0.3048};
-    if (*unit) metres_ = kMetres[**unit];
-    if (root.find("rate") != nullptr) {
-      const auto rate = in_.number(root, kWhole, "rate", kMinRate, kMaxRate);
-      if (!rate) return rate.error();
-      rate_ = *rate;
-    }
-    const auto moves = in_.find(root, kWhole, "root_moves", Kind::boolean);
-    if (!moves) return moves.error();
-    file_.root_moves = *moves != nullptr && (*moves)->truth;
-    return {};
-  }
-
-  Status read_stiffness(const Value& root) {
-    const auto list = in_.find(root, kWhole, "stiffness", Kind::object);
-    if (!list) return list.error();
-    if (*list == nullptr) return {};
-    file_.stiffness.assign(skeleton_.names.size(), 0.0);
-    for (const Value::Member& member : (*list)->members) {
-      const auto joint = joint_named(member.key, member.key_offset);
-      if (!joint) return joint.error();
-      const auto value =
-          in_.within(member.value, fmt::format("the stiffness of '{}'", shown(member.key)), 0, 1);
-      if (!value) return value.error();
-      file_.stiffness[at(*joint)] = *value;
-    }
-    return {};
-  }
-
-  Result<int> joint_named(const std::string& name, std::size_t offset) const {
-    const int joint = find_joint(name, skeleton_, roles_);
-    if (joint >= 0) return joint;
-    return json::error_at(
-        text_, offset, "goals-joint",
-        fmt::format("the motion has no joint '{}', nor one of that role", shown(name)),
-        nearest_hint(name, skeleton_.names));
-  }
-
-  // An optional joint: -1 if the member is missing.
-  Result<int> joint(const Value& item, std::string_view what, std::string_view key,
-                    bool needed) const {
-    const auto value =
-        needed ? in_.get(item, what, key, Kind::string) : in_.find(item, what, key, Kind::string);
-    if (!value) return value.error();
-    if (*value == nullptr) return -1;
-    return joint_named((*value)->text, (*value)->offset);
-  }
-
-  // Reads `count` finite numbers; leaves `to` alone and gives false if the member is missing.
-  Result<bool> numbers(const Value& item, std::string_view what, std::string_view key,
-                       std::size_t count, double* to) const {
-    const auto list = in_.find(item, what, key, Kind::array);
-    if (!list) return list.error();
-    if (*list == nullptr) return false;
-    const auto& items = (*list)->items;
-    bool good = items.size() == count;
-    for (std::size_t i = 0; good && i < count; ++i) {
-      good = items[i].kind == Kind::number && std::abs(items[i].number) <= 1e9;
-      if (good) to[i] = items[i].number;
-    }
-    if (good) return true;
-    return in_.wrong(**list, fmt::format("\"{}\" of {} must be {} numbers", key, what, count));
-  }
-
-  Result<bool> place(const Value& item, std::string_view what, std::string_view key,
-                     Vec3& to) const {
-    auto given = numbers(item, what, key, 3, to.data());
-    if (!given || !*given) return given;
-    to *= metres_;
-    if (to.cwiseAbs().maxCoeff() <= kFurthest) return true;
-    return in_.wrong(*item.find(key),
-                     fmt::format("\"{}\" of {} is farther away than 1000 km", key, what));
-  }
-
-  Status read_direction(const Value& item, std::string_view what, Goal& goal) const {
-    goal.axis = facing_axis(goal.joint, skeleton_);
-    const auto given = numbers(item, what, "axis", 3, goal.axis.data());
-    if (!given) return given.error();
-    if (!*given) return {};
-    const double length = goal.axis.norm();
-    if (!(length > 1e-6)) {
-      return in_.wrong(*item.find("axis"), fmt::format("\"axis\" of {} has no length", what));
-    }
-    goal.axis /= length;
-    return {};
-  }
-
-  Status read_key(const Value& item, const std::string& what, Goal::Kind kind,
-                  ik::GoalKey& key) const {
-    const bool turns = kind == Goal::Kind::orientation || kind == Goal::Kind::pose;
-    const auto target = place(item, what, "target", key.target);
-    if (!target) return target.error();
-    if (!*target && kind != Goal::Kind::orientation) {
-      return in_.structure(item, fmt::format("{} is missing \"target\"", what));
-    }
-    double q[4] = {0, 0, 0, 1};
-    const auto orientation = numbers(item, what, "orientation", 4, q);
-    if (!orientation) return orientation.error();
-    if (*orientation != turns) {
-      return in_.structure(item, turns ? fmt::format("{} is missing \"orientation\"", what)
-                                       : fmt::format("{} has an \"orientation\", which a goal of "
-                                                     "its kind does not use",
-                                                     what));
-    }
-    const Quat given(q[3], q[0], q[1], q[2]);
-    if (!(std::abs(given.norm() - 1) < 0.01)) {
-      return in_.wrong(*item.find("orientation"),
-                       fmt::format("\"orientation\" of {} has length {}, expected 1", what,
-                                   readable(given.norm())),
-                       "it is a unit quaternion: x, y, z, w");
-    }
-    key.orientation = given.normalized();
-    return read_easing(item, what, "easing", key.easing);
-  }
-
-  Status read_easing(const Value& item, std::string_view what, std::string_view key,
-                     timeline::Easing& easing) const {
-    const auto value = in_.find(item, what, key, Kind::string);
-    if (!value) return value.error();
-    if (*value == nullptr) return {};
-    const auto parsed = timeline::parse_easing((*value)->text);
+json::Kind<Easing> easing() {
+  return json::kind<Easing>(R"({"type": "string"})", [](const Given& given, Easing& to) -> Status {
+    if (Status status = given.is(JsonKind::string); !status) return status;
+    const auto parsed = timeline::parse_easing(given.value.text);
     if (!parsed) {
-      return in_.wrong(**value,
-                       fmt::format("\"{}\" of {} is '{}'", key, what, shown((*value)->text)),
-                       nearest_hint((*value)->text, timeline::easing_names()));
+      return given.wrong(fmt::format("{} is '{}'", given.name(), shown(given.value.text)),
+                         nearest_hint(given.value.text, timeline::easing_names()));
     }
-    easing = *parsed;
+    to = *parsed;
     return {};
+  });
+}
+
+struct File {
+  const Skeleton& skeleton;
+  const RoleMap& roles;
+  std::optional<double> rate = {};
+  double metres = 1;
+  Goal::Kind kind = Goal::Kind::position;  // of the goal that is read
+  std::vector<OtherMotion> others = {};
+
+  Result<int> joint_named(const Given& given, std::string_view name) const {
+    const int joint = find_joint(name, skeleton, roles);
+    if (joint >= 0) return joint;
+    return given.error(
+        "joint", fmt::format("the motion has no joint '{}', nor one of that role", shown(name)),
+        nearest_hint(name, skeleton.names));
   }
 
-  Status read_keys(const Value& item, const std::string& what, ik::KeyedGoal& goal) const {
-    const auto list = in_.find(item, what, "keys", Kind::array);
-    if (!list) return list.error();
-    if (*list == nullptr || (*list)->items.empty()) {
-      if (goal.goal.kind == Goal::Kind::balance && *list == nullptr) return {};
-      return in_.structure(item, fmt::format("{} has no \"keys\"", what));
-    }
-    if (goal.goal.kind == Goal::Kind::balance || (*list)->items.size() > kMaxKeys) {
-      return in_.wrong(**list, fmt::format("{} cannot have {} keys", what, (*list)->items.size()));
-    }
-    for (std::size_t i = 0; i < (*list)->items.size(); ++i) {
-      const Value& given = (*list)->items[i];
-      const std::string which = fmt::format("key {} of {}", i, what);
-      if (Status status =
-              in_.only(given, which, {"time", "target", "orientation", "easing", "comment"});
-          !status) {
-        return status;
-      }
-      ik::GoalKey key;
-      const auto time = in_.moment(given, which, "time", rate_, kLatest);
-      if (!time) return time.error();
-      key.time = *time;
-      if (i > 0 && !(key.time > goal.keys.back().time)) {
-        return json::error_at(
-            text_, given.find("time")->offset, "goals-time",
-            fmt::format("{} is at {} s, not after the one before it at {} s", which,
-                        readable(key.time, 9), readable(goal.keys.back().time, 9)));
-      }
-      if (Status status = read_key(given, which, goal.goal.kind, key); !status) return status;
-      goal.keys.push_back(key);
-    }
-    return {};
+  json::Kind<int> joint() const {
+    return json::kind<int>(R"({"description": "a joint, by name or role", "type": "string"})",
+                           [this](const Given& given, int& to) -> Status {
+                             Status status = given.is(JsonKind::string);
+                             if (!status) return status;
+                             const auto found = joint_named(given, given.value.text);
+                             if (!found) return found.error();
+                             to = *found;
+                             return {};
+                           });
   }
 
-  Status read_times(const Value& item, const std::string& what, ik::KeyedGoal& goal) const {
-    const auto moment = [&](const char* key, auto& to) -> Status {
-      if (item.find(key) == nullptr) return {};
-      const auto time = in_.moment(item, what, key, rate_, kLatest);
-      if (!time) return time.error();
-      to = *time;
+  json::Kind<Vec3> axis() const {
+    return json::kind<Vec3>(json::schema_of_numbers(3), [](const Given& given, Vec3& to) -> Status {
+      if (Status status = json::vector(kMaxNumber).read(given, &to); !status) return status;
+      const double length = to.norm();
+      if (!(length > 1e-6)) return given.wrong(fmt::format("{} has no length", given.name()));
+      to /= length;
       return {};
+    });
+  }
+
+  json::Object<GoalKey> key_table() const {
+    json::Object<GoalKey> key;
+    key.field("time", &GoalKey::time, json::moment(rate, kLatest)).required();
+    key.field("target", &GoalKey::target, json::place(metres, kMaxNumber));
+    key.check([this](const Given& given, GoalKey&) -> Status {
+      const bool turns = kind == Goal::Kind::orientation || kind == Goal::Kind::pose;
+      if (!given.has("target") && kind != Goal::Kind::orientation) {
+        return given.structure(fmt::format("{} is missing \"target\"", given.what));
+      }
+      if (turns == given.has("orientation")) return {};
+      if (turns) return given.structure(fmt::format("{} is missing \"orientation\"", given.what));
+      return given.structure(fmt::format(
+          "{} has an \"orientation\", which a goal of its kind does not use", given.what));
+    });
+    key.field("orientation", &GoalKey::orientation, json::rotation(0.01, 0), "x, y, z, w");
+    return key.field("easing", &GoalKey::easing, easing(), "to the next key").comment();
+  }
+
+  Status check_keys(const Given& goal) const {
+    const bool balance = kind == Goal::Kind::balance;
+    const json::Value* const keys = goal.value.find("keys");
+    if (keys == nullptr && balance) return {};
+    if (keys == nullptr || (keys->kind == JsonKind::array && keys->items.empty())) {
+      return goal.structure(fmt::format("{} has no \"keys\"", goal.what));
+    }
+    if (keys->kind != JsonKind::array || (!balance && keys->items.size() <= kMaxKeys)) return {};
+    return goal.member("keys").wrong(
+        fmt::format("{} cannot have {} keys", goal.what, keys->items.size()));
+  }
+
+  static Status check_order(const Given& key, const std::vector<GoalKey>& keys) {
+    if (keys.size() < 2) return {};
+    const double before = keys[keys.size() - 2].time, time = keys.back().time;
+    if (time > before) return {};
+    return key.member("time").error(
+        "time", fmt::format("{} is at {} s, not after the one before it at {} s", key.what,
+                            readable(time, 9), readable(before, 9)));
+  }
+
+  // What a goal has unless the file says otherwise.
+  Status set_defaults(const Given& goal, KeyedGoal& to) {
+    kind = to.goal.kind;
+    if (!goal.has("joint") && kind != Goal::Kind::balance) {
+      return goal.structure(fmt::format("{} is missing \"joint\"", goal.what));
+    }
+    if (!goal.has("name")) {
+      to.name = kind == Goal::Kind::balance ? "balance" : skeleton.names[at(to.goal.joint)];
+    }
+    to.goal.axis = facing_axis(to.goal.joint, skeleton);
+    if (kind == Goal::Kind::balance) {
+      if (!goal.has("support")) to.support_joints = foot_joints(skeleton, roles);
+    } else {
+      to.goal.depth = default_depth(to.goal.joint, skeleton, roles);
+    }
+    return {};
+  }
+
+  // "relative_to" is a joint of the same motion, or of "motion".
+  Status read_space(const Given& goal, KeyedGoal& to) {
+    if (!goal.has("motion")) {
+      return goal.has("relative_to") ? joint().read(goal.member("relative_to"), &to.relative_to)
+                                     : Status();
+    }
+    if (!goal.has("relative_to")) {
+      return goal.structure(fmt::format("{} is missing \"relative_to\"", goal.what));
+    }
+    OtherMotion other{
+        goals_read, {}, goal.member("relative_to").value.text, goal.member("motion").where()};
+    Status status = json::path().read(goal.member("motion"), &other.path);
+    others.push_back(std::move(other));
+    return status;
+  }
+
+  json::Object<KeyedGoal> goal_table() {
+    json::Object<KeyedGoal> goal;
+    const auto in_goal = [](auto member) {
+      return [member](KeyedGoal & of) -> auto& {
+        return of.goal.*member;
+      };
     };
-    if (Status status = moment("from", goal.from); !status) return status;
-    if (Status status = moment("to", goal.to); !status) return status;
-    if (Status status = moment("fade_in", goal.fade_in); !status) return status;
-    if (Status status = moment("fade_out", goal.fade_out); !status) return status;
-    if (goal.from && goal.to && *goal.from > *goal.to) {
-      return json::error_at(text_, item.find("to")->offset, "goals-time",
-                            fmt::format("{} ends before it begins", what));
-    }
-    return read_easing(item, what, "fade", goal.fade);
+    const auto text = [] {
+      return json::kind<KeyedGoal>(R"({"type": "string"})", [](const Given& given, KeyedGoal&) {
+        return given.is(JsonKind::string);
+      });
+    };
+    const auto time = json::moment(rate, kLatest);
+    goal.field("name", &KeyedGoal::name, json::text(), "for reports");
+    goal.field("kind", in_goal(&Goal::kind),
+               json::choice<Goal::Kind>({{"position", Goal::Kind::position},
+                                         {"orientation", Goal::Kind::orientation},
+                                         {"pose", Goal::Kind::pose},
+                                         {"look-at", Goal::Kind::look_at},
+                                         {"pole", Goal::Kind::pole},
+                                         {"balance", Goal::Kind::balance}}));
+    goal.field("joint", in_goal(&Goal::joint), joint());
+    goal.check([this](const Given& given, KeyedGoal& to) { return set_defaults(given, to); });
+    goal.field("point", in_goal(&Goal::point), json::place(metres, kMaxNumber));
+    goal.field("axis", in_goal(&Goal::axis), axis());
+    goal.field("upper", in_goal(&Goal::upper), joint());
+    goal.field("lower", in_goal(&Goal::lower), joint());
+    goal.field("relative_to", text());
+    goal.field("motion", text(), "path relative to this file");
+    goal.check([this](const Given& given, KeyedGoal& to) { return read_space(given, to); });
+    goal.check([this](const Given& given, KeyedGoal&) { return check_keys(given); });
+    goal.field("keys", &KeyedGoal::keys,
+               json::list<GoalKey>(json::object(key_table()), {"key {0} of {1}", 1, kMaxKeys},
+                                   check_order));
+    goal.field("from", &KeyedGoal::from, time);
+    goal.field("to", &KeyedGoal::to, time);
+    goal.field("fade_in", &KeyedGoal::fade_in, time);
+    goal.field("fade_out", &KeyedGoal::fade_out, time);
+    goal.check([](const Given& given, KeyedGoal& to) -> Status {
+      if (!to.from || !to.to || *to.from <= *to.to) return {};
+      return given.member("to").error("time", fmt::format("{} ends before it begins", given.what));
+    });
+    goal.field("fade", &KeyedGoal::fade, easing());
+    goal.field("weight", in_goal(&Goal::weight), json::number(1e-3, 1e3));
+    goal.field("depth", in_goal(&Goal::depth), depth(), "count of joints; 0: all");
+    goal.check([](const Given& given, KeyedGoal& to) -> Status {
+      if (!given.has("support") || to.goal.kind == Goal::Kind::balance) return {};
+      Status array = given.member("support").is(JsonKind::array);
+      if (!array) return array;
+      return given.member("support").wrong(fmt::format("{} has a \"support\"", given.what),
+                                           "only a goal of the kind balance has one");
+    });
+    goal.field("support", &KeyedGoal::support_joints,
+               json::list<int>(support_joint(), {"{1}", 1, SIZE_MAX, "{4} is empty"}));
+    goal.comment();
+    goal.check([this](const Given&, KeyedGoal&) { return ++goals_read, Status(); });
+    return goal;
   }
 
-  Status read_space(const Value& item, const std::string& what, ik::KeyedGoal& goal) {
-    const auto motion = in_.find(item, what, "motion", Kind::string);
-    if (!motion) return motion.error();
-    if (*motion == nullptr) {
-      const auto joint_of = joint(item, what, "relative_to", false);
-      if (!joint_of) return joint_of.error();
-      goal.relative_to = *joint_of;
-      return {};
-    }
-    const auto name = in_.get(item, what, "relative_to", Kind::string);
-    if (!name) return name.error();
-    const auto path = in_.path(**motion, fmt::format("\"motion\" of {}", what));
-    if (!path) return path.error();
-    file_.others.push_back({file_.goals.size(), *path, (*name)->text,
-                            locate(text_, (*motion)->offset, std::string())});
-    return {};
+  json::Kind<int> support_joint() const {
+    json::Kind<int> kind_of = joint();
+    kind_of.read = [read = kind_of.read](const Given& given, void* to) -> Status {
+      if (given.value.kind == JsonKind::string) return read(given, to);
+      return given.wrong(fmt::format("\"support\" of {} is a list of joints", given.what));
+    };
+    return kind_of;
   }
 
-  Status read_support(const Value& item, const std::string& what, ik::KeyedGoal& goal) const {
-    const auto list = in_.find(item, what, "support", Kind::array);
-    if (!list) return list.error();
-    if ((*list != nullptr) != (goal.goal.kind == Goal::Kind::balance)) {
-      if (*list != nullptr)
-        return in_.wrong(**list, fmt::format("{} has a \"support\"", what),
-                         "only a goal of the kind balance has one");
-      goal.support_joints = foot_joints(skeleton_, roles_);
-      return {};
-    }
-    if (*list == nullptr) return {};
-    for (const Value& name : (*list)->items) {
-      if (name.kind != Kind::string) {
-        return in_.wrong(name, fmt::format("\"support\" of {} is a list of joints", what));
-      }
-      const auto found = joint_named(name.text, name.offset);
-      if (!found) return found.error();
-      goal.support_joints.push_back(*found);
-    }
-    if (!goal.support_joints.empty()) return {};
-    return in_.wrong(**list, fmt::format("\"support\" of {} is empty", what));
+  static json::Kind<int> depth() {
+    return json::kind<int>(R"({"type": "integer", "minimum": 0, "maximum": 10000})",
+                           [](const Given& given, int& to) -> Status {
+                             double value = 0;
+                             Status status = json::number(0, 1e4).read(given, &value);
+                             to = static_cast<int>(value);
+                             if (!status || to == value) return status;
+                             return given.wrong(fmt::format("{} is not whole", given.name()));
+                           });
   }
 
-  Status read_numbers(const Value& item, const std::string& what, Goal& goal) const {
-    if (item.find("weight") != nullptr) {
-      const auto weight = in_.number(item, what, "weight", 1e-3, 1e3);
-      if (!weight) return weight.error();
-      goal.weight = *weight;
-    }
-    if (item.find("depth") == nullptr) {
-      if (goal.kind != Goal::Kind::balance) {
-        goal.depth = default_depth(goal.joint, skeleton_, roles_);
-      }
-      return {};
-    }
-    const auto depth = in_.number(item, what, "depth", 0, 1e4);
-    if (!depth) return depth.error();
-    if (*depth != std::floor(*depth)) {
-      return in_.wrong(*item.find("depth"), fmt::format("\"depth\" of {} is not whole", what));
-    }
-    goal.depth = static_cast<int>(*depth);
-    return {};
+  json::Object<GoalFile> table() {
+    json::Object<GoalFile> file;
+    file.file("krok.goals/1", "Goals of inverse kinematics (krok.goals/1)").comment();
+    file.context("length_unit", metres,
+                 json::choice<double>(
+                     {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}}));
+    file.context("rate", rate, json::frame_rate(), "frames per second");
+    file.field("root_moves", &GoalFile::root_moves, json::boolean());
+    file.field("stiffness", &GoalFile::stiffness,
+               json::keyed<std::vector<double>>(
+                   json::number(0, 1), "the stiffness of '{0}'",
+                   [this](const Given& key, std::vector<double>& to) -> Result<double*> {
+                     const auto joint = joint_named(key, key.key);
+                     if (!joint) return joint.error();
+                     to.resize(skeleton.names.size());
+                     return &to[at(*joint)];
+                   }));
+    file.field("goals", &GoalFile::goals,
+               json::list<KeyedGoal>(json::object(goal_table()), {"goal {0}", 1, 1000}))
+        .required();
+    return file;
   }
 
-  Status read_limb(const Value& item, const std::string& what, Goal& goal) const {
-    const auto upper = joint(item, what, "upper", false);
-    if (!upper) return upper.error();
-    const auto lower = joint(item, what, "lower", false);
-    if (!lower) return lower.error();
-    goal.upper = *upper;
-    goal.lower = *lower;
-    if (const auto given = place(item, what, "point", goal.point); !given) return given.error();
-    return read_direction(item, what, goal);
-  }
-
-  Status read_goal(const Value& item, std::size_t index) {
-    const std::string what = fmt::format("goal {}", index);
-    if (Status status = in_.only(item, what,
-                                 {"name", "kind", "joint", "point", "axis", "upper", "lower",
-                                  "relative_to", "motion", "keys", "from", "to", "fade_in",
-                                  "fade_out", "fade", "weight", "depth", "support", "comment"});
-        !status) {
-      return status;
-    }
-    ik::KeyedGoal goal;
-    const auto kind = in_.choice(item, what, "kind",
-                                 {"position", "orientation", "pose", "look-at", "pole", "balance"});
-    if (!kind) return kind.error();
-    goal.goal.kind = static_cast<Goal::Kind>(kind->value_or(0));
-    const bool balance = goal.goal.kind == Goal::Kind::balance;
-    const auto found = joint(item, what, "joint", !balance);
-    if (!found) return found.error();
-    goal.goal.joint = std::max(0, *found);
-    const auto name = in_.find(item, what, "name", Kind::string);
-    if (!name) return name.error();
-    goal.name = *name != nullptr ? (*name)->text
-                : balance        ? std::string("balance")
-                                 : skeleton_.names[at(goal.goal.joint)];
-    if (Status status = read_limb(item, what, goal.goal); !status) return status;
-    if (Status status = read_numbers(item, what, goal.goal); !status) return status;
-    if (Status status = read_space(item, what, goal); !status) return status;
-    if (Status status = read_keys(item, what, goal); !status) return status;
-    if (Status status = read_times(item, what, goal); !status) return status;
-    if (Status status = read_support(item, what, goal); !status) return status;
-    file_.goals.push_back(std::move(goal));
-    return {};
-  }
-
-  Status read_goals(const Value& root) {
-    const auto list = in_.get(root, kWhole, "goals", Kind::array);
-    if (!list) return list.error();
-    const std::size_t count = (*list)->items.size();
-    if (count == 0 || count > kMaxGoals) {
-      return in_.wrong(**list, fmt::format("{} goals, expected 1 to {}", count, kMaxGoals));
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-      if (Status status = read_goal((*list)->items[i], i); !status) return status;
-    }
-    return {};
-  }
-
-  std::string_view text_;
-  json::Members in_;
-  const Skeleton& skeleton_;
-  const RoleMap& roles_;
-  GoalFile file_;
-  std::optional<double> rate_;
-  double metres_ = 1;
+  std::size_t goals_read = 0;
 };
 
 }  // namespace
@@ -389,7 +277,14 @@ Vec3 facing_axis(int joint, const Skeleton& skeleton) {
 }
 
 Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles) {
-  return Reader(text, skeleton, roles).read();
+  File file{skeleton, roles};
+  auto goals = file.table().read_text(text, "goals");
+  if (goals) goals->others = std::move(file.others);
+  return goals;
+}
+
+std::string schema() {
+  return File{{}, {}}.table().schema();
 }
 
 }  // namespace krok::goals

@@ -34,6 +34,9 @@ struct GoalFile {
 // increase), goals-joint (no such joint), goals-path.
 Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles);
 
+// The JSON Schema of such files.
+std::string schema();
+
 // A joint by its exact name, otherwise by role; -1 for none.
 int find_joint(std::string_view name, const Skeleton& skeleton, const RoleMap& roles);
 

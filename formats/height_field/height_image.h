@@ -46,4 +46,7 @@ Result<Placement> read_sidecar(std::string_view text);
 // terrain::height_field().
 Result<terrain::HeightField> placed(HeightImage image, const Placement& placement);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::height_field

@@ -24,4 +24,7 @@ struct KeyShapeFile {
 // key-shapes-structure, key-shapes-value, key-shapes-path, key-shapes-time (times not increasing).
 Result<KeyShapeFile> read(std::string_view text);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::key_shapes

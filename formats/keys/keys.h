@@ -51,4 +51,7 @@ std::string write(const MotionKeys& keys, const Skeleton& skeleton, double durat
 // The same with `edited` and the marks of entries set by hand.
 std::string write_sidecar(const Sidecar& sidecar, const Skeleton& skeleton);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::keys

@@ -3,34 +3,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/json/members.h"
-#include "scene/frame_moment.h"
+#include "formats/json/fields.h"
 
 namespace krok::library {
 
 namespace {
 
-using json::Value;
-using Kind = Value::Kind;
+using json::Given;
+using JsonKind = json::Value::Kind;
 
-constexpr std::string_view kSchema = "krok.library/1";
 constexpr std::size_t kLargestFile = std::size_t{4} << 20;
-constexpr std::size_t kMaxParameters = 8;
-constexpr std::size_t kMaxExamples = 10'000;
-constexpr std::size_t kMaxKeytimes = 100;
 constexpr std::size_t kLongestName = 200;
 
-json::Members::Parser parser_of(std::string_view measures) {
+json::Parser parser_of(std::string_view measures) {
   if (measures == "duration") {
     return [](std::string_view text) -> Result<double> {
       const auto time = parse_clip_time(text);
       if (!time) return time.error();
-      if (time->in_frames)
+      if (time->in_frames) {
         return Error("quantity-unit", "frames are not a valid unit here", "use s or ms");
+      }
       return time->value;
     };
   }
@@ -38,152 +33,154 @@ json::Members::Parser parser_of(std::string_view measures) {
   return is_angle ? parse_angle : parse_length;
 }
 
-class Reader {
- public:
-  Reader(std::string_view text, const std::string& path)
-      : text_(text), path_(path), members_(text, "library") {}
+json::Kind<std::string> text() {
+  return json::plain_text(SIZE_MAX, "{0} is empty or has control characters");
+}
 
-  Result<LibraryDescription> read() {
-    const auto root = json::parse(text_, kLargestFile);
-    if (!root) return root.error();
-    Status status = members_.only(
-        *root, "the file",
-        {"schema", "comment", "name", "skeleton", "map", "swing", "mirror", "keytimes", "rate",
-         "outlier_deviations", "spacing", "parameters", "steps", "examples"});
-    if (status) status = members_.has_schema(*root, "the file", kSchema);
-    if (status) status = read_general(*root);
-    if (status) status = read_list(*root, "parameters", kMaxParameters, &Reader::read_parameter);
-    if (status) status = read_list(*root, "examples", kMaxExamples, &Reader::read_example);
-    if (!status) return status.error();
-    return std::move(library_);
+json::Kind<double> rate() {
+  return json::kind<double>(json::frame_rate().schema(),
+                            [](const Given& given, double& to) -> Status {
+                              if (Status status = json::positive().read(given, &to); !status) {
+                                return status;
+                              }
+                              return json::checked_rate().read(given, &to);
+                            });
+}
+
+json::Kind<double> spacing() {
+  return json::kind<double>(R"({"type": "number", "minimum": 0, "maximum": 1})",
+                            [](const Given& given, double& to) -> Status {
+                              if (Status status = given.is(JsonKind::number); !status) {
+                                return status;
+                              }
+                              return json::number(0, 1).read(given.as("\"spacing\""), &to);
+                            });
+}
+
+json::Kind<Side> swing() {
+  return json::kind<Side>(
+      R"({"enum": ["left", "right"]})", [](const Given& given, Side& to) -> Status {
+        if (Status status = given.is(JsonKind::string); !status) return status;
+        const std::string& side = given.value.text;
+        to = side == "right" ? Side::right : Side::left;
+        if (side == "left" || side == "right") return {};
+        return given.wrong(fmt::format("\"swing\" is '{}', expected left or right", shown(side)));
+      });
+}
+
+// A name of a keytime of the file.
+json::Kind<std::string> keytime() {
+  return json::kind<std::string>(
+      R"({"type": "string", "minLength": 1, "maxLength": 200})",
+      [](const Given& given, std::string& to) -> Status {
+        to = given.value.text;
+        const bool good =
+            given.value.kind == JsonKind::string && !to.empty() && to.size() <= kLongestName;
+        return good ? Status() : given.wrong("a keytime name must be a non-empty string");
+      });
+}
+
+json::Kind<ClipTime> moment() {
+  return json::kind<ClipTime>(
+      json::schema_of_either({R"({"type": "number", "minimum": 0})",
+                              R"({"description": "1.5s, 250ms or 45f", "type": "string"})"}),
+      [](const Given& given, ClipTime& to) -> Status {
+        const json::Value& value = given.value;
+        if (value.kind == JsonKind::number) {
+          to = {value.number, false};
+          return to.value >= 0 ? Status()
+                               : given.wrong(fmt::format("{} is before 0", given.name()));
+        }
+        if (value.kind != JsonKind::string) {
+          return given.wrong(
+              fmt::format("{} is {}, expected a time", given.name(), json::kind_name(value.kind)),
+              "use seconds as a number, or a string such as \"1.5s\" or \"90f\"");
+        }
+        const auto time = parse_clip_time(value.text);
+        if (!time || time->value < 0) {
+          return given.wrong(
+              fmt::format("{}: {}", given.name(), time ? "a time before 0" : time.error().message),
+              time ? "" : time.error().hint);
+        }
+        to = *time;
+        return {};
+      });
+}
+
+struct File {
+  const std::string& path;
+  bool all_automatic = false;
+
+  Location place_of(const Given& given) const {
+    Location place = given.where();
+    place.file = path;
+    return place;
   }
 
- private:
-  Location place_of(const Value& value) const { return locate(text_, value.offset, path_); }
+  static Status check_name(const Given& given, ParameterEntry& to) {
+    if (!given.has("name")) to.name = to.measures.substr(to.measures.rfind('.') + 1);
+    if (to.name.find('=') == std::string::npos && to.name.size() <= kLongestName) return {};
+    return given.wrong(fmt::format("'{}' is not a valid parameter name", shown(to.name)),
+                       "use at most 200 bytes and no =");
+  }
 
-  // Optional strings that must not be empty.
-  Status take(const Value& object, std::string_view what, std::string_view key,
-              std::string& text) const {
-    const auto found = members_.find(object, what, key, Kind::string);
-    if (!found) return found.error();
-    if (*found == nullptr) return {};
-    const std::string& given = (*found)->text;
-    const bool plain = std::ranges::none_of(
-        given, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7F; });
-    if (given.empty() || !plain) {
-      return members_.wrong(
-          **found, fmt::format("\"{}\" of {} is empty or has control characters", key, what));
+  static Status check_range(const Given& given, ParameterEntry& to) {
+    if (to.tolerance && !(*to.tolerance > 0)) {
+      return given.member("tolerance")
+          .wrong(fmt::format("the tolerance of {} is not positive", given.what));
     }
-    text = given;
-    return {};
-  }
-
-  Status take_flag(const Value& object, std::string_view what, std::string_view key,
-                   bool& flag) const {
-    const auto found = members_.find(object, what, key, Kind::boolean);
-    if (!found) return found.error();
-    if (*found != nullptr) flag = (*found)->truth;
-    return {};
-  }
-
-  Status take_positive(const Value& object, std::string_view what, std::string_view key,
-                       std::optional<double>& number) const {
-    const auto found = members_.find(object, what, key, Kind::number);
-    if (!found) return found.error();
-    if (*found == nullptr) return {};
-    number = (*found)->number;
-    if (*number > 0 && std::isfinite(*number)) return {};
-    return members_.wrong(**found, fmt::format("\"{}\" of {} is {}, expected more than 0", key,
-                                               what, readable(*number)));
-  }
-
-  Status take_rate(const Value& root) {
-    if (Status status = take_positive(root, "the file", "rate", library_.rate); !status) {
-      return status;
+    if (to.least.has_value() != to.most.has_value()) {
+      return given.wrong(fmt::format("{} has only one end of a range", given.what),
+                         "give both \"from\" and \"to\", or neither");
     }
-    if (!library_.rate) return {};
-    if (const Status status = check_frame_rate(*library_.rate, "rate"); !status) {
-      return members_.wrong(*root.find("rate"), status.error().message);
-    }
-    return {};
+    if (!to.least || *to.least < *to.most) return {};
+    return given.member("to").wrong(fmt::format("the range of {} is empty", given.what));
   }
 
-  Status take_moment(const Value& object, std::string_view what, std::string_view key,
-                     std::optional<ClipTime>& time) const {
-    const Value* value = object.find(key);
-    if (value == nullptr) return {};
-    const auto parsed = moment(*value, what, key);
-    if (!parsed) return parsed.error();
-    time = *parsed;
-    return {};
+  // A number of what the parameter measures.
+  static json::Kind<ParameterEntry> amount(std::optional<double> ParameterEntry::*to) {
+    return json::kind<ParameterEntry>(
+        json::quantity(parse_length, "metres, degrees or seconds").schema(),
+        [to](const Given& given, ParameterEntry& entry) {
+          return json::quantity(parser_of(entry.measures), {}).read(given, &(entry.*to).emplace());
+        });
   }
 
-  Result<ClipTime> moment(const Value& value, std::string_view what, std::string_view key) const {
-    if (value.kind != Kind::number && value.kind != Kind::string) {
-      return members_.wrong(value,
-                            fmt::format("\"{}\" of {} is {}, expected a time", shown(key), what,
-                                        json::kind_name(value.kind)),
-                            "use seconds as a number, or a string such as \"1.5s\" or \"90f\"");
-    }
-    if (value.kind == Kind::number) {
-      if (value.number >= 0) return ClipTime{value.number, false};
-      return members_.wrong(value, fmt::format("\"{}\" of {} is before 0", shown(key), what));
-    }
-    const auto time = parse_clip_time(value.text);
-    if (!time || time->value < 0) {
-      return members_.wrong(value,
-                            fmt::format("\"{}\" of {}: {}", shown(key), what,
-                                        time ? "a time before 0" : time.error().message),
-                            time ? "" : time.error().hint);
-    }
-    return *time;
+  json::Object<ParameterEntry> parameter_table() const {
+    json::Object<ParameterEntry> parameter;
+    parameter.field("name", &ParameterEntry::name, text());
+    parameter.field("measures", &ParameterEntry::measures, text()).required();
+    parameter.check([this](const Given& given, ParameterEntry& to) {
+      to.place = place_of(given);
+      return check_name(given, to);
+    });
+    parameter.described(
+        [](const ParameterEntry& of) { return fmt::format("'{}'", shown(of.name)); });
+    parameter.field("tolerance", amount(&ParameterEntry::tolerance));
+    parameter.field("from", amount(&ParameterEntry::least));
+    parameter.field("to", amount(&ParameterEntry::most)).check(check_range);
+    return parameter;
   }
 
-  Status read_general(const Value& root) {
-    Status status = take(root, "the file", "name", library_.name);
-    if (status) status = take(root, "the file", "skeleton", library_.skeleton);
-    if (status) status = take(root, "the file", "map", library_.map);
-    if (status) status = take_flag(root, "the file", "mirror", library_.mirror);
-    if (status) status = take_rate(root);
-    if (status) status = read_swing(root);
-    if (status) status = read_kind(root);
-    if (status && library_.kind == StepKind::walks)
-      status = read_steps(root, "the file", all_automatic_);
-    if (status) status = read_keytimes(root);
-    if (status) {
-      status = take_positive(root, "the file", "outlier_deviations", library_.outlier_deviations);
-    }
-    if (status) status = read_spacing(root);
-    return status;
+  static Status check_unique(const Given& given, std::vector<ParameterEntry>& all) {
+    const auto first = std::ranges::find(all, all.back().name, &ParameterEntry::name);
+    if (first == all.end() - 1) return {};
+    return given.wrong(fmt::format("duplicate parameter name '{}'", shown(first->name)),
+                       "give one of them another \"name\"");
   }
 
-  Status read_spacing(const Value& root) {
-    const auto found = members_.find(root, "the file", "spacing", Kind::number);
-    if (!found) return found.error();
-    if (*found == nullptr) return {};
-    library_.spacing = (*found)->number;
-    if (*library_.spacing >= 0 && *library_.spacing <= 1) return {};
-    return members_.wrong(
-        **found, fmt::format("\"spacing\" is {}, expected 0 to 1", readable(*library_.spacing)));
+  // "auto" or "one".
+  static Status read_steps(const Given& given, bool& automatic, std::string_view expected) {
+    if (Status status = given.is(JsonKind::string); !status) return status;
+    automatic = given.value.text == "auto";
+    if (automatic || given.value.text == "one") return {};
+    return given.wrong(
+        fmt::format("{} is '{}', expected {}", given.name(), shown(given.value.text), expected));
   }
 
-  Status read_swing(const Value& root) {
-    const auto found = members_.find(root, "the file", "swing", Kind::string);
-    if (!found) return found.error();
-    if (*found == nullptr || (*found)->text == "left") return {};
-    if ((*found)->text != "right") {
-      return members_.wrong(
-          **found, fmt::format("\"swing\" is '{}', expected left or right", shown((*found)->text)));
-    }
-    library_.swing = Side::right;
-    return {};
-  }
-
-  // "steps": "runs" and the like, for the whole file alone: keytimes differ.
-  Status read_kind(const Value& root) {
-    const auto found = members_.find(root, "the file", "steps", Kind::string);
-    if (!found) return found.error();
-    if (*found == nullptr) return {};
+  // The kind of all steps of the file, as keytimes differ, or whether they are to be found.
+  Status read_kind(const Given& given, StepKind& to) {
+    if (Status status = given.is(JsonKind::string); !status) return status;
     constexpr std::pair<std::string_view, StepKind> kKinds[] = {
         {"runs", StepKind::runs},
         {"starts", StepKind::starts},
@@ -195,164 +192,100 @@ class Reader {
         {"turns", StepKind::turns},
         {"turns_closing", StepKind::turns_closing}};
     for (const auto& [name, kind] : kKinds) {
-      if ((*found)->text == name) library_.kind = kind;
+      if (given.value.text == name) to = kind;
     }
-    all_automatic_ = library_.kind != StepKind::walks;
-    return {};
+    all_automatic = to != StepKind::walks;
+    if (all_automatic) return {};
+    return read_steps(given, all_automatic,
+                      "auto, runs, starts, stops, stands, backward, side, side_closing, turns, "
+                      "turns_closing or one");
   }
 
-  // "steps": "auto".
-  Status read_steps(const Value& object, std::string_view what, bool& automatic) const {
-    const auto found = members_.find(object, what, "steps", Kind::string);
-    if (!found) return found.error();
-    if (*found == nullptr) return {};
-    automatic = (*found)->text == "auto";
-    if (automatic || (*found)->text == "one") return {};
-    return members_.wrong(
-        **found,
-        fmt::format("\"steps\" of {} is '{}', expected {}", what, shown((*found)->text),
-                    what == "the file" ? "auto, runs, starts, stops, stands, backward, side, "
-                                         "side_closing, turns, turns_closing or one"
-                                       : "auto or one"));
+  json::Object<ExampleEntry> example_table() const {
+    json::Object<ExampleEntry> example;
+    example.check([this](const Given& given, ExampleEntry& to) {
+      to.place = place_of(given);
+      to.automatic = all_automatic;
+      return Status();
+    });
+    example.field("name", &ExampleEntry::name, text());
+    example.field("clip", &ExampleEntry::clip, text(), "a path").required();
+    example.field(
+        "steps", &ExampleEntry::automatic,
+        json::kind<bool>(R"({"enum": ["auto", "one"]})", [](const Given& given, bool& to) {
+          return read_steps(given, to, "auto or one");
+        }));
+    example.field("from", &ExampleEntry::from, moment());
+    example.field("to", &ExampleEntry::to, moment());
+    example.field("keys", &ExampleEntry::keys, text(), "a path");
+    example.check([](const Given& given, const ExampleEntry& of) -> Status {
+      const json::Value* const keytimes = given.value.find("keytimes");
+      if (keytimes == nullptr || keytimes->kind != JsonKind::object || !of.automatic) return {};
+      return given.member("keytimes")
+          .wrong("an example with \"steps\": \"auto\" cannot have keytimes",
+                 "\"steps\": \"one\" makes the clip one example");
+    });
+    using Keytimes = std::vector<KeytimeEntry>;
+    const auto time =
+        json::kind<KeytimeEntry>(moment().schema(), [](const Given& given, KeytimeEntry& to) {
+          return moment().read({given.source, given.value, to.name, "an example"}, &to.time);
+        });
+    example.field("keytimes", &ExampleEntry::keytimes,
+                  json::keyed<Keytimes>(
+                      time, "", [](const Given& key, Keytimes& to) -> Result<KeytimeEntry*> {
+                        return &to.emplace_back(KeytimeEntry{std::string(key.key), {}});
+                      }));
+    return example;
   }
 
-  Status read_keytimes(const Value& root) {
-    const auto found = members_.find(root, "the file", "keytimes", Kind::array);
-    if (!found) return found.error();
-    if (*found == nullptr) return {};
-    const auto& items = (*found)->items;
-    if (items.size() < 2 || items.size() > kMaxKeytimes) {
-      return members_.wrong(
-          **found, fmt::format("{} keytimes, expected 2 to {}", items.size(), kMaxKeytimes));
-    }
-    for (const Value& item : items) {
-      if (item.kind != Kind::string || item.text.empty() || item.text.size() > kLongestName) {
-        return members_.wrong(item, "a keytime name must be a non-empty string");
-      }
-      if (std::ranges::find(library_.keytimes, item.text) != library_.keytimes.end()) {
-        return members_.wrong(item, fmt::format("duplicate keytime '{}'", shown(item.text)));
-      }
-      library_.keytimes.push_back(item.text);
-    }
-    return {};
+  json::Object<LibraryDescription> table() {
+    using Library = LibraryDescription;
+    json::Object<Library> file;
+    file.file("krok.library/1", "Description of a step library (krok.library/1)").comment();
+    file.field("name", &Library::name, text());
+    file.field("skeleton", &Library::skeleton, text(), "a path");
+    file.field("map", &Library::map, text(), "path of a role map");
+    file.field("swing", &Library::swing, swing(), "the swing foot");
+    file.field("mirror", &Library::mirror, json::boolean());
+    file.field(
+        "keytimes", &Library::keytimes,
+        json::list<std::string>(
+            keytime(), {"", 2, 100}, [](const Given& given, const std::vector<std::string>& all) {
+              return std::ranges::find(all, all.back()) == all.end() - 1
+                         ? Status()
+                         : given.wrong(fmt::format("duplicate keytime '{}'", shown(all.back())));
+            }));
+    file.field("rate", &Library::rate, rate(), "frames per second");
+    file.field("outlier_deviations", &Library::outlier_deviations, json::positive());
+    file.field("spacing", &Library::spacing, spacing());
+    file.field("parameters", &Library::parameters,
+               json::list<ParameterEntry>(json::object(parameter_table()), {"a parameter", 1, 8},
+                                          check_unique))
+        .required();
+    file.field(
+        "steps", &Library::kind,
+        json::kind<StepKind>(
+            R"({"enum": ["auto", "one", "runs", "starts", "stops", "stands", "backward", "side", )"
+            R"("side_closing", "turns", "turns_closing"]})",
+            [this](const Given& given, StepKind& to) { return read_kind(given, to); }));
+    file.field("examples", &Library::examples,
+               json::list<ExampleEntry>(json::object(example_table()), {"an example", 1, 10'000}))
+        .required();
+    return file;
   }
-
-  using ReadEntry = Status (Reader::*)(const Value&);
-  Status read_list(const Value& root, std::string_view key, std::size_t most, ReadEntry entry) {
-    const auto list = members_.get(root, "the file", key, Kind::array);
-    if (!list) return list.error();
-    if ((*list)->items.empty() || (*list)->items.size() > most) {
-      return members_.wrong(
-          **list, fmt::format("{} {}, expected 1 to {}", (*list)->items.size(), key, most));
-    }
-    for (const Value& item : (*list)->items) {
-      if (Status status = (this->*entry)(item); !status) return status;
-    }
-    return {};
-  }
-
-  Status read_parameter(const Value& item) {
-    Status status =
-        members_.only(item, "a parameter", {"name", "measures", "tolerance", "from", "to"});
-    if (!status) return status;
-    ParameterEntry entry;
-    entry.place = place_of(item);
-    const auto measures = members_.get(item, "a parameter", "measures", Kind::string);
-    if (!measures) return measures.error();
-    status = take(item, "a parameter", "measures", entry.measures);
-    entry.name = entry.measures.substr(entry.measures.rfind('.') + 1);
-    if (status) status = take(item, "a parameter", "name", entry.name);
-    if (!status) return status;
-    if (entry.name.find('=') != std::string::npos || entry.name.size() > kLongestName) {
-      return members_.wrong(item,
-                            fmt::format("'{}' is not a valid parameter name", shown(entry.name)),
-                            "use at most 200 bytes and no =");
-    }
-    const auto same = [&](const ParameterEntry& other) { return other.name == entry.name; };
-    if (std::ranges::any_of(library_.parameters, same)) {
-      return members_.wrong(item, fmt::format("duplicate parameter name '{}'", shown(entry.name)),
-                            "give one of them another \"name\"");
-    }
-    if (Status step = read_range(item, entry); !step) return step;
-    library_.parameters.push_back(std::move(entry));
-    return {};
-  }
-
-  Status read_range(const Value& item, ParameterEntry& entry) const {
-    const std::string what = fmt::format("'{}'", shown(entry.name));
-    const struct {
-      const char* key;
-      std::optional<double>& value;
-    } numbers[] = {{"tolerance", entry.tolerance}, {"from", entry.least}, {"to", entry.most}};
-    for (const auto& number : numbers) {
-      const auto found = members_.quantity(item, what, number.key, parser_of(entry.measures));
-      if (!found) return found.error();
-      number.value = *found;
-    }
-    if (entry.tolerance && !(*entry.tolerance > 0)) {
-      return members_.wrong(*item.find("tolerance"),
-                            fmt::format("the tolerance of {} is not positive", what));
-    }
-    if (entry.least.has_value() != entry.most.has_value()) {
-      return members_.wrong(item, fmt::format("{} has only one end of a range", what),
-                            "give both \"from\" and \"to\", or neither");
-    }
-    if (entry.least && !(*entry.least < *entry.most)) {
-      return members_.wrong(*item.find("to"), fmt::format("the range of {} is empty", what));
-    }
-    return {};
-  }
-
-  Status read_example(const Value& item) {
-    Status status = members_.only(item, "an example",
-                                  {"name", "clip", "steps", "from", "to", "keys", "keytimes"});
-    if (!status) return status;
-    ExampleEntry entry;
-    entry.place = place_of(item);
-    entry.automatic = all_automatic_;
-    const auto clip = members_.get(item, "an example", "clip", Kind::string);
-    if (!clip) return clip.error();
-    status = take(item, "an example", "clip", entry.clip);
-    if (status) status = take(item, "an example", "name", entry.name);
-    if (status) status = take(item, "an example", "keys", entry.keys);
-    if (status) status = read_steps(item, "an example", entry.automatic);
-    if (status) status = take_moment(item, "an example", "from", entry.from);
-    if (status) status = take_moment(item, "an example", "to", entry.to);
-    if (status) status = read_given_keytimes(item, entry);
-    if (!status) return status;
-    library_.examples.push_back(std::move(entry));
-    return {};
-  }
-
-  Status read_given_keytimes(const Value& item, ExampleEntry& entry) const {
-    const auto found = members_.find(item, "an example", "keytimes", Kind::object);
-    if (!found) return found.error();
-    if (*found == nullptr) return {};
-    if (entry.automatic) {
-      return members_.wrong(**found, "an example with \"steps\": \"auto\" cannot have keytimes",
-                            "\"steps\": \"one\" makes the clip one example");
-    }
-    for (const Value::Member& member : (*found)->members) {
-      const auto time = moment(member.value, "an example", member.key);
-      if (!time) return time.error();
-      entry.keytimes.push_back({member.key, *time});
-    }
-    return {};
-  }
-
-  std::string_view text_;
-  const std::string& path_;
-  json::Members members_;
-  LibraryDescription library_;
-  bool all_automatic_ = false;
 };
 
 }  // namespace
 
 Result<LibraryDescription> read(std::string_view text, const std::string& path) {
-  auto library = Reader(text, path).read();
+  auto library = File{path}.table().read_text(text, "library", kLargestFile);
   if (!library) return std::move(library).error().in_file(path);
   return library;
+}
+
+std::string schema() {
+  const std::string none;
+  return File{none}.table().schema();
 }
 
 }  // namespace krok::library

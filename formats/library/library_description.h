@@ -76,4 +76,7 @@ struct LibraryDescription {
 // library-structure, library-value, each with line and column.
 Result<LibraryDescription> read(std::string_view text, const std::string& path);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::library

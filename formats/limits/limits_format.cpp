@@ -3,258 +3,184 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
-
 #include "core/index.h"
 #include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/json/fields.h"
 #include "formats/json/json_text.h"
-#include "formats/json/members.h"
 
 namespace krok::limits {
 
 namespace {
 
 using ik::JointLimit;
-using json::Value;
-using Kind = Value::Kind;
+using json::Given;
 
-constexpr std::string_view kSchema = "krok.limits/1";
-constexpr std::string_view kWhole = "the file";
-// Numbers written by hand have few digits.
-constexpr double kHandWritten = 0.01;
+// [min, max] in the file's unit, both within +-most radians.
+Status read_range(const Given& given, double unit, double most, double& min, double& max) {
+  const auto values = json::numbers(given, 2);
+  if (!values) return values.error();
+  min = (*values)[0] * unit;
+  max = (*values)[1] * unit;
+  if (min > max) {
+    return given.wrong(fmt::format("{} has its min {} above its max {}", given.name(),
+                                   readable((*values)[0]), readable((*values)[1])));
+  }
+  if (min >= -most - 1e-9 && max <= most + 1e-9) return {};
+  return given.wrong(fmt::format("{} exceeds {} to {}", given.name(), readable(-most / unit),
+                                 readable(most / unit)));
+}
 
-class Reader {
- public:
-  Reader(std::string_view text, const Skeleton& skeleton)
-      : text_(text), in_(text, "limits"), skeleton_(skeleton) {}
+std::string range_text(double min, double max) {
+  return fmt::format("[{}, {}]", min / kRadiansPerDegree, max / kRadiansPerDegree);
+}
 
-  Result<ik::Limits> read() {
-    const auto root = json::parse(text_);
-    if (!root) return root.error();
-    if (Status status = in_.only(*root, kWhole, {"schema", "comment", "angle_unit", "joints"});
-        !status) {
-      return status.error();
-    }
-    if (Status status = in_.has_schema(*root, kWhole, kSchema); !status) return status.error();
-    const auto unit = in_.choice(*root, kWhole, "angle_unit", {"deg", "rad"});
-    if (!unit) return unit.error();
-    if (*unit && **unit == 1) radians_ = 1;
-    const auto joints = in_.get(*root, kWhole, "joints", Kind::object);
-    if (!joints) return joints.error();
-    limits_.resize(skeleton_.names.size());
-    for (const Value::Member& member : (*joints)->members) {
-      if (Status status = read_joint(member); !status) return status.error();
-    }
-    return std::move(limits_);
+json::Kind<JointLimit> twist(const double& unit, double most) {
+  return json::kind<JointLimit>(json::schema_of_numbers(2),
+                                [&unit, most](const Given& given, JointLimit& to) {
+                                  return read_range(given, unit, most, to.min_twist, to.max_twist);
+                                })
+      .written([](const JointLimit& of) { return range_text(of.min_twist, of.max_twist); });
+}
+
+json::Kind<JointLimit> swing(const double& unit) {
+  return json::kind<JointLimit>(
+             json::schema_of_list(json::schema_of_numbers(2), 2, 2),
+             [&unit](const Given& given, JointLimit& to) -> Status {
+               if (Status status = given.is(json::Value::Kind::array); !status) return status;
+               const auto& ranges = given.value.items;
+               constexpr auto kArray = json::Value::Kind::array;
+               if (ranges.size() != 2 || ranges[0].kind != kArray || ranges[1].kind != kArray) {
+                 return given.wrong(fmt::format("{} must be two ranges", given.name()),
+                                    "write [[-30, 45], [-20, 20]]");
+               }
+               for (std::size_t i = 0; i < 2; ++i) {
+                 const Given range{given.source, ranges[i], given.key, given.what};
+                 Status status = read_range(range, unit, kPi, to.min_swing[i], to.max_swing[i]);
+                 if (!status) return status;
+                 if (to.min_swing[i] > 0 || to.max_swing[i] < 0) {
+                   return range.wrong(fmt::format("{} does not contain 0", given.name()),
+                                      "turn \"zero\" into the middle of the range");
+                 }
+               }
+               return {};
+             })
+      .written([](const JointLimit& of) {
+        return fmt::format("[{}, {}]", range_text(of.min_swing[0], of.max_swing[0]),
+                           range_text(of.min_swing[1], of.max_swing[1]));
+      });
+}
+
+// The two axes of a cone are perpendicular; a hinge has a second one for what needs it.
+Status finish_axes(const Given& joint, JointLimit& limit) {
+  if (limit.kind == JointLimit::Kind::hinge) limit.swing_axis = limit.axis.unitOrthogonal();
+  if (limit.kind != JointLimit::Kind::cone) return {};
+  const double along = limit.axis.dot(limit.swing_axis);
+  if (!(std::abs(along) < 0.01)) {
+    return joint.member("swing_axis")
+        .wrong(
+            fmt::format("\"swing_axis\" of {} is not perpendicular to its \"axis\"", joint.what));
+  }
+  if (std::abs(along) > 1e-14) {
+    limit.swing_axis = (limit.swing_axis - along * limit.axis).normalized();
+  }
+  return {};
+}
+
+template <typename T>
+std::string digits_text(const T& numbers) {
+  return fmt::format("[{}]", fmt::join(numbers.data(), numbers.data() + numbers.size(), ", "));
+}
+
+json::Object<JointLimit> joint_table(const double& unit) {
+  const auto direction = [] { return json::direction().written(digits_text<Vec3>); };
+  const auto rotation = [] {
+    return json::rotation().written([](const Quat& q) { return digits_text(q.coeffs()); });
+  };
+  json::Object<JointLimit> joint;
+  joint.unused("{0} has \"{1}\", which its kind does not use",
+               "a hinge has axis and range, a cone axis, swing_axis, swing and twist");
+  joint
+      .field("kind", &JointLimit::kind,
+             json::choice<JointLimit::Kind>({{"free", JointLimit::Kind::free},
+                                             {"locked", JointLimit::Kind::locked},
+                                             {"hinge", JointLimit::Kind::hinge},
+                                             {"cone", JointLimit::Kind::cone}}))
+      .required();
+  joint.field("axis", &JointLimit::axis, direction(), "unit vector in the joint's frame")
+      .required()
+      .with("kind", {"hinge", "cone"});
+  joint.field("swing_axis", &JointLimit::swing_axis, direction())
+      .required()
+      .with("kind", {"cone"})
+      .line(6);
+  joint.check(finish_axes);
+  joint.field("range", twist(unit, 4 * kPi), "min, max").required().with("kind", {"hinge"});
+  joint.field("swing", swing(unit)).required().with("kind", {"cone"});
+  joint.field("twist", twist(unit, kPi)).required().with("kind", {"cone"}).line(6);
+  joint.field("zero", &JointLimit::zero, rotation(), "x, y, z, w, joint to parent")
+      .with("kind", {"hinge", "cone"});
+  return joint.comment();
+}
+
+// The limits of a skeleton's joints, shape [joints].
+struct File {
+  const Skeleton& skeleton;
+  double unit = kRadiansPerDegree;
+
+  json::Object<ik::Limits> table() {
+    json::Object<ik::Limits> file;
+    file.lines(2).file("krok.limits/1", "Ranges of motion of joints (krok.limits/1)").comment();
+    file.context("angle_unit", unit,
+                 json::choice<double>({{"deg", kRadiansPerDegree}, {"rad", 1}}));
+    file.check([this](const Given&, ik::Limits& limits) {
+      limits.resize(skeleton.names.size());
+      return Status();
+    });
+    const auto joint = json::object(joint_table(unit));
+    file.field("joints", json::keyed<ik::Limits>(joint, "joint '{}'",
+                                                 [this](const Given& key, ik::Limits& limits) {
+                                                   return joint_of(key, limits);
+                                                 })
+                             .written([this, joint](const ik::Limits& limits) {
+                               std::vector<std::string> joints;
+                               for (std::size_t j = 0; j < limits.size(); ++j) {
+                                 if (limits[j].kind == JointLimit::Kind::free) continue;
+                                 joints.push_back(fmt::format("    {}: {}",
+                                                              json::in_quotes(skeleton.names[j]),
+                                                              joint.write(&limits[j])));
+                               }
+                               return fmt::format("{{\n{}\n  }}", fmt::join(joints, ",\n"));
+                             }))
+        .required();
+    return file;
   }
 
- private:
-  Status read_direction(const Value& item, const std::string& what, std::string_view key,
-                        bool needed, Vec3& direction) const {
-    const auto list =
-        needed ? in_.get(item, what, key, Kind::array) : in_.find(item, what, key, Kind::array);
-    if (!list) return list.error();
-    if (*list == nullptr) return {};
-    const auto values = in_.numbers(**list, what, key, 3);
-    if (!values) return values.error();
-    const Vec3 given((*values)[0], (*values)[1], (*values)[2]);
-    const double length = given.norm();
-    if (!(std::abs(length - 1) < kHandWritten)) {
-      return in_.wrong(**list, fmt::format("\"{}\" of {} has length {}, expected 1", key, what,
-                                           readable(length)));
-    }
-    // What is of length 1 stays bit for bit.
-    direction = std::abs(length - 1) < 1e-14 ? given : Vec3(given / length);
-    return {};
-  }
-
-  Status read_zero(const Value& item, const std::string& what, int joint, Quat& zero) const {
-    zero = skeleton_.reference_local(joint).orientation.normalized();
-    const auto list = in_.find(item, what, "zero", Kind::array);
-    if (!list) return list.error();
-    if (*list == nullptr) return {};
-    const auto values = in_.numbers(**list, what, "zero", 4);
-    if (!values) return values.error();
-    const Quat given((*values)[3], (*values)[0], (*values)[1], (*values)[2]);
-    if (!(std::abs(given.norm() - 1) < kHandWritten)) {
-      return in_.wrong(
-          **list,
-          fmt::format("\"zero\" of {} has length {}, expected 1", what, readable(given.norm())),
-          "it is a unit quaternion: x, y, z, w");
-    }
-    zero = std::abs(given.norm() - 1) < 1e-14 ? given : given.normalized();
-    return {};
-  }
-
-  // [min, max] in the file's unit, both within [lowest, highest] radians.
-  Status read_range(const Value& list, const std::string& what, std::string_view key, double lowest,
-                    double highest, double& least, double& most) const {
-    const auto values = in_.numbers(list, what, key, 2);
-    if (!values) return values.error();
-    least = (*values)[0] * radians_;
-    most = (*values)[1] * radians_;
-    if (least > most) {
-      return in_.wrong(list, fmt::format("\"{}\" of {} has its min {} above its max {}", key, what,
-                                         readable((*values)[0]), readable((*values)[1])));
-    }
-    if (least < lowest - 1e-9 || most > highest + 1e-9) {
-      return in_.wrong(
-          list, fmt::format("\"{}\" of {} exceeds {} to {}", key, what, readable(lowest / radians_),
-                            readable(highest / radians_)));
-    }
-    return {};
-  }
-
-  Status read_swing(const Value& item, const std::string& what, JointLimit& limit) const {
-    const auto list = in_.get(item, what, "swing", Kind::array);
-    if (!list) return list.error();
-    const auto& ranges = (*list)->items;
-    if (ranges.size() != 2 || ranges[0].kind != Kind::array || ranges[1].kind != Kind::array) {
-      return in_.wrong(**list, fmt::format("\"swing\" of {} must be two ranges", what),
-                       "write [[-30, 45], [-20, 20]]");
-    }
-    for (std::size_t i = 0; i < 2; ++i) {
-      if (Status status = read_range(ranges[i], what, "swing", -kPi, kPi, limit.min_swing[i],
-                                     limit.max_swing[i]);
-          !status) {
-        return status;
-      }
-      if (limit.min_swing[i] > 0 || limit.max_swing[i] < 0) {
-        return in_.wrong(ranges[i], fmt::format("\"swing\" of {} does not contain 0", what),
-                         "turn \"zero\" into the middle of the range");
-      }
-    }
-    return {};
-  }
-
-  Status read_cone(const Value& item, const std::string& what, JointLimit& limit) const {
-    if (Status status = read_direction(item, what, "swing_axis", true, limit.swing_axis); !status) {
-      return status;
-    }
-    const double along = limit.axis.dot(limit.swing_axis);
-    if (!(std::abs(along) < kHandWritten)) {
-      return in_.wrong(
-          *item.find("swing_axis"),
-          fmt::format("\"swing_axis\" of {} is not perpendicular to its \"axis\"", what));
-    }
-    if (std::abs(along) > 1e-14) {
-      limit.swing_axis = (limit.swing_axis - along * limit.axis).normalized();
-    }
-    if (Status status = read_swing(item, what, limit); !status) return status;
-    const auto twist = in_.get(item, what, "twist", Kind::array);
-    if (!twist) return twist.error();
-    return read_range(**twist, what, "twist", -kPi, kPi, limit.min_twist, limit.max_twist);
-  }
-
-  Status read_hinge(const Value& item, const std::string& what, JointLimit& limit) const {
-    limit.swing_axis = limit.axis.unitOrthogonal();
-    const auto range = in_.get(item, what, "range", Kind::array);
-    if (!range) return range.error();
-    return read_range(**range, what, "range", -4 * kPi, 4 * kPi, limit.min_twist, limit.max_twist);
-  }
-
-  Status read_joint(const Value::Member& member) {
-    const int joint = skeleton_.find(member.key);
+  Result<JointLimit*> joint_of(const Given& key, ik::Limits& limits) const {
+    const int joint = skeleton.find(key.key);
     if (joint < 0) {
-      return json::error_at(text_, member.key_offset, "limits-joint",
-                            fmt::format("the skeleton has no joint '{}'", shown(member.key)),
-                            nearest_hint(member.key, skeleton_.names));
+      return key.error("joint", fmt::format("the skeleton has no joint '{}'", shown(key.key)),
+                       nearest_hint(key.key, skeleton.names));
     }
-    const std::string what = fmt::format("joint '{}'", shown(member.key));
-    const Value& item = member.value;
-    if (Status status =
-            in_.only(item, what,
-                     {"kind", "axis", "swing_axis", "range", "swing", "twist", "zero", "comment"});
-        !status) {
-      return status;
-    }
-    if (auto kind = in_.get(item, what, "kind", Kind::string); !kind) return kind.error();
-    const auto kind = in_.choice(item, what, "kind", {"free", "locked", "hinge", "cone"});
-    if (!kind) return kind.error();
-    JointLimit& limit = limits_[at(joint)];
-    limit.kind = static_cast<JointLimit::Kind>(**kind);
-    if (Status status = check_keys(item, what, limit.kind); !status) return status;
-    if (limit.kind == JointLimit::Kind::free || limit.kind == JointLimit::Kind::locked) return {};
-    if (Status status = read_zero(item, what, joint, limit.zero); !status) return status;
-    if (Status status = read_direction(item, what, "axis", true, limit.axis); !status) {
-      return status;
-    }
-    return limit.kind == JointLimit::Kind::hinge ? read_hinge(item, what, limit)
-                                                 : read_cone(item, what, limit);
+    JointLimit& limit = limits[at(joint)];
+    limit.zero = skeleton.reference_local(joint).orientation.normalized();
+    return &limit;
   }
-
-  // A range that the joint's kind does not use must not be taken for one that holds.
-  Status check_keys(const Value& item, const std::string& what, JointLimit::Kind kind) const {
-    const bool hinge = kind == JointLimit::Kind::hinge, cone = kind == JointLimit::Kind::cone;
-    const std::pair<const char*, bool> used[] = {{"range", hinge},        {"twist", cone},
-                                                 {"swing", cone},         {"swing_axis", cone},
-                                                 {"axis", hinge || cone}, {"zero", hinge || cone}};
-    for (const auto& [key, allowed] : used) {
-      if (const Value* value = item.find(key); value != nullptr && !allowed) {
-        return in_.wrong(*value,
-                         fmt::format("{} has \"{}\", which its kind does not use", what, key),
-                         "a hinge has axis and range, a cone axis, swing_axis, swing and twist");
-      }
-    }
-    return {};
-  }
-
-  std::string_view text_;
-  json::Members in_;
-  const Skeleton& skeleton_;
-  ik::Limits limits_;
-  double radians_ = kRadiansPerDegree;
 };
-
-std::string list_of(const Vec3& v) {
-  return fmt::format("[{}, {}, {}]", v.x(), v.y(), v.z());
-}
-
-std::string range_of(double least, double most) {
-  return fmt::format("[{}, {}]", least / kRadiansPerDegree, most / kRadiansPerDegree);
-}
-
-std::string zero_of(const Quat& q) {
-  return fmt::format("[{}, {}, {}, {}]", q.x(), q.y(), q.z(), q.w());
-}
-
-std::string text_of(const JointLimit& limit) {
-  switch (limit.kind) {
-    case JointLimit::Kind::hinge:
-      return fmt::format("{{\"kind\": \"hinge\", \"axis\": {}, \"range\": {}, \"zero\": {}}}",
-                         list_of(limit.axis), range_of(limit.min_twist, limit.max_twist),
-                         zero_of(limit.zero));
-    case JointLimit::Kind::cone:
-      return fmt::format(
-          "{{\"kind\": \"cone\", \"axis\": {}, \"swing_axis\": {},\n      \"swing\": [{}, {}], "
-          "\"twist\": {},\n      \"zero\": {}}}",
-          list_of(limit.axis), list_of(limit.swing_axis),
-          range_of(limit.min_swing[0], limit.max_swing[0]),
-          range_of(limit.min_swing[1], limit.max_swing[1]),
-          range_of(limit.min_twist, limit.max_twist), zero_of(limit.zero));
-    default:
-      return "{\"kind\": \"locked\"}";
-  }
-}
 
 }  // namespace
 
 Result<ik::Limits> read(std::string_view text, const Skeleton& skeleton) {
-  return Reader(text, skeleton).read();
+  return File{skeleton}.table().read_text(text, "limits");
 }
 
 std::string write(const ik::Limits& limits, const Skeleton& skeleton) {
-  std::vector<std::string> joints;
-  for (std::size_t j = 0; j < limits.size(); ++j) {
-    if (limits[j].kind == JointLimit::Kind::free) continue;
-    joints.push_back(
-        fmt::format("    {}: {}", json::in_quotes(skeleton.names[j]), text_of(limits[j])));
-  }
-  return fmt::format(
-      "{{\n  \"schema\": \"{}\",\n  \"angle_unit\": \"deg\",\n  \"joints\": {{\n{}\n  }}\n}}\n",
-      kSchema, fmt::join(joints, ",\n"));
+  return File{skeleton}.table().write(&limits) + '\n';
+}
+
+std::string schema() {
+  return File{{}}.table().schema();
 }
 
 }  // namespace krok::limits

@@ -20,4 +20,7 @@ Result<ik::Limits> read(std::string_view text, const Skeleton& skeleton);
 // out. Needs limits that pass ik::check.
 std::string write(const ik::Limits& limits, const Skeleton& skeleton);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::limits

@@ -29,4 +29,7 @@ Result<std::string> write(std::span<const Material> materials);
 using OpenImage = std::function<Result<InputFile>(const std::string& path)>;
 Status load_images(std::span<Material> materials, const OpenImage& open);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::material

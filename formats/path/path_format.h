@@ -25,4 +25,7 @@ struct ReadOptions {
 Result<std::vector<gait::PathPoint>> read(std::string_view text, const std::string& path,
                                           const ReadOptions& options = {});
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::path_file

@@ -7,7 +7,7 @@
 #include "core/quantity.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "formats/json/members.h"
+#include "formats/json/fields.h"
 #include "formats/path/path_data_internal.h"
 #include "formats/path/path_format.h"
 
@@ -17,13 +17,6 @@ namespace {
 
 using gait::PathPoint;
 using Points = Result<std::vector<PathPoint>>;
-
-Result<double> parse_path_seconds(std::string_view text) {
-  const auto time = parse_clip_time(text);
-  if (!time) return time.error();
-  if (time->in_frames) return Error("quantity-unit", "the unit cannot be frames", "use s or ms");
-  return time->value;
-}
 
 std::vector<PathPoint> without_times(const std::vector<Vec2>& points) {
   std::vector<PathPoint> way;
@@ -59,7 +52,8 @@ Points read_csv_path(std::string_view text, const std::string& path) {
     }
     columns[k] = c;
     if (name.unit.empty()) continue;
-    const auto factor = k < 2 ? parse_length("1" + name.unit) : parse_path_seconds("1" + name.unit);
+    const auto factor =
+        k < 2 ? parse_length("1" + name.unit) : json::parse_seconds("1" + name.unit);
     if (!factor) {
       error.message = factor.error().message;
       error.hint = factor.error().hint;
@@ -94,33 +88,17 @@ Points read_csv_path(std::string_view text, const std::string& path) {
   return way;
 }
 
-Points read_json_path(std::string_view text) {
-  const json::Members members(text, "path");
-  const auto root = json::parse(text);
-  if (!root) return root.error();
-  Status status = members.only(*root, "the file", {"schema", "comment", "points"});
-  if (!status) return status.error();
-  status = members.has_schema(*root, "the file", "krok.path/1");
-  if (!status) return status.error();
-  const auto list = members.get(*root, "the file", "points", json::Value::Kind::array);
-  if (!list) return list.error();
-  constexpr std::string_view kWhat = "a point";
-  std::vector<PathPoint> way;
-  for (const json::Value& item : (*list)->items) {
-    status = members.only(item, kWhat, {"x", "z", "time", "comment"});
-    if (!status) return status.error();
-    PathPoint& point = way.emplace_back();
-    for (const auto& [key, into] : {std::pair("x", &point.x), std::pair("z", &point.z)}) {
-      const auto value = members.quantity(item, kWhat, key, parse_length);
-      if (!value) return value.error();
-      if (!*value) return members.structure(item, fmt::format("a point is missing \"{}\"", key));
-      *into = **value;
-    }
-    const auto time = members.quantity(item, kWhat, "time", parse_path_seconds);
-    if (!time) return time.error();
-    point.time = *time;
-  }
-  return way;
+using Way = std::vector<PathPoint>;
+
+json::Object<Way> table() {
+  json::Object<PathPoint> point;
+  point.field("x", &PathPoint::x, json::quantity(parse_length, "metres")).required();
+  point.field("z", &PathPoint::z, json::quantity(parse_length, "metres")).required();
+  point.field("time", &PathPoint::time, json::quantity(json::parse_seconds, "seconds")).comment();
+  json::Object<Way> file;
+  file.file("krok.path/1", "A way over the ground (krok.path/1)").comment();
+  file.field("points", json::list<PathPoint>(json::object(point), {"a point"})).required();
+  return file;
 }
 
 }  // namespace
@@ -150,11 +128,15 @@ Points read(std::string_view text, const std::string& path, const ReadOptions& o
     return error;
   }
   if (first == '{') {
-    auto way = read_json_path(text);
+    auto way = table().read_text(text, "path");
     if (!way) return std::move(way.error()).in_file(path);
     return way;
   }
   return read_csv_path(text, path);
+}
+
+std::string schema() {
+  return table().schema();
 }
 
 }  // namespace krok::path_file

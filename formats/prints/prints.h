@@ -26,4 +26,7 @@ Result<std::vector<gait::Print>> read(std::string_view text, const std::string& 
 Status write_csv(std::span<const gait::Print> prints, OutputFile& file);
 Status write_json(std::span<const gait::Print> prints, OutputFile& file);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::prints

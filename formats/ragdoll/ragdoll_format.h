@@ -21,4 +21,7 @@ Result<ragdoll::Ragdoll> read(std::string_view text, const Skeleton* skeleton);
 // millionth of a degree, as those of ragdoll::rules_of() are.
 std::string write(const ragdoll::Ragdoll& what, const Skeleton& skeleton);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::ragdoll_file

@@ -28,4 +28,7 @@ struct SequenceFile {
 // Codes: json-syntax, json-limit, sequences-structure, sequences-value, each with line and column.
 Result<SequenceFile> read(std::string_view text);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::sequences

@@ -28,4 +28,7 @@ struct Document {
 // missing or unknown key), timeline-value.
 Result<Document> read(std::string_view text, const std::string& path);
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::timeline_file

@@ -34,4 +34,7 @@ Result<WeightFile> read(std::string_view text, const std::string& path,
 Result<MorphWeights> read_weights(std::string_view text, const std::string& path,
                                   const MorphSet& morphs, std::optional<double> rate = {});
 
+// The JSON Schema of such files.
+std::string schema();
+
 }  // namespace krok::weights

@@ -47,6 +47,9 @@ for file in "$fresh"/*; do
   fi
 done
 
+# JSON Schemas, from the field tables of the readers.
+KROK_UPDATE_SCHEMAS=1 "$build/tests/test_golden" --gtest_brief=1 --gtest_filter='Schemas.*'
+
 # Pages that are made from what the programs say of themselves.
 if [ -d "$build/bin" ]; then
   python3 "$source/tests/golden/manual.py" "$build/bin" "$source" --update

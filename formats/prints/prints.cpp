@@ -1,3 +1,5 @@
+#include "formats/prints/prints.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,8 +12,7 @@
 #include "core/quantity.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "formats/json/members.h"
-#include "formats/prints/prints.h"
+#include "formats/json/fields.h"
 
 namespace krok::prints {
 
@@ -34,20 +35,13 @@ struct Field {
   void (*set)(Print& print, double value);
 };
 
-Result<double> parse_seconds(std::string_view text) {
-  const auto time = parse_clip_time(text);
-  if (!time) return time.error();
-  if (time->in_frames) return Error("quantity-unit", "the unit cannot be frames", "use s or ms");
-  return time->value;
-}
-
 const std::array<Field, 5>& fields() {
   static const std::array<Field, 5> kFields = {{
       {"x", "m", true, kFarthest, parse_length, [](Print& p, double v) { p.x = v; }},
       {"z", "m", true, kFarthest, parse_length, [](Print& p, double v) { p.z = v; }},
       {"heading", "deg", true, kMaxTurn, parse_angle, [](Print& p, double v) { p.heading = v; }},
       {"height", "m", false, kFarthest, parse_length, [](Print& p, double v) { p.height = v; }},
-      {"time", "s", false, kLatest, parse_seconds, [](Print& p, double v) { p.time = v; }},
+      {"time", "s", false, kLatest, json::parse_seconds, [](Print& p, double v) { p.time = v; }},
   }};
   return kFields;
 }
@@ -209,81 +203,117 @@ class CsvReader {
   std::size_t cells_of_ = 0;
 };
 
-class JsonReader {
- public:
-  explicit JsonReader(std::string_view text) : text_(text), members_(text, "prints") {}
+using Prints = std::vector<Print>;
 
-  Result<std::vector<Print>> read() {
-    const auto root = json::parse(text_);
-    if (!root) return root.error();
-    Status status = members_.only(*root, "the file", {"schema", "comment", "prints"});
-    if (!status) return status.error();
-    status = members_.has_schema(*root, "the file", "krok.prints/1");
-    if (!status) return status.error();
-    const auto list = members_.get(*root, "the file", "prints", json::Value::Kind::array);
-    if (!list) return list.error();
-    std::vector<Print> prints;
-    for (const json::Value& item : (*list)->items) {
-      auto print = read_print(item);
-      if (!print) return print.error();
-      prints.push_back(*print);
-    }
-    status = check_order(prints, [&](std::size_t index, bool time) {
-      const json::Value& item = (*list)->items[index];
-      const json::Value& value = *item.find(time ? "time" : "side");
-      return json::error_at(text_, value.offset, {}, {}).where;
+json::Object<Print> print_table() {
+  json::Object<Print> print;
+  print
+      .field("side", &Print::side,
+             json::kind<FootSide>(R"({"enum": ["left", "right", "l", "r"]})",
+                                  [](const json::Given& given, FootSide& to) -> Status {
+                                    Status status = given.is(json::Value::Kind::string);
+                                    if (!status) return status;
+                                    const auto side = side_of(given.value.text);
+                                    to = side.value_or(to);
+                                    if (side) return {};
+                                    return given.wrong(
+                                        fmt::format("'{}' is no side", shown(given.value.text)),
+                                        "write left or right");
+                                  }))
+      .required();
+  for (const Field& field : fields()) {
+    const auto value = json::quantity(field.parse, field.unit);
+    print.field(field.name,
+                json::kind<Print>(
+                    value.schema(), [&field, value](const json::Given& given, Print& to) -> Status {
+                      double number = 0;
+                      if (Status status = value.read(given, &number); !status) return status;
+                      field.set(to, number);
+                      if (std::abs(number) <= field.most) return {};
+                      return given.wrong(fmt::format("{} is too large", given.name()));
+                    }));
+    if (field.needed) print.required();
+  }
+  return print.comment();
+}
+
+json::Object<Prints> table() {
+  json::Object<Prints> file;
+  file.file("krok.prints/1", "Footprints (krok.prints/1)").comment();
+  file.field("prints", json::list<Print>(json::object(print_table()), {"a print"})).required();
+  file.check([](const json::Given& root, const Prints& prints) -> Status {
+    Status status = check_order(prints, [&](std::size_t index, bool time) {
+      const json::Value& item = root.value.find("prints")->items[index];
+      return json::Given{root.source, *item.find(time ? "time" : "side"), {}, {}}
+          .error({}, {})
+          .where;
     });
-    if (!status) return status.error();
-    return prints;
-  }
+    return status;
+  });
+  return file;
+}
 
- private:
-  Result<Print> read_print(const json::Value& item) const {
-    constexpr std::string_view kWhat = "a print";
-    Status status =
-        members_.only(item, kWhat, {"side", "x", "z", "heading", "height", "time", "comment"});
-    if (!status) return status.error();
-    Print print;
-    const auto side = members_.get(item, kWhat, "side", json::Value::Kind::string);
-    if (!side) return side.error();
-    const auto which = side_of((*side)->text);
-    if (!which) {
-      return members_.wrong(**side, fmt::format("'{}' is no side", shown((*side)->text)),
-                            "write left or right");
-    }
-    print.side = *which;
-    for (const Field& field : fields()) {
-      const auto value = members_.quantity(item, kWhat, field.name, field.parse);
-      if (!value) return value.error();
-      if (!*value) {
-        if (!field.needed) continue;
-        return members_.structure(item, fmt::format("a print is missing \"{}\"", field.name));
-      }
-      if (!(std::abs(**value) <= field.most)) {
-        return members_.wrong(*item.find(field.name),
-                              fmt::format("\"{}\" of a print is too large", field.name));
-      }
-      field.set(print, **value);
-    }
-    return print;
-  }
+// Up to six decimals, without trailing zeros or negative zero.
+std::string six_decimals(double value) {
+  std::string text = fmt::format("{:.6f}", value);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text == "-0" ? "0" : text;
+}
 
-  std::string_view text_;
-  json::Members members_;
-};
+std::string degrees(const gait::Print& print) {
+  return six_decimals(print.heading / kRadiansPerDegree);
+}
 
 }  // namespace
 
 Result<std::vector<Print>> read(std::string_view text, const std::string& path) {
   const std::string_view begin = trimmed(without_byte_order_mark(text).substr(0, 256));
   if (begin.starts_with('{')) {
-    auto prints = JsonReader(text).read();
+    auto prints = table().read_text(text, "prints");
     if (!prints) return std::move(prints.error()).in_file(path);
     return prints;
   }
   const auto table = csv::Table::read(text, path);
   if (!table) return table.error();
   return CsvReader(*table, path).read();
+}
+
+Status write_csv(std::span<const gait::Print> prints, OutputFile& file) {
+  const bool heights = std::ranges::any_of(prints, [](const auto& one) { return !!one.height; });
+  const bool times = std::ranges::any_of(prints, [](const auto& one) { return !!one.time; });
+  std::string text = "side,x [m],z [m],heading [deg]";
+  if (heights) text += ",height [m]";
+  if (times) text += ",time [s]";
+  text += '\n';
+  for (const gait::Print& print : prints) {
+    text += fmt::format("{},{},{},{}", name_of(print.side), six_decimals(print.x),
+                        six_decimals(print.z), degrees(print));
+    if (heights) text += ',' + (print.height ? six_decimals(*print.height) : std::string());
+    if (times) text += ',' + (print.time ? six_decimals(*print.time) : std::string());
+    text += '\n';
+  }
+  return file.write(text);
+}
+
+Status write_json(std::span<const gait::Print> prints, OutputFile& file) {
+  std::string text = "{\n  \"schema\": \"krok.prints/1\",\n  \"prints\": [";
+  const char* between = "\n";
+  for (const gait::Print& print : prints) {
+    text += fmt::format("{}    {{\"side\": \"{}\", \"x\": {}, \"z\": {}, \"heading\": {}", between,
+                        name_of(print.side), six_decimals(print.x), six_decimals(print.z),
+                        degrees(print));
+    if (print.height) text += ", \"height\": " + six_decimals(*print.height);
+    if (print.time) text += ", \"time\": " + six_decimals(*print.time);
+    text += '}';
+    between = ",\n";
+  }
+  text += prints.empty() ? "]\n}\n" : "\n  ]\n}\n";
+  return file.write(text);
+}
+
+std::string schema() {
+  return table().schema();
 }
 
 }  // namespace krok::prints
