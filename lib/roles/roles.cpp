@@ -5,11 +5,8 @@
 #include <utility>
 
 #include "core/index.h"
-#include "roles/body_shape.h"
 #include "roles/joint_names.h"
-#include "roles/limb_tips_internal.h"
-#include "roles/named_joints_internal.h"
-#include "roles/role_finder.h"
+#include "roles/role_finder_internal.h"
 
 namespace krok {
 

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/index.h"
 #include "roles/joint_names.h"
+#include "roles/roles.h"
 #include "scene/skeleton.h"
 
 namespace krok {
@@ -54,5 +57,25 @@ class NamedJoints {
   std::vector<int> depths_;                // [joints], 0 for the root
   std::vector<std::size_t> counts_below_;  // [joints], the joint included
 };
+
+// The joints at the ends of the limbs and the head; -1 for those that were not found.
+struct LimbTips {
+  std::array<int, 2> hands = {-1, -1};  // left, right
+  std::array<int, 2> feet = {-1, -1};
+  int head = -1;
+  int neck = -1;
+};
+
+LimbTips find_limb_tips(const NamedJoints& joints);
+
+// Part and side of each joint, shape [joints], derived from the reference pose alone, for skeletons
+// without meaningful names. Requires a trunk between two mirrored pairs of limbs, an upright pose
+// with the hands above the ground (unlike the front feet of quadrupeds), a branch for the head, and
+// feet that show the facing direction, which determines left and right. Empty otherwise.
+std::optional<std::vector<JointName>> names_from_shape(const Skeleton& skeleton);
+
+// Roles from part and side of each joint (shape [joints]), checked against the hierarchy. `names`
+// may come from another source than the skeleton's joint names.
+RoleMap roles_from_names(const Skeleton& skeleton, std::vector<JointName> names);
 
 }  // namespace krok
