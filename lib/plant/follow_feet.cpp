@@ -7,7 +7,7 @@
 #include "contacts/contacts.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
-#include "plant/leg_pose_internal.h"
+#include "plant/foot_paths_internal.h"
 #include "plant/sole_follower_internal.h"
 
 namespace krok {

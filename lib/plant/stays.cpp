@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "math/median.h"
+#include "plant/foot_paths_internal.h"
 #include "plant/smooth_curve_internal.h"
-#include "plant/stays_internal.h"
 
 namespace krok::plant {
 
