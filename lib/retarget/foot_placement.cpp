@@ -8,7 +8,7 @@
 #include "core/index.h"
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
-#include "retarget/actor_measure_internal.h"
+#include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {
 

@@ -7,7 +7,6 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "retarget/actor_measure_internal.h"
 #include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {

@@ -6,7 +6,6 @@
 #include <array>
 
 #include "retarget/actor_view_internal.h"
-#include "retarget/build_stance_internal.h"
 
 namespace krok::retarget {
 
