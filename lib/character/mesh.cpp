@@ -8,11 +8,9 @@
 #include <map>
 
 #include "capture/unique_names.h"
-#include "character/mesh_placement_internal.h"
-#include "character/mesh_vertices_internal.h"
-#include "character/morph_targets_internal.h"
+#include "character/mesh_internal.h"
 #include "character/motion.h"
-#include "character/tell_internal.h"
+#include "character/rig_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
