@@ -14,7 +14,6 @@
 #include "motion/hips_root.h"
 #include "motion/mirror.h"
 #include "parametric/find_steps_internal.h"
-#include "parametric/step_direction_internal.h"
 
 namespace krok::parametric {
 
