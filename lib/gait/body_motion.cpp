@@ -8,7 +8,6 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "gait/smooth_internal.h"
 #include "math/euler.h"
 #include "math/smoother_step.h"
 #include "motion/ground_frame.h"

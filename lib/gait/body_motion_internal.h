@@ -1,13 +1,54 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "gait/plan_steps_internal.h"
+#include "gait/ground_prints_internal.h"
+#include "gait/walk.h"
+#include "parametric/blended_motion.h"
 
-// The motion of the whole body over all steps, joined, before the feet are set on their prints.
-// Used by walk().
+// Which step of which library goes from print to print.
 
 namespace krok::gait {
+
+// The step over print `stance`, from print stance - 1 to print stance + 1.
+struct PlannedStep {
+  int stance = 0;
+  int library = 0;
+  std::vector<double> asked;    // parameters by the prints
+  std::vector<double> nearest;  // the nearest inside the examples' range
+  double far = 0;               // metres from `asked` to `nearest`
+  std::vector<double> weights;
+  std::vector<double> made;  // parameters of the blend
+};
+
+struct PlannedWalk {
+  std::vector<Print> prints;  // moved where `adapt` asked for it
+  std::vector<GroundedPrint> grounded;
+  std::vector<PlannedStep> steps;
+  std::vector<double> moved;  // metres, [prints]
+  std::vector<std::string> why_moved;
+  Diagnostics warnings;
+};
+
+Result<PlannedWalk> plan_steps(std::span<const StepLibrary> libraries, const Walker& walker,
+                               std::span<const Print> prints, const Terrain& ground,
+                               const WalkOptions& options);
+
+// The quintic that is 1, with slope or with acceleration 1, at s = 0, its two other derivatives
+// zero, and zero with two derivatives at s = 1.
+struct Fading {
+  double value, slope, acceleration;
+};
+inline Fading fading(double s) {
+  if (s >= 1) return {0, 0, 0};
+  const double s2 = s * s, s3 = s2 * s;
+  return {1 - s3 * (10 - s * (15 - 6 * s)), s - s3 * (6 - s * (8 - 3 * s)),
+          0.5 * s2 - s3 * (1.5 - s * (1.5 - 0.5 * s))};
+}
+
+// The motion of the whole body over all steps, joined, before the feet are set on their prints.
+//
 
 // A step's blend in the world and in the walk's time. The first step begins standing: a captured
 // start is one from its begin; of any other step it starts with the swing foot beside the stance

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "gait/body_motion_internal.h"
 
 // Where the feet go: fixed on their prints, rolling over heel and ball as in the blend, and over
-// the ground in between. Used by walk().
+// the ground in between.
 
 namespace krok::gait {
 
@@ -104,5 +105,24 @@ std::array<Vec3, 3> sole_points(const Leg& leg, const FootPose& foot);
 FootPose in_signs_of(const Leg& leg, const Quat& reference, FootPose foot);
 
 FootPose foot_of(const Leg& leg, std::span<const Transform> joint_to_world);
+
+// Legs from where the pelvis and the feet are.
+
+// Metres by which the pelvis must be lowered so that no leg is stretched further than in the blend,
+// or than nearly straight.
+double lowering_for(const Walker& walker, std::span<const Transform> joint_to_world,
+                    const std::array<FootPose, 2>& target);
+
+// A curve at or above `needs` (>= 0) with two derivatives: their maximum within `reach` frames on
+// either side, averaged over as many twice.
+std::vector<double> smooth_above(std::span<const double> needs, int reach);
+
+struct SolvedLegs {
+  double extension = 0;  // largest distance from hip to ankle, of the leg's length
+  double missed = 0;     // metres by which a foot does not reach its place
+};
+// Brings the feet of `pose` to `target`. `joint_to_world`: of the pose; changed with it.
+SolvedLegs solve_legs(const Walker& walker, const std::array<FootPose, 2>& target, double stretch,
+                      PoseVector& pose, std::span<Transform> joint_to_world);
 
 }  // namespace krok::gait

@@ -1,4 +1,4 @@
-#include "gait/plan_steps_internal.h"
+#include "gait/body_motion_internal.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/numbers.h"
-#include "gait/reach_internal.h"
+#include "gait/ground_prints_internal.h"
 #include "motion/ground_frame.h"
 
 namespace krok::gait {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "gait/legs_internal.h"
+#include "gait/foot_paths_internal.h"
 
 // The frames of a part of a walk. Each part is made by itself, from the steps around it too, so
 // that the walk is the same however it is divided. Used by walk().
