@@ -6,7 +6,6 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "ragdoll/articulation_internal.h"
-#include "ragdoll/collision_internal.h"
 #include "ragdoll/impulse_solver_internal.h"
 
 namespace krok::ragdoll {
