@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "contacts/series_internal.h"
+#include "math/window.h"
 
 namespace krok::contacts {
 
@@ -36,7 +37,7 @@ double cycle_of(const Seeds& seeds) {
   for (const auto* list : {&seeds.front, &seeds.back}) {
     for (std::size_t i = 1; i < list->size(); ++i) cycles.push_back((*list)[i] - (*list)[i - 1]);
   }
-  return cycles.empty() ? kUsualCycle : std::clamp(middle(cycles), 0.4, 2.5);
+  return cycles.empty() ? kUsualCycle : std::clamp(upper_median(cycles), 0.4, 2.5);
 }
 
 bool is_seeded(const Seeds& seeds, double time, double cycle) {
@@ -85,9 +86,9 @@ Offset offset_of(std::vector<double> offsets, double usual, bool jittery) {
   Offset offset{usual};
   offset.jittery = jittery;
   if (offsets.empty()) return offset;
-  offset.usual = middle(offsets);
+  offset.usual = upper_median(offsets);
   for (double& value : offsets) value = std::abs(value - offset.usual);
-  offset.spread = middle(offsets);
+  offset.spread = upper_median(offsets);
   offset.scattered = offset.spread > kScattered;
   if (offset.scattered) offset.usual = usual;
   offset.known = offsets.size() >= 4;
@@ -124,7 +125,7 @@ void Pairing::add_early(std::vector<double>& early) const {
 }
 
 bool leave_early(const std::vector<double>& early) {
-  return early.size() >= 2 && middle(early) > kEarly;
+  return early.size() >= 2 && upper_median(early) > kEarly;
 }
 
 void Pairing::add_offsets(std::vector<double>& offsets) const {

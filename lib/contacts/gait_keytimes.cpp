@@ -10,6 +10,7 @@
 #include "contacts/gait_plausibility.h"
 #include "contacts/series_internal.h"
 #include "contacts/walking_feet_internal.h"
+#include "math/window.h"
 #include "motion/ground_frame.h"
 #include "scene/clip.h"
 
@@ -124,7 +125,7 @@ class KeytimeFinder {
         before = &key;
       }
     }
-    return lengths.empty() ? 0 : contacts::middle(lengths);
+    return lengths.empty() ? 0 : upper_median(lengths);
   }
 
   // Of two consecutive strikes of a foot that belong to one stance keeps the first, of two toe-offs
@@ -271,7 +272,7 @@ class KeytimeFinder {
       }
     }
     if (rolls.empty() || !(first_roll > 0)) return;
-    const double strike = first_roll - contacts::middle(rolls);
+    const double strike = first_roll - upper_median(rolls);
     if (is_cut_short(foot, strike)) return;
     if (strike > -kFrame && strike < std::min(first_roll, 3 * kFrame)) {
       strikes.insert(strikes.begin(), std::max(0.0, strike));
@@ -286,7 +287,7 @@ class KeytimeFinder {
       if (!stance.open_start && !stance.open_end) lengths.push_back(stance.end - stance.start);
     }
     if (lengths.empty() || foot.stances.front().open_end) return false;
-    return foot.stances.front().end - strike < kWhole * contacts::middle(lengths);
+    return foot.stances.front().end - strike < kWhole * upper_median(lengths);
   }
 
   // A clip cut at a strike ends with a foot about to touch, a usual swing after its toe-off; the
@@ -302,7 +303,7 @@ class KeytimeFinder {
     if (foot.stances.back().open_end && !begun) return;
     const Stance& last = foot.stances[foot.stances.size() - (begun ? 2 : 1)];
     if (begun) swings.pop_back();
-    const double expected = last.end + contacts::middle(swings);
+    const double expected = last.end + upper_median(swings);
     if (expected < end - 3 * kFrame || expected > end + 1.5 * kFrame) return;
     while (!strikes.empty() && strikes.back() > last.end) strikes.pop_back();
     strikes.push_back(std::min(expected, end));

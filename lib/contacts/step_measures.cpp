@@ -5,6 +5,7 @@
 
 #include "contacts/gait_metrics.h"
 #include "contacts/series_internal.h"
+#include "math/window.h"
 
 namespace krok {
 
@@ -45,7 +46,7 @@ std::vector<FootPlace> places_of(const Clip& clip, const std::array<int, 2>& ank
 }
 
 std::optional<double> median(const std::vector<double>& values) {
-  return values.empty() ? std::nullopt : std::optional(contacts::middle(values));
+  return values.empty() ? std::nullopt : std::optional(upper_median(values));
 }
 
 }  // namespace

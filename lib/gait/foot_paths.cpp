@@ -8,6 +8,7 @@
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
 #include "math/smoother_step.h"
+#include "math/window.h"
 
 namespace krok::gait {
 
@@ -133,8 +134,8 @@ Vec3 Swing::detour_at(double part, const Detour& detour) const {
 
 FootPose Swing::at(double time, const FootPose& blend) const {
   const double length = strike_ - off_, since = time - off_, left = strike_ - time;
-  // Velocities are matched within a short time: blends come to their prints later than at the
-  // strike, and leave them earlier than at the off.
+  // Velocities are matched within a short time, because blends reach their prints after the strike
+  // and leave them before toe-off.
   const double width = std::min(kMatching, 0.5 * length);
   const Fading start = fading(since / width), end = fading(left / width);
   const Offset offset =
@@ -246,29 +247,12 @@ double lowering_for(const Walker& walker, std::span<const Transform> joint_to_wo
 }
 
 std::vector<double> smooth_above(std::span<const double> needs, int reach) {
-  const int count = static_cast<int>(needs.size());
-  std::vector<double> result(needs.begin(), needs.end());
   if (reach < 1 || std::ranges::all_of(needs, [](double need) { return need == 0; })) {
-    return result;
+    return {needs.begin(), needs.end()};
   }
-  const auto clamped = [&](int i) { return at(std::clamp(i, 0, count - 1)); };
   // Twice averaged over 2 half + 1 frames, a value spreads over 2 half on either side.
   const int half = std::max(1, reach / 2);
-  std::vector<double> highest(needs.size());
-  for (int i = 0; i < count; ++i) {
-    double high = 0;
-    for (int k = -2 * half; k <= 2 * half; ++k) high = std::max(high, needs[clamped(i + k)]);
-    highest[at(i)] = high;
-  }
-  for (int round = 0; round < 2; ++round) {
-    for (int i = 0; i < count; ++i) {
-      double sum = 0;
-      for (int k = -half; k <= half; ++k) sum += highest[clamped(i + k)];
-      result[at(i)] = sum / (2 * half + 1);
-    }
-    highest = result;
-  }
-  return result;
+  return mean_within(mean_within(max_within(needs, 2 * half), half), half);
 }
 
 SolvedLegs solve_legs(const Walker& walker, const std::array<FootPose, 2>& target, double stretch,

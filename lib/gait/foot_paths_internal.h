@@ -6,8 +6,8 @@
 
 #include "gait/body_motion_internal.h"
 
-// Where the feet go: fixed on their prints, rolling over heel and ball as in the blend, and over
-// the ground in between.
+// Paths of the feet: fixed on their prints while they roll over heel and ball as in the blend, and
+// clear of the ground in between.
 
 namespace krok::gait {
 
@@ -49,22 +49,22 @@ class Stance {
   Vec3 heel_ = Vec3::Zero(), pivot_ = Vec3::Zero();  // world
 };
 
-// The way of a foot from print to print: what is added to the blend's.
+// The path of a foot from print to print, as an offset from the blend's.
 class Swing {
  public:
   Swing(const Leg& leg, double off, double strike) : leg_(&leg), off_(off), strike_(strike) {}
 
-  // What the foot on a print is off the blend's, at the off and 1 and 2 `spacing` seconds before,
-  // or at the strike and after.
+  // The foot in the blend and on its print, at toe-off and 1 and 2 `spacing` seconds before, or at
+  // the strike and after.
   struct Ends {
     std::array<FootPose, 3> blend, wanted;
     double spacing = 0;
   };
   void set_ends(const Ends& off, const Ends& strike);
 
-  // Leads the foot over the ground: raises it, and where edges of stairs are in the way, holds it
-  // back until it is up, or carries it on before it goes down. `blend` are its poses at `times` of
-  // the swing, `from` is the height of the higher print.
+  // Keeps the foot clear of the ground: raises it, and at the edges of stairs holds it back until
+  // it is high enough, or moves it on before it comes down. `blend` has its poses at `times` of the
+  // swing, `from` is the height of the higher print.
   void clear(const Terrain& ground, std::span<const double> times, std::span<const FootPose> blend,
              double clearance, double from);
 
@@ -76,7 +76,8 @@ class Swing {
  private:
   using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
   static Offset offset_of(const FootPose& blend, const FootPose& wanted);
-  // What leads the foot over the ground: bumps u^a (1 - u)^b over the part u of the swing.
+  // Offsets that keep the foot clear of the ground: bumps u^a (1 - u)^b over the part u of the
+  // swing.
   struct Detour {
     double lift = 0, hold = 0;  // metres up, and along the swing
     int rise = 3, fall = 3;     // exponents of the lift

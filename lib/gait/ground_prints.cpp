@@ -84,7 +84,7 @@ Result<GroundedPrint> set_on_ground(const Print& print, int number, const Walker
   const double height = print.height ? *print.height : at_heel->height;
   result.heel = {print.x, height, print.z};
   const Vec3 way = ahead(print.heading), left = {way.z(), 0, -way.x()};
-  // What is given a height of its own lies level where the ground is elsewhere.
+  // A print with a height of its own lies level where the ground has another height.
   const double raised = print.height && at_heel ? height - at_heel->height : 0;
   const auto height_at = [&](const Vec3& point) -> std::optional<double> {
     if (print.height && (!at_heel || std::abs(raised) > 0.01)) return height;
@@ -184,8 +184,8 @@ Status check_way(const GroundedPrint& from, const GroundedPrint& stance, const G
   return {};
 }
 
-// Whether the soles of both feet, half as wide as they are, lie on each other: rectangles that no
-// line along a side of one of them parts.
+// Whether the soles of both feet, half as wide as they are, overlap: rectangles that no line along
+// a side of one of them separates.
 bool overlap(const GroundedPrint& one, const GroundedPrint& other, const Walker& walker) {
   const auto sole = [&](const GroundedPrint& print) {
     const double length = walker.leg(print.side).sole.length;

@@ -20,10 +20,10 @@ std::optional<GroundPoint> ground_near(const Terrain& ground, double x, double z
 Result<GroundedPrint> set_on_ground(const Print& print, int number, const Walker& walker,
                                     const Terrain& ground, double from);
 
-// What a person can do in one step.
+// Limits of what a person can do in one step.
 
 // A step as a library measures it, relative to the stance foot: metres and radians. `toe_out` is
-// what its feet turn out by: prints may have any.
+// how far the library's feet turn out; prints may have any toe-out.
 struct StepShape {
   double along = 0, across = 0, up = 0;  // across: to the side of the swing foot
   double turn = 0;                       // of the toes, to that side

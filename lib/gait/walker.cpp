@@ -71,16 +71,14 @@ double toe_length(const Skeleton& skeleton, int foot, const FootGeometry& sole) 
   double farthest = 0;
   const Transform to_foot = skeleton.reference[at(foot)].inverse();
   for (int j = foot + 1; j < skeleton.joint_count(); ++j) {
-    int above = j;
-    while (above > foot) above = skeleton.parents[at(above)];
-    if (above != foot) continue;
+    if (!is_below(skeleton, j, foot)) continue;
     const Vec3 point = to_foot * skeleton.reference[at(j)].position;
     farthest = std::max(farthest, (sole.sole.conjugate() * (point - sole.ball)).z());
   }
   return farthest > 0.1 * sole.length ? farthest : kToeShare * sole.length;
 }
 
-// What a leg does in the middle of the stance of the mean step: the foot is flat.
+// Takes the geometry of the flat foot from the middle of the stance in the mean step.
 void learn_flat_foot(const StepLibrary& steps, FootSide side, Walker& walker) {
   const parametric::Synthesiser& stance = steps.steps(other(side));
   const PoseVector pose =
@@ -125,8 +123,9 @@ double off_of_swing(const parametric::Synthesiser& step) {
   return step.packed().generic[static_cast<std::size_t>(off)];
 }
 
-// Joints that are within a centimetre of their place in the reference pose in all examples. There
-// they are put: captures' floats, and mirror images of unequal sides, change bones' lengths.
+// Joints that stay within a centimetre of their place in the reference pose in all examples. They
+// are fixed there, because rounding in captures and mirror images of unequal sides change bone
+// lengths.
 std::vector<FixedJoint> fixed_joints(const StepLibrary& steps) {
   constexpr double kMoves = 0.01;  // metres
   const parametric::PackedExamples& packed = steps.steps(FootSide::left).packed();
@@ -265,21 +264,12 @@ void Walker::to_world(const PoseVector& pose, std::span<Transform> joint_to_worl
 }
 
 Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
-  using enum Role;
   const StepLibrary& steps = main_library(libraries);
   Walker walker;
   walker.skeleton = &steps.steps(FootSide::left).packed().skeleton;
-  constexpr Role kLegs[2][4] = {{left_upper_leg, left_lower_leg, left_foot, left_toes},
-                                {right_upper_leg, right_lower_leg, right_foot, right_toes}};
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     Leg& leg = walker.legs[index_of(side)];
-    const auto& roles = kLegs[index_of(side)];
-    leg.upper = steps.roles().joint(roles[0]);
-    leg.lower = steps.roles().joint(roles[1]);
-    leg.foot = steps.roles().joint(roles[2]);
-    for (const int toes : steps.roles().joints(roles[3])) {
-      if (leg.toes < 0) leg.toes = toes;
-    }
+    static_cast<LegJoints&>(leg) = leg_joints(steps.roles(), side);
     if (leg.upper < 0 || leg.lower < 0 || leg.foot != steps.library().foot(side).joint) {
       return Error("walk-legs", "the skeleton has no known legs of thigh, shank and foot",
                    "assign their joints with --map");

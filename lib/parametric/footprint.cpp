@@ -5,9 +5,10 @@
 #include <ranges>
 #include <vector>
 
+#include "contacts/legs.h"
 #include "math/euler.h"
-#include "math/median.h"
 #include "math/types.h"
+#include "math/window.h"
 #include "motion/ground_frame.h"
 
 namespace krok::parametric {
@@ -16,12 +17,6 @@ namespace {
 
 constexpr double kUpright = 1e-3;  // of the horizontal part of a unit vector
 constexpr double kClimb = 0.15;    // of the leg length, between the heights of contacts
-
-Quat orientation(const Clip& clip, int frame, int joint) {
-  return clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
-      .cast<double>()
-      .normalized();
-}
 
 // The up direction in the foot's frame, for frames with both heel and ball in contact.
 void add_flat_frames(const ClipContacts& given, FootSide side, int joint, std::vector<Vec3>& ups) {
@@ -39,7 +34,7 @@ void add_flat_frames(const ClipContacts& given, FootSide side, int joint, std::v
   }
   for (int f = 0; f < clip.frame_count(); ++f) {
     if (heel[static_cast<std::size_t>(f)] && front[static_cast<std::size_t>(f)]) {
-      ups.emplace_back(orientation(clip, f, joint).conjugate() * Vec3::UnitY());
+      ups.emplace_back(joint_at(clip, f, joint).orientation.conjugate() * Vec3::UnitY());
     }
   }
 }

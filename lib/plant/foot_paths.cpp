@@ -48,7 +48,7 @@ class FootSolver {
     return through(turn, speed_ / lever_);
   }
 
-  // What brings the point that stands to its place, once the foot is turned.
+  // The shift that brings the standing point to its place once the foot is turned.
   KnownCurve shifts(const std::vector<Vec3>& turn) const {
     KnownCurve shift(frames_);
     for (std::size_t f = 0; f < frames_; ++f) {
@@ -69,7 +69,7 @@ class FootSolver {
   }
   double speed() const { return speed_; }
 
-  // The heel comes up more than captured where ball or tip stand without it and the leg would be
+  // Raises the heel further than captured where ball or tip stand without it and the leg would be
   // stretched.
   void lift_heel(FootPath& path) const {
     if (ball_ < 0) return;
@@ -91,9 +91,9 @@ class FootSolver {
     }
   }
 
-  // Where heel or ball stands alone, the ankle would take over what the foot jitters by about it,
-  // and the knee would shake. Its shift is smoothed instead, and the foot turned to where its point
-  // stands; less so where the ankle itself was captured with jitter, which the shift takes out.
+  // While heel or ball stands alone, jitter of the foot's orientation would move the ankle and
+  // shake the knee. The ankle's shift is smoothed instead, and the foot turned so that its point
+  // stays in place; less so where the captured ankle itself jitters, which the shift removes.
   void calm_ankle(FootPath& path) const {
     const std::vector<double> parts = apart_from_flat();
     const double jitter = jitter_of_ankle(parts) / kCalmJitter;
@@ -129,7 +129,7 @@ class FootSolver {
     return jitter_of(captured);
   }
 
-  // 0 where heel and ball both stand, which leaves the foot no turn, 1 from kCalmJoin on.
+  // 0 while heel and ball both stand, which fixes the foot's orientation; 1 from kCalmJoin on.
   std::vector<double> apart_from_flat() const {
     std::vector<double> parts(frames_, 1);
     const int reach = std::max(1, static_cast<int>(std::lround(kCalmJoin * clip_.rate)));
@@ -283,8 +283,8 @@ struct LegNow {
   }
 };
 
-// How far down the hip must come for the ankle to be within `reach` of it, >= 0; where it stands
-// too far off to the side, as far as brings it nearest.
+// Metres by which the hip must be lowered for the ankle to be within `reach` of it, >= 0; if the
+// ankle is too far to the side, those that bring it nearest.
 double drop_for(const Vec3& from_hip, double reach) {
   if (from_hip.norm() <= reach) return 0;
   const double level = from_hip.x() * from_hip.x() + from_hip.z() * from_hip.z();
@@ -301,8 +301,7 @@ TwoBoneSolution solve(const Leg& leg, const LegNow& now) {
   chain.hinge = sine > 1e-5 ? Vec3(hinge.normalized()) : usual;
   TwoBoneGoal goal;
   goal.target = now.goal;
-  // Bend that is added is about the usual axis: what a leg that is nearly straight shows of its
-  // plane is mostly error.
+  // Added flexion is about the usual axis: the plane of a nearly straight leg is mostly noise.
   const double bend = two_bone_bend(now.thigh, now.shank, now.reach);
   const double then = two_bone_bend(now.thigh, now.shank, (goal.target - chain.root).norm());
   const double agree = std::max(0.0, chain.hinge.dot(usual));
@@ -347,18 +346,18 @@ Moves moves_of(const Clip& clip, int frame, const Leg& leg, const LegNow& now, c
 std::vector<double> lowering(const Clip& clip, const PlantedBody& body,
                              const std::vector<FootPath>& paths) {
   const auto frames = static_cast<std::size_t>(clip.frame_count());
-  std::vector<double> bounds(frames, 0);
+  std::vector<double> needs(frames, 0);
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
     for (std::size_t f = 0; f < frames; ++f) {
       const LegNow now(clip, static_cast<int>(f), body.legs[i], paths[i], 0);
       const double longest =
           std::max(now.reach, two_bone_reach(now.thigh, now.shank, kNearlyStraight));
-      bounds[f] = std::min(bounds[f], -drop_for(now.goal - now.upper.position, longest));
+      needs[f] = std::max(needs[f], drop_for(now.goal - now.upper.position, longest));
     }
   }
   std::vector<double> lowered =
-      smooth_below(bounds, static_cast<int>(std::lround(kSpread * clip.rate)));
-  for (double& metres : lowered) metres = std::max(0.0, -metres);
+      smooth_above(needs, static_cast<int>(std::lround(kSpread * clip.rate)));
+  for (double& metres : lowered) metres = std::max(0.0, metres);
   return lowered;
 }
 

@@ -23,9 +23,9 @@ struct Footing {
   std::size_t index_of(FootPart part) const;  // of parts
 };
 
-// The stays as whole frames, frames in which a point is far from its place left out. Those of a
-// point that has a joint are `contacts`, where given. `before` are those of the clip before jitter
-// was taken out, which moves heights as much as ever; empty for the first time.
+// The stays in whole frames, without frames in which a point is far from its place. Points that are
+// joints take their stays from `contacts` where given. `before` has the stays of the clip before
+// jitter was removed, with the captured variation of heights; empty in the first round.
 std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
                                const std::vector<Stay>& found,
                                const std::vector<PointTrack>& tracks,
@@ -37,11 +37,11 @@ double drift_of(std::span<const Vec3> track, int first, int last);
 
 // Where fixed points bring each foot.
 
-// The bend of a knee, radians, below which a leg is not stretched further than captured: there the
-// knee turns far for a little way of the ankle.
+// Flexion of a knee, radians, below which a leg is not stretched further than captured: there a
+// small move of the ankle turns the knee far.
 inline constexpr double kNearlyStraight = 20 * kRadiansPerDegree;
 
-// What is done to one foot, [frames]; world space.
+// The correction of one foot, [frames]; world space.
 struct FootPath {
   std::vector<Vec3> turn;   // rotation vectors, to be put on the foot from the left
   std::vector<Vec3> shift;  // metres, of the ankle
@@ -50,7 +50,7 @@ struct FootPath {
 FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
                    const Footing& footing);
 
-// The same shift before it is drawn through the frames in which nothing stands.
+// The same shift before it is interpolated over frames in which nothing stands.
 KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& leg,
                         const Footing& footing);
 
@@ -67,7 +67,8 @@ inline Vec3 turn_of_toes(const Vec3& turn) {
 std::vector<double> lowering(const Clip& clip, const PlantedBody& body,
                              const std::vector<FootPath>& paths);
 
-// Applies all to the clip. Returns the number of frames in which a leg does not reach its place.
+// Applies the corrections to the clip. Returns the number of frames in which a leg does not reach
+// its place.
 int apply(const PlantedBody& body, const std::vector<FootPath>& paths,
           const std::vector<double>& lowered, Clip& clip);
 

@@ -17,10 +17,10 @@ namespace krok::plant {
 namespace {
 
 constexpr double kSharedCutoff = 4;  // Hz, above which movement may be jitter
-// The variance of jitter, of what it has from frame to frame: most is slower than white noise.
+// Ratio of the variance of jitter to that from frame to frame: most is slower than white noise.
 constexpr double kSlower = 30;
 
-// What is left of a curve after its slow part.
+// A curve without its slow part.
 KnownCurve fast_part(const KnownCurve& curve, double rate) {
   const std::vector<Vec3> slow = smooth_curve(curve, {.rate = rate, .cutoff = kSharedCutoff});
   KnownCurve fast(curve.values.size());
@@ -30,10 +30,11 @@ KnownCurve fast_part(const KnownCurve& curve, double rate) {
   return fast;
 }
 
-// What takes the jitter out; `jitter` is the deviation of the pelvis'. Each foot that stands shows
-// it, with an error of its own; so does the pelvis, with what it really moves. Their covariance is
-// its variance, and what they vary by beyond that their errors'; the estimate is the mean with the
-// inverse variances as weights, and with zero at the jitter's own (Wiener).
+// The correction that removes shared jitter; `jitter` is the standard deviation of the pelvis'
+// jitter. Each standing foot measures it with an error of its own, and so does the pelvis, whose
+// error is its real movement. Their covariance is the variance of the shared jitter, and what they
+// vary by beyond that is error. The estimate is the mean weighted by inverse variances, zero
+// included with the variance of the jitter (Wiener filter).
 std::vector<Vec3> shared_jitter(const KnownCurve& hips, const std::vector<KnownCurve>& feet,
                                 double jitter) {
   const std::size_t frames = hips.values.size();
@@ -49,7 +50,7 @@ std::vector<Vec3> shared_jitter(const KnownCurve& hips, const std::vector<KnownC
       ++count;
     }
   }
-  // Landings move feet and pelvis alike, too, but not where nothing jitters from frame to frame.
+  // Landings move feet and pelvis alike, too, but without jitter from frame to frame.
   both = std::min(both, 3 * kSlower * jitter * jitter * count);
   if (count < 3 || !(both > 0)) return result;
   constexpr double kLeast = 1e-3;  // of the jitter's variance
@@ -68,7 +69,7 @@ std::vector<Vec3> shared_jitter(const KnownCurve& hips, const std::vector<KnownC
   return result;
 }
 
-// Negative, for it is compared with what brings feet back.
+// Negative, to be compared with the shifts that bring feet back.
 KnownCurve pelvis_track(const PlantedBody& body, const Clip& clip) {
   KnownCurve hips(static_cast<std::size_t>(clip.frame_count()));
   for (int f = 0; f < clip.frame_count(); ++f) {
@@ -82,9 +83,9 @@ double pelvis_jitter(const PlantedBody& body, const Clip& clip) {
   return jitter_of(pelvis_track(body, clip));
 }
 
-// Takes the jitter that feet and pelvis share out of everything from the pelvis on. `shifts` bring
-// the feet to their places, one a leg; `jitter` is that of the pelvis as captured. Returns the root
-// mean square of what was taken out, metres.
+// Removes the jitter that feet and pelvis share from the pelvis and all joints below it. `shifts`,
+// one for each leg, bring the feet to their places; `jitter` is that of the captured pelvis.
+// Returns the root mean square of the removed jitter, metres.
 double steady(const PlantedBody& body, const std::vector<KnownCurve>& shifts, double jitter,
               Clip& clip) {
   const KnownCurve hips = pelvis_track(body, clip);
@@ -112,16 +113,16 @@ namespace krok {
 
 namespace {
 
-// Of the leg: what jitter of the whole body is so large that contacts are found better without it.
+// Jitter of the whole body, in leg lengths, from which contacts are found again after its removal.
 constexpr double kShakes = 0.003;
 
-// Of the leg: what heels and balls may move by while they stand for the clip to be left as it is.
+// Drift of standing heels and balls, in leg lengths, up to which a clip is left as it is.
 constexpr double kStands = 0.0004;
 
-// Feet that stand still show longer stays than feet that slide: times that these are looked at.
+// Rounds of contact detection: feet that stand still show longer stays than feet that slide.
 constexpr int kRounds = 3;
 
-// Stances without a contact that are worth a warning: their number, and their part of all.
+// Stances without a contact from which there is a warning: their number, and their share.
 constexpr int kFewMissed = 2;
 constexpr double kPartMissed = 0.2;
 
@@ -133,7 +134,7 @@ void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing
       std::vector<Vec3> after;
       after.reserve(static_cast<std::size_t>(planted.clip.frame_count()));
       for (int f = 0; f < planted.clip.frame_count(); ++f) {
-        after.push_back(plant::joint_at(planted.clip, f, point.joint) * point.offset);
+        after.push_back(joint_at(planted.clip, f, point.joint) * point.offset);
       }
       for (FixedStay stay : footings[i].stays) {
         if (stay.point.part != point.part) continue;
@@ -183,7 +184,7 @@ Diagnostics missed_stances(const Clip& clip, const RoleMap& roles, const FoundCo
       "--contacts")};
 }
 
-// Everything but the search for contacts, given once.
+// Plants feet by given contacts.
 class Planter {
  public:
   Planter(const Clip& clip, const RoleMap& roles, const plant::PlantedBody& body,
@@ -225,7 +226,7 @@ class Planter {
     return planted;
   }
 
-  // What heels and balls move by in stays found on planted feet, metres.
+  // Drift of heels and balls in stays found on planted feet, metres.
   double drift_in(const Clip& planted, const FoundContacts& found) const {
     double drift = 0;
     for (const plant::Footing& footing : stays_in(planted, found, {}, {})) {

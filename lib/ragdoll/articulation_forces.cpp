@@ -52,8 +52,9 @@ void Articulation::place(double step, std::span<const Vec6> moving) {
   }
 }
 
-// A tree that nothing holds keeps its momenta; turning by parts of a circle would lose some. Its
-// centre of mass goes straight on, and what its turning has lost it gets back as one body.
+// A free tree keeps its momenta, of which rotation in finite steps would lose some. Its centre of
+// mass moves straight on, and the lost angular momentum is given back to the tree as one rigid
+// body.
 void Articulation::keep_momenta(double step, std::span<const Vec6> moving,
                                 std::span<const BodyState> before) {
   for (std::size_t r = 0; r < links_.size(); ++r) {
@@ -205,7 +206,8 @@ void Articulation::run_motor(Link& link, double step, Mat3& damping) const {
     speed = Vec3(axis.dot(speed), 0, 0);
   }
   const double stiffness = joint.motor_stiffness, damper = joint.motor_damping;
-  // More than the motor can give is asked for: it gives that, without a spring's stability.
+  // The spring asks for more than the motor can give: the motor gives its maximum, without the
+  // stability of a spring.
   const Vec3 torque = stiffness * off + damper * (speed - last_rate(link));
   if (torque.norm() > joint.motor) {
     const double share = joint.motor / torque.norm();
@@ -227,7 +229,7 @@ void Articulation::spring(Link& link, const Vec3& axis, double beyond, double st
   if (far <= 0) return;
   const double heavy = axis.dot(link.inverse * axis);
   if (step * step * joint.stiffness > 0.5 * heavy) {
-    // Stiffer than the step can follow: as it will be at its end.
+    // Too stiff for the step: taken as it will be at the end of the step.
     if (beyond <= 0) return;
     const double damper = joint.damping + step * joint.stiffness;
     link.impulse -= step * joint.stiffness * beyond * axis;

@@ -238,7 +238,7 @@ void BodyMaker::add_trunk() {
   add_box("chest", chest, place(chest), place(top), chest_width, depth);
 }
 
-// How far ahead of the ankle the toes begin; where nothing tells, 0.
+// Distance from the ankle ahead to the toes; 0 if unknown.
 double BodyMaker::ball_of(int ankle, const Vec3& forward) const {
   for (int j = ankle + 1; j < skeleton_.joint_count(); ++j) {
     if (skeleton_.parents[at(j)] == ankle && skeleton_.end_sites[at(j)] == 0) {
@@ -336,7 +336,7 @@ void share_mass(const Skeleton& skeleton, const RoleMap& roles, double mass,
     sums[at(std::max(carrier[j], 0))] += shares.masses[j];
     whole += shares.masses[j];
   }
-  // A part that the shares know nothing of (a skeleton without elbows) is not left without mass.
+  // A part without a share (in a skeleton without elbows) still gets mass.
   double total = 0;
   for (double& sum : sums) {
     sum = std::max(sum, 0.003 * whole);
@@ -372,7 +372,7 @@ std::vector<int> body_of_joint(const Skeleton& skeleton, const std::vector<Body>
 
 Result<std::vector<Body>> make_bodies(const Skeleton& motion, const RoleMap& roles,
                                       const BodyOptions& options) {
-  // A mesh is made around a pose that stands, which a capture's reference pose need not do.
+  // A mesh is made around a standing pose, which a capture's reference pose need not be.
   const Skeleton& skeleton = options.model != nullptr ? options.model->skeleton : motion;
   if (const std::string difference = difference_in_structure(skeleton, motion);
       !difference.empty()) {

@@ -317,7 +317,7 @@ void Collision::Inside::touch_edges(std::size_t body, const Transform& pose,
   }
 }
 
-// Once all are there, as the memory moves while it grows.
+// After all have been added, because growing moves them in memory.
 void Collision::Inside::connect_edges() {
   std::size_t next = 0;
   for (Contact& contact : contacts) {

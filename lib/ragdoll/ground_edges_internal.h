@@ -25,8 +25,8 @@ struct EdgeTouch {
 
 class GroundEdges {
  public:
-  // Of triangles that are solid below; walls may be of either side. What lies in line counts as
-  // one edge, however finely the triangles are split. Edges between walls are none.
+  // From triangles that are solid below; walls may face either side. Collinear pieces count as one
+  // edge, however finely the triangles are split. Walls have no edges between them.
   explicit GroundEdges(std::span<const std::array<Vec3, 3>> triangles);
 
   // Numbers of the edges that a triangle has.
@@ -46,8 +46,8 @@ class GroundEdges {
   std::vector<Vec3> wall_sides_;  // shape [triangles]
 };
 
-// Where a shape at `pose` touches an edge or is at most `reach` from it, at most three places. Only
-// where it lies against the edge itself, not against a side of it.
+// At most three places where a shape at `pose` touches an edge or is within `reach` of it; only of
+// the edge itself, not of a face beside it.
 void touch_edge(const Shape& shape, const Transform& pose, const GroundEdge& edge, double reach,
                 std::vector<EdgeTouch>& touches);
 

@@ -141,7 +141,7 @@ namespace {
 constexpr double kBeyond = 5 * kRadiansPerDegree;
 // Swings near half a turn, where swing and twist jump: a motion that comes there has no limits.
 constexpr double kNearOpposite = 150 * kRadiansPerDegree;
-// The span of the differences that accelerations are from, seconds: captures tremble.
+// The span of the differences that accelerations are from, seconds: captures jitter.
 constexpr double kSmooth = 0.05;
 // The share of the body's weight that a hold carries. The legs carry the rest; with more, feet that
 // a capture has above the ground, or in it, would brake the walk.

@@ -9,6 +9,7 @@
 #include "math/types.h"
 #include "retarget/joint_mapping.h"
 #include "retarget/pose_alignment.h"
+#include "roles/limbs.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/skeleton.h"
@@ -44,13 +45,6 @@ double bone_ratio(const Skeleton& source, const Skeleton& target, const JointMap
 // `rest`, shape [joints]. False for a hand without fingers.
 bool fingers_never_move(const Clip& source, const RoleMap& roles, std::span<const Transform> rest,
                         Role hand, Role fingers);
-
-struct ArmRoles {
-  Role collar, upper, lower, hand, fingers;
-};
-struct LegRoles {
-  Role upper, lower, foot;
-};
 
 // The directions of an actor's trunk, limbs and hands in its pose. The actor must outlive it.
 class ActorView {

@@ -45,8 +45,6 @@ class ItemPlayer {
   const PlayedRange& range() const { return range_; }
   const Source& source() const { return *source_; }
 
-  // Places the whole motion; the identity initially.
-  void set_place(const GroundFrame& motion_to_world) { motion_to_world_ = motion_to_world; }
   // Places the motion so that its ground frame at a play time is `place`.
   void put(double play_time, const GroundFrame& place);
 

@@ -1,12 +1,27 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "math/types.h"
 
-// Medians that do not depend on the directions of the axes, as those of single coordinates do.
+// What stands for several values: medians of points, extremes and means of a window over a series.
 
 namespace krok {
+
+// The largest value within `reach` (>= 0) values on either side, of each.
+std::vector<double> max_within(std::span<const double> values, int reach);
+
+// The mean of so many values; the ends stand for what is beyond them.
+std::vector<double> mean_within(std::span<const double> values, int reach);
+
+// The median, of an even number of values the mean of the two in the middle, or the upper of the
+// two. `values` must not be empty.
+double median(std::vector<double> values);
+double upper_median(std::vector<double> values);
+
+// Medians of points that do not depend on the directions of the axes, as those of single
+// coordinates do.
 
 // The geometric median: the point with the least sum of distances to `points`; outliers move it no
 // more than they move a median. Zero without points. By the iteration of Weiszfeld ("Sur le point
