@@ -2,6 +2,7 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -24,18 +25,41 @@ Quat image(const Quat& q) {
 
 constexpr double kSameOffset = 1e-7;  // metres
 
-// A rotation that takes own bones to the images of the partner's, and leaves what they do not
-// determine (the twist about a single bone) as `usual` has it: the polar part of the correlation of
-// both (Horn, Closed-form solution of absolute orientation using orthonormal matrices, J. Opt. Soc.
-// Am. A 5, 1988) with a very small share of `usual`.
-Quat fitted_turn(const Mat3& correlation, double size, const Quat& usual) {
-  constexpr double kShare = 1e-9;
-  const Mat3 all = correlation + kShare * size * usual.toRotationMatrix();
-  const Eigen::JacobiSVD<Mat3> svd(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 flip = Mat3::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
-  return normalized_or_identity(Quat(Mat3(svd.matrixU() * flip * svd.matrixV().transpose())));
-}
+// How own bones lie to the images of the partner's: the singular values of the correlation of both.
+// Of the joint in the mirrored motion they are the same, with the same lines, so that what is
+// decided by them is decided alike when it is mirrored again.
+class Correlation {
+ public:
+  explicit Correlation(const Mat3& own_to_images)
+      : svd_(own_to_images, Eigen::ComputeFullU | Eigen::ComputeFullV) {}
+
+  // Whether all bones lie about in one line, which tells nothing of the twist about it.
+  bool leaves_twist() const {
+    constexpr double kOffLine = 0.01;  // of a bone
+    return svd_.singularValues()[1] < kOffLine * kOffLine * svd_.singularValues()[0];
+  }
+
+  // The angle between the lines of own bones, turned, and of the images.
+  double angle_after(const Quat& turn) const {
+    return std::atan2((turn * own()).cross(images()).norm(), (turn * own()).dot(images()));
+  }
+
+  // The rotation that takes own bones to the images (Horn, Closed-form solution of absolute
+  // orientation using orthonormal matrices, J. Opt. Soc. Am. A 5, 1988). A twist that they leave
+  // open is that of `usual`.
+  Quat turn(const Quat& usual) const {
+    if (leaves_twist()) return shortest_arc(usual * own(), images()) * usual;
+    Mat3 flip = Mat3::Identity();
+    flip(2, 2) = (svd_.matrixU() * svd_.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    return normalized_or_identity(Quat(Mat3(svd_.matrixU() * flip * svd_.matrixV().transpose())));
+  }
+
+ private:
+  Vec3 own() const { return svd_.matrixV().col(0); }
+  Vec3 images() const { return svd_.matrixU().col(0); }
+
+  Eigen::JacobiSVD<Mat3> svd_;
+};
 
 // How joints' own axes stand to those of their partners, see axes_to_images().
 class AxesFinder {
@@ -97,28 +121,17 @@ class AxesFinder {
                                found_[at(parent)] * skeleton_.reference_local(joint).orientation
                          : by_reference;
     }
+    const Correlation correlation(correlation_of(all));
     // In most captures joints have their parents' axes at rest, and need no reference pose.
-    const bool by_parent = has_parents && misfit(all, by_reference) >= kFits * size &&
-                           misfit(all, found_[at(parent)]) < kFits * size;
+    const bool by_parent = has_parents && correlation.angle_after(by_reference) >= kFits &&
+                           correlation.angle_after(found_[at(parent)]) < kFits;
     Quat usual = by_parent ? found_[at(parent)] : by_reference;
-    if (joint == other && has_parents && !pose_.empty() && leaves_twist(all, size)) {
-      usual = by_posture(joint, all, size, usual);
+    if (joint == other && has_parents && !pose_.empty() && correlation.leaves_twist()) {
+      usual = by_posture(joint, correlation, usual);
     }
     // The usual case to the bit, whatever the rounding of the offsets was.
     if (misfit(all, usual) < kSameOffset) return usual;
-    return fitted_turn(correlation_of(all), size * size, usual);
-  }
-
-  // Whether all bones lie in one line, about which the joint may be turned.
-  static bool leaves_twist(const Bones& bones, double size) {
-    Vec3 line = Vec3::Zero();
-    for (const Vec3& bone : bones.own) {
-      if (bone.norm() > line.norm()) line = bone;
-    }
-    line.normalize();
-    return std::ranges::all_of(bones.own, [&](const Vec3& bone) {
-      return (bone - bone.dot(line) * line).norm() < kFits * size;
-    });
+    return correlation.turn(usual);
   }
 
   // The axes that the nearest joint of the middle below, whose bones leave nothing open, has.
@@ -129,8 +142,8 @@ class AxesFinder {
       double size = 0;
       for (const Vec3& bone : all.own) size = std::max(size, bone.norm());
       if (size < least_) continue;
-      if (leaves_twist(all, size)) return below(child);
-      return fitted_turn(correlation_of(all), size * size, Quat::Identity());
+      const Correlation correlation(correlation_of(all));
+      return correlation.leaves_twist() ? below(child) : correlation.turn(Quat::Identity());
     }
     return {};
   }
@@ -138,7 +151,7 @@ class AxesFinder {
   // For a joint of the middle with a single bone: some reference poses are twisted between hips and
   // chest, and say nothing. Mirrored, people stand about as before: of `usual` and the axes of the
   // joints above and below, those which turn the joint least in its parent.
-  Quat by_posture(int joint, const Bones& all, double size, const Quat& usual) const {
+  Quat by_posture(int joint, const Correlation& correlation, const Quat& usual) const {
     const int parent = skeleton_.parents[at(joint)];
     const Quat above = found_[at(parent)];
     const auto change = [&](const Quat& turn) {
@@ -148,7 +161,7 @@ class AxesFinder {
     };
     Quat best = usual;
     const auto consider = [&](const Quat& turn) {
-      if (misfit(all, turn) >= kBent * size) return;
+      if (correlation.angle_after(turn) >= kBent) return;
       if (change(turn) < change(best) - kClearlyLess) best = turn;
     };
     consider(above);
@@ -164,8 +177,8 @@ class AxesFinder {
     return correlation;
   }
 
-  static constexpr double kFits = 0.01;  // of a bone
-  static constexpr double kBent = 0.3;   // of a bone, between joints of a spine
+  static constexpr double kFits = 0.01;  // radians
+  static constexpr double kBent = 0.3;   // radians, between joints of a spine
   static constexpr double kClearlyLess = 60 * kRadiansPerDegree;
 
   const Skeleton& skeleton_;

@@ -46,8 +46,9 @@ Clip mirror(const Clip& clip, const MirrorPairs& pairs);
 
 // For each joint the turn from the image of its partner's axes to its own, [joints]; the identity
 // without a partner. The bones that hang on both tell it: a vector v in the partner's axes has the
-// image turn.conjugate() * (-v.x, v.y, v.z) in the joint's. Only what they leave open, such as the
-// twist about a single bone, is taken from the reference pose. `posture` (joint_to_world, of any
+// image turn.conjugate() * (-v.x, v.y, v.z) in the joint's. Only what they leave open, the twist
+// about a single bone or about bones that lie within a hundredth of one line, is taken from the
+// reference pose. `posture` (joint_to_world, of any
 // frame; may be empty) tells where reference poses are twisted between hips, chest and head: joints
 // of the middle then take the axes of a joint next to them rather than be turned half round.
 std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pairs,
