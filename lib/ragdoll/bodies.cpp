@@ -59,24 +59,6 @@ double distance_to(const Shape& shape, Vec3 point) {
   return std::max(0.0, point.norm() - shape.radius);
 }
 
-double covered_share(const Model& model, const std::vector<Body>& bodies, double distance) {
-  if (model.positions.empty()) return 1;
-  std::vector<Transform> to_body;
-  for (const Body& body : bodies) {
-    to_body.push_back((model.skeleton.reference[at(body.joint)] * body.to_joint).inverse());
-  }
-  std::size_t covered = 0;
-  for (const Vec3f& position : model.positions) {
-    const Vec3 point = position.cast<double>();
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (distance_to(bodies[b].shape, to_body[b] * point) > distance) continue;
-      ++covered;
-      break;
-    }
-  }
-  return static_cast<double>(covered) / static_cast<double>(model.positions.size());
-}
-
 // Brings the shapes to the sizes of the model's vertices: sides and radii, not where the bones
 // begin and end. Bodies with fewer than 12 vertices stay.
 void fit_shapes(const Model& model, std::vector<Body>& bodies) {
@@ -406,6 +388,24 @@ Result<std::vector<Body>> make_bodies(const Skeleton& motion, const RoleMap& rol
     }
   }
   return bodies;
+}
+
+double covered_share(const Model& model, const std::vector<Body>& bodies, double distance) {
+  if (model.positions.empty()) return 1;
+  std::vector<Transform> to_body;
+  for (const Body& body : bodies) {
+    to_body.push_back((model.skeleton.reference[at(body.joint)] * body.to_joint).inverse());
+  }
+  std::size_t covered = 0;
+  for (const Vec3f& position : model.positions) {
+    const Vec3 point = position.cast<double>();
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (distance_to(bodies[b].shape, to_body[b] * point) > distance) continue;
+      ++covered;
+      break;
+    }
+  }
+  return static_cast<double>(covered) / static_cast<double>(model.positions.size());
 }
 
 }  // namespace krok::ragdoll
