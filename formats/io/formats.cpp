@@ -14,36 +14,16 @@ namespace {
 
 using registry::Kind;
 
-constexpr auto kOwnFormats = std::to_array<Format>({
-    {.kind = Kind::anim, .read_motion = read_anim},
-    {.kind = Kind::bvh, .open_capture = open_bvh},
-    {.kind = Kind::amc, .open_capture = open_amc},
-    {.kind = Kind::asf, .open_capture = open_asf},
-    {.kind = Kind::model, .read_model = read_model},
-    {.kind = Kind::character, .read_model = read_character},
-    {.kind = Kind::glb, .read_scene = read_gltf},
-    {.kind = Kind::gltf, .read_scene = read_gltf},
-    {.kind = Kind::zip, .read_scene = read_zipped_gltf},
-    {.kind = Kind::fbx, .read_scene = read_through_assimp},
-    {.kind = Kind::collada, .read_scene = read_through_assimp},
-    {.kind = Kind::smd, .read_scene = read_through_assimp},
-    {.kind = Kind::ms3d, .read_scene = read_through_assimp},
-    {.kind = Kind::max_3ds, .read_scene = read_through_assimp},
-    {.kind = Kind::ase, .read_scene = read_through_assimp},
-    {.kind = Kind::md5mesh, .read_scene = read_through_assimp},
-    {.kind = Kind::md5anim, .read_scene = read_through_assimp},
-});
+#define KROK_ROW(kind_, group, endings, description, recognised, ...) \
+  Format{.kind = Kind::kind_ __VA_OPT__(, ) __VA_ARGS__},
+constexpr auto kOwnFormats = std::to_array<Format>({KROK_FORMATS(KROK_ROW)});
+#undef KROK_ROW
 
 constexpr Format kNone;
 
 std::vector<Format>& table() {
   static std::vector<Format> rows(kOwnFormats.begin(), kOwnFormats.end());
   return rows;
-}
-
-bool reads_motion(const Format& format) {
-  return format.kind != Kind::asf &&
-         (format.read_motion != nullptr || format.open_capture != nullptr);
 }
 
 }  // namespace
@@ -77,19 +57,26 @@ const Format& format_of(const InputFile& file) {
 
 bool is_motion(const InputFile& file) {
   const Format& format = format_of(file);
-  return reads_motion(format);
+  return format.reads_motion() && format.read_scene == nullptr;
+}
+
+std::vector<std::string> endings(bool (*wanted)(const Format& format)) {
+  std::vector<std::string> endings;
+  for (const Format& format : table()) {
+    if (!wanted(format)) continue;
+    if (!format.ending.empty()) endings.push_back("." + std::string(format.ending));
+    for (std::string& one : registry::endings_of(format.kind)) endings.push_back(std::move(one));
+  }
+  return endings;
 }
 
 std::vector<std::string> motion_endings() {
-  std::vector<std::string> endings;
-  for (const Format& format : table()) {
-    if (!reads_motion(format)) continue;
-    const std::string_view ending =
-        format.kind == Kind::unknown ? format.ending : registry::kind_name(format.kind);
-    if (!ending.empty()) endings.push_back("." + std::string(ending));
-    if (format.kind == Kind::anim) endings.emplace_back(registry::kOtherAnimEnding);
-  }
-  return endings;
+  return endings([](const Format& format) { return format.reads_motion(); });
+}
+
+std::vector<std::string> foreign_motion_endings() {
+  return endings(
+      [](const Format& format) { return format.reads_motion() && format.kind != Kind::anim; });
 }
 
 }  // namespace krok::io

@@ -14,9 +14,8 @@
 #include "nodes/scene.h"
 #include "scene/clip.h"
 
-// The table of what can be read: one row per format, with what it can hold and how that is read.
-// open_motion(), open_scene() and open_shown_model() choose by it. How formats are recognised is in
-// formats/registry.
+// What can be read and how: the rows of formats/registry/format_table.h, and what a program adds.
+// open_motion(), open_scene() and open_actor() choose by it.
 
 namespace krok::io {
 
@@ -38,7 +37,15 @@ struct Format {
                                         const CaptureReading& reading, bool stream) = nullptr;
   Result<nodes::Scene> (*read_scene)(const InputFile& file, Inputs& inputs,
                                      bool with_materials) = nullptr;
-  Result<ShownModel> (*read_model)(const InputFile& file, Inputs& inputs) = nullptr;
+  Result<Actor> (*read_actor)(const InputFile& file, Inputs& inputs) = nullptr;
+
+  // A skeleton or mesh that is read with the motion beside it, and is none itself.
+  bool companion = false;
+
+  bool reads_motion() const {
+    return !companion &&
+           (read_motion != nullptr || open_capture != nullptr || read_scene != nullptr);
+  }
 };
 
 std::span<const Format> formats();
@@ -52,10 +59,16 @@ const Format& format_of(registry::Kind kind);
 // The format of an open file, by its content, else by its name.
 const Format& format_of(const InputFile& file);
 
-// Whether open_motion() reads the file: false for scenes, and for a skeleton without a motion.
+// Whether the file holds a motion alone: false for scenes, which open_motion() reads as well, and
+// for a skeleton without a motion.
 bool is_motion(const InputFile& file);
+
+// The endings of the formats for which `wanted` is true, with the dot.
+std::vector<std::string> endings(bool (*wanted)(const Format& format));
 
 // ".anim", ".bvh" and so on: what tools that read motions look for in folders.
 std::vector<std::string> motion_endings();
+// The same without Krok's own: what krok-import looks for.
+std::vector<std::string> foreign_motion_endings();
 
 }  // namespace krok::io

@@ -34,6 +34,8 @@ class Inputs {
   // Takes warnings and notes of readers.
   virtual void diagnose(Diagnostic diagnostic) = 0;
   void diagnose(const Diagnostics& diagnostics);
+  // The same of those of one file, whose name they may lack.
+  void diagnose_in(const std::string& path, const Diagnostics& diagnostics);
 
   // Of readers that run in a process of their own: Assimp, Draco.
   GivenLimits limits;

@@ -33,6 +33,7 @@ class Loader {
                             &Loader::load_morphs, &Loader::check_eyes, &Loader::load_roles}) {
       if (Status status = (this->*part)(); !status) return std::move(status.error()).in_file(path_);
     }
+    loaded_.eyes = loaded_.character.eyes;
     return std::move(loaded_);
   }
 
@@ -154,7 +155,7 @@ class Loader {
           .in_file(file->path());
     }
     if (character.expressions.empty()) {
-      loaded_.weights.assign(morphs->names.size(), 0.0f);
+      loaded_.rest_weights.assign(morphs->names.size(), 0.0f);
       loaded_.morphs = *std::move(morphs);
       return {};
     }
@@ -175,7 +176,7 @@ class Loader {
       const auto normals = morphs->target_normals(target);
       chosen.positions.insert(chosen.positions.end(), positions.begin(), positions.end());
       chosen.normals.insert(chosen.normals.end(), normals.begin(), normals.end());
-      loaded_.weights.push_back(expression.weight);
+      loaded_.rest_weights.push_back(expression.weight);
     }
     return {};
   }
@@ -226,40 +227,46 @@ Result<LoadedCharacter> open_character(const std::string& path, Inputs& inputs) 
   return open_character(*input, inputs);
 }
 
-void apply_rest_weights(LoadedCharacter& loaded) {
-  Model& model = loaded.model;
+void apply_rest_weights(Actor& actor) {
+  Model& model = actor.model;
   std::vector<Vec3f> positions(model.positions.size()), normals(model.normals.size());
-  apply_morphs(loaded.morphs, loaded.weights, {model.positions, model.normals},
+  apply_morphs(actor.morphs, actor.rest_weights, {model.positions, model.normals},
                {positions, normals});
   model.positions = std::move(positions);
   model.normals = std::move(normals);
-  loaded.morphs = {};
-  loaded.weights.clear();
+  actor.morphs = {};
+  actor.rest_weights.clear();
 }
 
-Result<ShownModel> read_model(const InputFile& file, Inputs& /*inputs*/) {
-  auto model = model::read(file.bytes());
-  if (!model) return std::move(model.error()).in_file(file.path());
-  return ShownModel{*std::move(model), {}};
-}
-
-Result<ShownModel> read_character(const InputFile& file, Inputs& inputs) {
+Result<Actor> read_character(const InputFile& file, Inputs& inputs) {
   auto loaded = open_character(file, inputs);
   if (!loaded) return loaded.error();
-  apply_rest_weights(*loaded);
-  return ShownModel{std::move(loaded->model), std::move(loaded->materials)};
+  return static_cast<Actor&&>(*std::move(loaded));
 }
 
-bool is_shown_model(registry::Kind kind) {
-  return format_of(kind).read_model != nullptr;
-}
-
-Result<ShownModel> open_shown_model(const InputFile& file, Inputs& inputs) {
+Result<Actor> open_actor(const InputFile& file, Inputs& inputs, const ActorOptions& options) {
   const Format& format = format_of(file);
-  if (format.read_model == nullptr) {
-    return Error("shown-model-kind", "is neither a model nor a character").in_file(file.path());
+  if (format.read_scene != nullptr) return read_scene_actor(format, file, inputs, options);
+  if (format.read_actor != nullptr && (options.with_camera || format.kind != registry::Kind::cam)) {
+    auto actor = format.read_actor(file, inputs);
+    if (actor && !options.with_morphs && !actor->morphs.names.empty()) apply_rest_weights(*actor);
+    return actor;
   }
-  return format.read_model(file, inputs);
+  Actor actor;
+  Actor::Motion& motion = actor.motions.emplace_back();
+  auto clip = open_motion(file, inputs,
+                          {.rest_frame_is_note = options.rest_frame_is_note,
+                           .stretches = options.with_stretches ? &motion.stretches : nullptr});
+  if (!clip) return clip.error();
+  motion.clip = *std::move(clip);
+  actor.model.skeleton = motion.clip.skeleton;
+  return actor;
+}
+
+Result<Actor> open_actor(const std::string& path, Inputs& inputs, const ActorOptions& options) {
+  const auto file = inputs.open_input(path);
+  if (!file) return file.error();
+  return open_actor(*file, inputs, options);
 }
 
 }  // namespace krok::io

@@ -4,24 +4,17 @@
 #include <vector>
 
 #include "formats/io/inputs.h"
-#include "formats/registry/registry.h"
 #include "roles/roles.h"
-#include "scene/character.h"
-#include "scene/material.h"
-#include "scene/model.h"
-#include "scene/morph_set.h"
+#include "scene/actor.h"
 
 namespace krok::io {
 
-// A .character file with all files that it names.
-struct LoadedCharacter {
+// A .character file with all files that it names. The model's parts have the materials that the
+// character assigns, materials are those that parts use, in the order of the files, morphs are
+// named and ordered as the expressions.
+struct LoadedCharacter : Actor {
   Character character;
-  Model model;  // its parts have the materials that the character assigns
-  // Those that parts use, in the order of the files, with their images.
-  std::vector<Material> materials;
-  MorphSet morphs;             // named and ordered as the expressions; may be empty
-  std::vector<float> weights;  // [targets] of `morphs`, where no motion of the face is given
-  RoleMap roles;               // of the model's joints
+  RoleMap roles;  // of the model's joints
 };
 
 // Reads a character. Files that it names are opened by `inputs`; each must be in the folder tree of
@@ -36,18 +29,25 @@ Result<LoadedCharacter> open_character(const InputFile& file, Inputs& inputs);
 
 // Applies the morph weights that hold without a motion of the face to the model's mesh, and frees
 // the morph targets.
-void apply_rest_weights(LoadedCharacter& loaded);
+void apply_rest_weights(Actor& actor);
 
-// A mesh on its skeleton, for callers that show it without animating its face: a .model file, or a
-// character at rest with its materials.
-struct ShownModel {
-  Model model;
-  std::vector<Material> materials;
+struct ActorOptions {
+  std::string clip = {};            // animation of a scene, a name or number; empty: the best
+  bool with_mesh = true;            // of scenes, not the skeleton alone
+  bool with_materials = true;       // of scenes with a mesh
+  bool with_morphs = false;         // keep morph targets; otherwise faces are at rest
+  bool with_motions = true;         // of scenes: the animation
+  bool with_camera = false;         // take a file with a camera alone, which is refused otherwise
+  bool with_stretches = false;      // otherwise joints that change scale are a warning
+  bool rest_frame_is_note = false;  // as in MotionOptions
 };
 
-// Whether files of this kind hold one.
-bool is_shown_model(registry::Kind kind);
-// Error shown-model-kind for other files.
-Result<ShownModel> open_shown_model(const InputFile& file, Inputs& inputs);
+// What a file holds, whatever it is: a motion with its skeleton, a model, a character, a camera, or
+// the character of a scene with one of its animations, converted to Krok's frame as krok-import
+// does.
+//
+// Errors: those of open_motion(), open_character(), open_scene() and the conversion.
+Result<Actor> open_actor(const InputFile& file, Inputs& inputs, const ActorOptions& options = {});
+Result<Actor> open_actor(const std::string& path, Inputs& inputs, const ActorOptions& options = {});
 
 }  // namespace krok::io

@@ -12,6 +12,14 @@
 
 namespace krok::io {
 
+void rest_frame_as_note(Diagnostics& found) {
+  for (Diagnostic& diagnostic : found) {
+    if (diagnostic.severity == Severity::warning && diagnostic.code.ends_with("-rest-frame")) {
+      diagnostic.severity = Severity::note;
+    }
+  }
+}
+
 namespace {
 
 CaptureReading reading_for(const Inputs& inputs) {
@@ -24,6 +32,24 @@ CaptureReading reading_for(const Inputs& inputs) {
 MotionSummary summary_of(const FrameSource& frames, std::vector<std::string> conversions) {
   return {frames.skeleton, frames.rate, frames.frame_count, frames.duration(),
           std::move(conversions)};
+}
+
+Result<Clip> read_scene_motion(const Format& format, const InputFile& file, Inputs& inputs,
+                               const MotionOptions& options) {
+  ActorOptions how;
+  how.with_mesh = false;
+  how.with_stretches = options.stretches != nullptr;
+  how.rest_frame_is_note = options.rest_frame_is_note;
+  auto actor = read_scene_actor(format, file, inputs, how);
+  if (!actor) return actor.error();
+  if (actor->motions.empty()) {
+    return Error("motion-missing", "the file has no animation",
+                 "krok-import --character writes its skeleton and mesh")
+        .in_file(file.path());
+  }
+  Actor::Motion& motion = actor->motions.front();
+  if (options.stretches != nullptr) *options.stretches = std::move(motion.stretches);
+  return std::move(motion.clip);
 }
 
 }  // namespace
@@ -59,24 +85,19 @@ ChecksumAtEnd::~ChecksumAtEnd() {
 }
 
 Result<Clip> open_motion(const InputFile& file, Inputs& inputs, const MotionOptions& options) {
-  const registry::Kind kind = registry::identify(file.path(), file.bytes());
-  if (kind == registry::Kind::asf) {
+  const Format& format = format_of(file);
+  if (format.read_scene != nullptr) return read_scene_motion(format, file, inputs, options);
+  if (format.companion) {
     return Error("usage", "is a skeleton without a motion", "give the .amc file beside it")
         .in_file(file.path());
   }
-  const Format& format = format_of(file);
   if (format.open_capture == nullptr) {
     return (format.read_motion != nullptr ? format.read_motion : read_anim)(file, inputs, options);
   }
   auto opened = format.open_capture(file, inputs, reading_for(inputs), false);
   if (!opened) return opened.error();
   Capture& capture = *opened->capture;
-  for (Diagnostic& diagnostic : capture.diagnostics) {
-    if (options.rest_frame_is_note && diagnostic.severity == Severity::warning &&
-        diagnostic.code.ends_with("-rest-frame")) {
-      diagnostic.severity = Severity::note;
-    }
-  }
+  if (options.rest_frame_is_note) rest_frame_as_note(capture.diagnostics);
   inputs.diagnose(capture.diagnostics);
   return std::move(capture.clip);
 }
@@ -94,8 +115,8 @@ Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
   if (!file) return file.error();
   const ChecksumAtEnd checksum(*file, inputs);
   MotionSummary summary;
-  if (format_of(*file).open_capture != nullptr &&
-      registry::identify(file->path(), file->bytes()) != registry::Kind::asf) {
+  const Format& format = format_of(*file);
+  if (format.open_capture != nullptr && !format.companion) {
     std::shared_ptr<Capture> capture;
     const Status status =
         use_capture(*file, inputs, reading_for(inputs), false, [&](const OpenedCapture& opened) {
@@ -112,7 +133,8 @@ Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
   if (!clip) return clip.error();
   const FrameSource frames = frames_of(*clip);
   if (Status status = use(frames); !status) return status.error();
-  return summary_of(frames, {});
+  return summary_of(frames, format.read_scene != nullptr ? clip->provenance.conversions
+                                                         : std::vector<std::string>());
 }
 
 }  // namespace krok::io

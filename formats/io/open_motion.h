@@ -9,12 +9,13 @@
 #include "scene/frame_source.h"
 #include "scene/stretch.h"
 
-// Motions from any file that holds one: .anim, BVH, AMC with the ASF beside it. Captures are read
+// Motions from any file that holds one: .anim, BVH, AMC with the ASF beside it, scenes (glTF, FBX
+// and so on) with their skeleton and the best of their animations. Captures and scenes are read
 // with their conventions detected, as krok-import reads them without options; what was detected or
 // looks wrong is reported to `inputs`. The clip's provenance has the conversions.
 //
-// Errors: those of the format's reader; usage for an ASF alone; what is in no known format is
-// refused as the .anim reader refuses it.
+// Errors: those of the format's reader; usage for an ASF alone; motion-missing for a scene without
+// animations; what is in no known format is refused as the .anim reader refuses it.
 
 namespace krok::io {
 

@@ -4,12 +4,16 @@
 
 #include <algorithm>
 
+#include "character/mesh.h"
+#include "character/scene_motion.h"
+#include "core/index.h"
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/assimp/assimp_reader.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/io/readers_internal.h"
 #include "formats/zip/zip_archive.h"
+#include "nodes/animation_choice.h"
 
 namespace krok::io {
 
@@ -90,6 +94,82 @@ Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,
   options.with_materials = with_materials;
   options.limits = inputs.limits;
   return with_its_files(assimp::read_file(file.path(), options), file, inputs);
+}
+
+namespace {
+
+// The parts of a scene that are asked for; adds to `found` what is to be reported.
+Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Inputs& inputs,
+                       const ActorOptions& options, Diagnostics& found) {
+  const auto evaluator = nodes::Evaluator::create(scene);
+  if (!evaluator) return evaluator.error();
+  const auto rig = character::find_rig(scene, *evaluator, "", found);
+  if (!rig) return rig.error();
+  int animation = best_animation(scene, rig->joints.nodes).animation;
+  if (!options.clip.empty()) {
+    const auto chosen = find_animation(scene, options.clip, path);
+    if (!chosen) return chosen.error();
+    animation = *chosen;
+  } else if (options.with_motions && animation >= 0) {
+    const Diagnostics choice =
+        describe_choice(scene, best_animation(scene, rig->joints.nodes), "clip-choice",
+                        "krok-import with --clip NAME or NUMBER selects another", path);
+    found.insert(found.end(), choice.begin(), choice.end());
+  }
+  const CaptureOptions how;
+  const auto roles = roles_of(rig->skeleton, how);
+  if (!roles) return roles.error();
+  const auto place =
+      character::place_scene(scene, *evaluator, &*rig, *roles, animation, how, path, found);
+  if (!place) return place.error();
+  Actor actor;
+  if (options.with_mesh) {
+    auto made = character::make_actor(scene, *evaluator, *rig, place->conversion,
+                                      {.with_morphs = true}, found);
+    if (!made) return made.error();
+    if (!made->morphs.names.empty()) {
+      auto rest = character::make_weights(*made, *evaluator, -1, {});
+      if (!rest) return rest.error();
+      made->rest_weights = std::move(rest->values);
+      if (!options.with_morphs) apply_rest_weights(*made);
+    }
+    for (std::size_t p = 0; p < made->model.parts.size(); ++p) {
+      const int material = made->part_materials[p];
+      if (options.with_materials && material >= 0)
+        made->model.parts[p].material = scene.materials[at(material)].name;
+    }
+    made->materials = scene.materials;
+    actor = static_cast<Actor&&>(*std::move(made));
+  } else {
+    auto skeleton = character::skeleton_in_krok(*rig, place->conversion);
+    if (!skeleton) return skeleton.error();
+    actor.model.skeleton = *std::move(skeleton);
+  }
+  if (!options.with_motions || animation < 0) return actor;
+  const auto sampling = character::choose_sampling(scene.animations[at(animation)], {}, found);
+  if (!sampling) return sampling.error();
+  Actor::Motion& motion = actor.motions.emplace_back();
+  auto clip = character::make_motion(*evaluator, *rig, *roles, *place, animation, *sampling,
+                                     inputs.jobs, inputs.progress, found,
+                                     options.with_stretches ? &motion.stretches : nullptr);
+  if (!clip) return clip.error();
+  motion.name = animation_name(scene, at(animation));
+  motion.clip = *std::move(clip);
+  return actor;
+}
+
+}  // namespace
+
+Result<Actor> read_scene_actor(const Format& format, const InputFile& file, Inputs& inputs,
+                               const ActorOptions& options) {
+  const auto scene = format.read_scene(file, inputs, options.with_mesh && options.with_materials);
+  if (!scene) return scene.error();
+  Diagnostics found = scene->diagnostics;
+  auto actor = actor_of(*scene, file.path(), inputs, options, found);
+  if (options.rest_frame_is_note) rest_frame_as_note(found);
+  inputs.diagnose_in(file.path(), found);
+  if (!actor) return std::move(actor.error()).in_file(file.path());
+  return actor;
 }
 
 bool is_scene(registry::Kind kind) {

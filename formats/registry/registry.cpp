@@ -58,18 +58,25 @@ Kind acclaim_kind(std::string_view text) {
   return Kind::unknown;
 }
 
-Kind json_kind(std::string_view text) {
-  if (!first_word(text).starts_with('{')) return Kind::unknown;
-  constexpr std::size_t kWindow = std::size_t{64} << 10;
-  const std::string_view head = text.substr(0, kWindow);
+constexpr std::size_t kWindow = std::size_t{64} << 10;  // of text in which words are looked for
+
+bool has_in_head(std::string_view text, std::string_view word) {
+  return text.substr(0, kWindow).find(word) != std::string_view::npos;
+}
+
+constexpr std::string_view kMaterialSchema = "\"krok.material/";
+constexpr std::string_view kCharacterSchema = "\"krok.character/";
+constexpr std::string_view kRagdollSchema = "\"krok.ragdoll/";
+
+template <const std::string_view& schema>
+bool is_json(std::string_view text) {
+  return first_word(text).starts_with('{') && has_in_head(text, schema);
+}
+
+bool is_gltf(std::string_view text) {
   const std::string_view tail = text.substr(text.size() - std::min(text.size(), kWindow));
-  const auto has = [](std::string_view part, std::string_view word) {
-    return part.find(word) != std::string_view::npos;
-  };
-  if (has(head, "\"krok.material/")) return Kind::material;
-  if (has(head, "\"krok.character/")) return Kind::character;
-  if (has(head, "\"krok.ragdoll/")) return Kind::ragdoll;
-  return has(head, "\"asset\"") || has(tail, "\"asset\"") ? Kind::gltf : Kind::unknown;
+  return first_word(text).starts_with('{') &&
+         (has_in_head(text, "\"asset\"") || has_in_head(tail, "\"asset\""));
 }
 
 // 3DS: begins with the main chunk, which has the length of the file or a known first subchunk.
@@ -95,25 +102,30 @@ std::string_view next_word(std::string_view& text) {
   return word;
 }
 
-// Kinds read by formats/assimp.
-Kind scene_kind(std::string_view text) {
-  constexpr std::size_t kWindow = std::size_t{64} << 10;
-  const std::string_view head = text.substr(0, kWindow);
-  const auto has = [&](std::string_view word) { return head.find(word) != std::string_view::npos; };
-  if (text.starts_with("Kaydara FBX Binary")) return Kind::fbx;
-  if (text.starts_with("MS3D000000")) return Kind::ms3d;
-  if (is_3ds(text)) return Kind::max_3ds;
-  std::string_view rest = head;
-  const std::string_view first = next_word(rest);
-  if (first_word(head).starts_with("; FBX") || first == "FBXHeaderExtension:") return Kind::fbx;
-  if (first.starts_with('<')) return has("<COLLADA") ? Kind::collada : Kind::unknown;
-  if (same_word(first, "*3DSMAX_ASCIIEXPORT")) return Kind::ase;
-  if (first == "MD5Version") {
-    if (has("numMeshes")) return Kind::md5mesh;
-    return has("numAnimatedComponents") ? Kind::md5anim : Kind::unknown;
-  }
-  if (first == "version" && next_word(rest) == "1" && next_word(rest) == "nodes") return Kind::smd;
-  return Kind::unknown;
+std::string_view word_at_start(std::string_view text) {
+  text = text.substr(0, kWindow);
+  return next_word(text);
+}
+
+bool is_fbx(std::string_view text) {
+  return text.starts_with("Kaydara FBX Binary") || first_word(text).starts_with("; FBX") ||
+         word_at_start(text) == "FBXHeaderExtension:";
+}
+bool is_collada(std::string_view text) {
+  return word_at_start(text).starts_with('<') && has_in_head(text, "<COLLADA");
+}
+bool is_smd(std::string_view text) {
+  text = text.substr(0, kWindow);
+  return next_word(text) == "version" && next_word(text) == "1" && next_word(text) == "nodes";
+}
+bool is_ase(std::string_view text) {
+  return same_word(word_at_start(text), "*3DSMAX_ASCIIEXPORT");
+}
+bool is_md5mesh(std::string_view text) {
+  return word_at_start(text) == "MD5Version" && has_in_head(text, "numMeshes");
+}
+bool is_md5anim(std::string_view text) {
+  return word_at_start(text) == "MD5Version" && has_in_head(text, "numAnimatedComponents");
 }
 
 bool is_text(std::string_view text) {
@@ -123,84 +135,88 @@ bool is_text(std::string_view text) {
   });
 }
 
-// Known formats: file extension, description for messages, and how to recognise the content. Tried
-// in this order.
-struct Format {
-  Kind kind;
-  std::string_view ending;  // without the dot
-  std::string_view description;
-  bool (*matches)(std::string_view content);
+// The first bytes of a format, in its row.
+template <std::size_t size>
+struct Start {
+  constexpr Start(const char (&given)[size]) {  // NOLINT: implicit, so that a row has a text
+    std::copy(given, given + size, bytes);
+  }
+  char bytes[size];
 };
-
+template <Start start>
+bool starts(std::string_view content) {
+  return content.starts_with(std::string_view(start.bytes, sizeof(start.bytes) - 1));
+}
 template <const Magic& magic>
 bool begins_with(std::string_view content) {
   return content.starts_with(std::string_view(magic.data(), magic.size()));
 }
-template <Kind kind>
-bool is_acclaim(std::string_view content) {
-  return acclaim_kind(content) == kind;
+bool is_asf(std::string_view content) {
+  return acclaim_kind(content) == Kind::asf;
 }
-template <Kind kind>
-bool is_json(std::string_view content) {
-  return json_kind(content) == kind;
-}
-template <Kind kind>
-bool is_scene(std::string_view content) {
-  return scene_kind(content) == kind;
-}
-bool is_pc2(std::string_view content) {
-  return content.starts_with(std::string_view("POINTCACHE2\0", 12));
-}
-bool is_zip(std::string_view content) {
-  return content.starts_with("PK\x03\x04");
-}
-bool is_glb(std::string_view content) {
-  return content.starts_with("glTF");
+bool is_amc(std::string_view content) {
+  return acclaim_kind(content) == Kind::amc;
 }
 bool is_bvh(std::string_view content) {
   return same_word(first_word(content).substr(0, kHierarchy.size()), kHierarchy);
 }
 
-constexpr auto kFormats = std::to_array<Format>({
-    {Kind::anim, "anim", "a Krok motion (.anim)", begins_with<kAnimMagic>},
-    {Kind::model, "model", "a Krok model (.model)", begins_with<kModelMagic>},
-    {Kind::cam, "cam", "a Krok camera (.cam)", begins_with<kCamMagic>},
-    {Kind::steps, "steps", "a Krok step library (.steps)", begins_with<kStepsMagic>},
-    {Kind::pc2, "pc2", "a point cache (.pc2)", is_pc2},
-    {Kind::glb, "glb", "a binary glTF file (.glb)", is_glb},
-    {Kind::bvh, "bvh", "a BVH text file", is_bvh},
-    {Kind::material, "material", "Krok materials (.material)", is_json<Kind::material>},
-    {Kind::character, "character", "a Krok character (.character)", is_json<Kind::character>},
-    {Kind::ragdoll, "ragdoll.json", "Krok bodies and joints (.ragdoll.json)",
-     is_json<Kind::ragdoll>},
-    {Kind::gltf, "gltf", "a glTF file (.gltf)", is_json<Kind::gltf>},
-    {Kind::zip, "zip", "a ZIP archive", is_zip},
-    {Kind::fbx, "fbx", "an FBX file", is_scene<Kind::fbx>},
-    {Kind::collada, "dae", "a COLLADA file (.dae)", is_scene<Kind::collada>},
-    {Kind::smd, "smd", "a Valve SMD file", is_scene<Kind::smd>},
-    {Kind::ms3d, "ms3d", "a MilkShape file (.ms3d)", is_scene<Kind::ms3d>},
-    {Kind::max_3ds, "3ds", "a 3DS file", is_scene<Kind::max_3ds>},
-    {Kind::ase, "ase", "an ASE file", is_scene<Kind::ase>},
-    {Kind::md5mesh, "md5mesh", "an MD5 mesh", is_scene<Kind::md5mesh>},
-    {Kind::md5anim, "md5anim", "an MD5 motion (.md5anim)", is_scene<Kind::md5anim>},
-    {Kind::asf, "asf", "an Acclaim skeleton (ASF)", is_acclaim<Kind::asf>},
-    {Kind::amc, "amc", "an Acclaim motion (AMC)", is_acclaim<Kind::amc>},
-});
+// What a format is apart from how it is read.
+enum class Group : unsigned char {
+  own,      // Krok's
+  capture,  // of a performer's motion
+  cache,    // of points
+  gltf,
+  archive,  // perhaps of a scene
+  scene     // read by formats/assimp
+};
+
+struct Format {
+  Kind kind;
+  Group group;
+  std::string_view endings;  // without the dots, separated by spaces
+  std::string_view description;
+  bool (*matches)(std::string_view content);
+
+  std::string_view ending() const { return endings.substr(0, endings.find(' ')); }
+};
+
+#define KROK_ROW(kind, group, endings, description, recognises, ...) \
+  Format{Kind::kind, Group::group, endings, description, recognises},
+constexpr auto kFormats = std::to_array<Format>({KROK_FORMATS(KROK_ROW)});
+#undef KROK_ROW
 
 const Format* find_format(Kind kind) {
   const auto found = std::ranges::find(kFormats, kind, &Format::kind);
   return found == kFormats.end() ? nullptr : &*found;
 }
 
+bool is_of(Kind kind, Group group) {
+  const Format* format = find_format(kind);
+  return format != nullptr && format->group == group;
+}
+
 }  // namespace
 
 std::string_view kind_name(Kind kind) {
   const Format* format = find_format(kind);
-  return format == nullptr ? "unknown" : format->ending;
+  return format == nullptr ? "unknown" : format->ending();
+}
+
+std::vector<std::string> endings_of(Kind kind) {
+  std::vector<std::string> endings;
+  const Format* format = find_format(kind);
+  std::string_view rest = format == nullptr ? std::string_view() : format->endings;
+  while (!rest.empty()) {
+    const std::string_view one = rest.substr(0, rest.find(' '));
+    endings.push_back("." + std::string(one));
+    rest.remove_prefix(std::min(one.size() + 1, rest.size()));
+  }
+  return endings;
 }
 
 bool is_read_through_assimp(Kind kind) {
-  return kind >= Kind::fbx;
+  return is_of(kind, Group::scene);
 }
 
 Kind kind_of_content(std::span<const std::byte> content) {
@@ -213,10 +229,11 @@ Kind kind_of_content(std::span<const std::byte> content) {
 Kind kind_of_name(const std::string& path) {
   const std::string ending = extension(path);
   if (ending.size() < 2) return Kind::unknown;
-  if (ending == kOtherAnimEnding) return Kind::anim;
-  const auto found =
-      std::ranges::find(kFormats, std::string_view(ending).substr(1), &Format::ending);
-  return found == kFormats.end() ? Kind::unknown : found->kind;
+  for (const Format& format : kFormats) {
+    const auto endings = endings_of(format.kind);
+    if (std::ranges::find(endings, ending) != endings.end()) return format.kind;
+  }
+  return Kind::unknown;
 }
 
 Kind identify(const std::string& path, std::span<const std::byte> content) {
@@ -244,15 +261,14 @@ std::string_view describe_content(std::span<const std::byte> content) {
 
 std::string advice(Kind found, Kind wanted) {
   if (found == wanted) return {};
-  const bool capture = found == Kind::bvh || found == Kind::asf || found == Kind::amc;
-  if (capture || is_read_through_assimp(found)) return "import it with krok-import";
-  if (found == Kind::glb || found == Kind::gltf) {
+  if (is_of(found, Group::capture) || is_of(found, Group::scene))
+    return "import it with krok-import";
+  if (is_of(found, Group::gltf)) {
     return "krok-import converts it: --character NAME.character writes its mesh and skeleton, -o "
            "NAME.anim an animation";
   }
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
-  const bool own = found >= Kind::anim && found <= Kind::ragdoll;
-  if (own) return "perhaps two arguments are in the wrong order";
+  if (is_of(found, Group::own)) return "perhaps two arguments are in the wrong order";
   return {};
 }
 

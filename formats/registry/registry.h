@@ -5,38 +5,20 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "formats/registry/format_table.h"
 
 // Identifies the format of a file from its first bytes and its name. Does not open or parse files.
 
 namespace krok::registry {
 
+// What formats are known, in the order of the table.
 enum class Kind : unsigned char {
   unknown,
-  // Krok's own
-  anim,
-  model,
-  cam,
-  steps,
-  material,
-  character,
-  ragdoll,  // .ragdoll.json
-  // captures
-  bvh,
-  asf,
-  amc,
-  pc2,  // a point cache
-  // scenes: glTF, and what formats/assimp reads
-  glb,
-  gltf,
-  zip,  // an archive, perhaps of a glTF scene
-  fbx,
-  collada,
-  smd,
-  ms3d,
-  max_3ds,  // .3ds
-  ase,
-  md5mesh,
-  md5anim,
+#define KROK_KIND(kind, ...) kind,
+  KROK_FORMATS(KROK_KIND)
+#undef KROK_KIND
 };
 
 // The first bytes of Krok's binary formats; formats/container has the rest of the header.
@@ -46,10 +28,11 @@ inline constexpr Magic kModelMagic = {'K', 'R', 'O', 'K', 'M', 'O', 'D', 'L'};
 inline constexpr Magic kCamMagic = {'K', 'R', 'O', 'K', 'C', 'A', 'M', 'R'};
 inline constexpr Magic kStepsMagic = {'K', 'R', 'O', 'K', 'S', 'T', 'E', 'P'};
 
-// Another extension of motions, for projects with the .anim files of Unity or Maya.
-inline constexpr std::string_view kOtherAnimEnding = ".kanim";
+// All file extensions of a kind, with the dot: ".anim", ".kanim". None for Kind::unknown.
+std::vector<std::string> endings_of(Kind kind);
 
-// The file extension of a kind, without the dot: "anim", "dae", "3ds" and so on; or "unknown".
+// The first file extension of a kind, without the dot: "anim", "dae", "3ds" and so on; or
+// "unknown".
 std::string_view kind_name(Kind kind);
 
 // Whether such files are read through Assimp: FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "character/bind_pose_internal.h"
 #include "character/rig.h"
-#include "character/rig_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"

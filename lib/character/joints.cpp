@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "character/rig_internal.h"
+#include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"

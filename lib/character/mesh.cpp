@@ -8,9 +8,11 @@
 #include <map>
 
 #include "capture/unique_names.h"
-#include "character/mesh_internal.h"
+#include "character/mesh_placement_internal.h"
+#include "character/mesh_vertices_internal.h"
+#include "character/morph_targets_internal.h"
 #include "character/motion.h"
-#include "character/rig_internal.h"
+#include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
@@ -53,7 +55,8 @@ void append(const nodes::Shared<Value>& from, std::size_t count, const Value& us
 class MeshBuilder {
  public:
   MeshBuilder(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
-              const Conversion& conversion, const ActorOptions& options, Diagnostics& diagnostics)
+              const Conversion& conversion, const SceneActorOptions& options,
+              Diagnostics& diagnostics)
       : scene_(scene),
         evaluator_(evaluator),
         rig_(rig),
@@ -62,7 +65,7 @@ class MeshBuilder {
         placements_(scene, evaluator, rig, conversion),
         targets_(scene, evaluator) {}
 
-  Result<Actor> build() {
+  Result<SceneActor> build() {
     for (const nodes::Instance& instance : evaluator_.instances()) {
       if (is_wanted(instance)) wanted_.push_back(instance);
     }
@@ -98,13 +101,13 @@ class MeshBuilder {
   const Scene& scene_;
   const nodes::Evaluator& evaluator_;
   const Rig& rig_;
-  const ActorOptions& options_;
+  const SceneActorOptions& options_;
   Diagnostics& diagnostics_;
   Placements placements_;  // of the primitive being added
   std::vector<nodes::Instance> wanted_;
   std::vector<std::size_t> first_vertices_;  // in the model, of those of wanted_ that are added
   TargetNames targets_;
-  Actor actor_;
+  SceneActor actor_;
   NameList elsewhere_, other_skeleton_, without_triangles_;
   bool with_normals_ = false, with_texture_ = false, with_tangents_ = false, with_colours_ = false;
   std::size_t sets_ = 1;  // of texture coordinates
@@ -359,9 +362,9 @@ Status MeshBuilder::add_targets() {
 
 }  // namespace
 
-Result<Actor> make_actor(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
-                         const Conversion& conversion, const ActorOptions& options,
-                         Diagnostics& diagnostics) {
+Result<SceneActor> make_actor(const Scene& scene, const nodes::Evaluator& evaluator, const Rig& rig,
+                              const Conversion& conversion, const SceneActorOptions& options,
+                              Diagnostics& diagnostics) {
   auto actor = MeshBuilder(scene, evaluator, rig, conversion, options, diagnostics).build();
   if (!actor) return actor;
   auto skeleton = skeleton_in_krok(rig, conversion);

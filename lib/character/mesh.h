@@ -6,17 +6,15 @@
 #include "character/rig.h"
 #include "character/sampling.h"
 #include "core/result.h"
-#include "scene/model.h"
-#include "scene/morph_set.h"
+#include "scene/actor.h"
 
 // Converts the meshes of a scene to one model on a rig.
 
 namespace krok::character {
 
-struct Actor {
-  Model model;      // in the rig's reference pose and Krok's frame, with the rig's skeleton
-  MorphSet morphs;  // of the model's vertices; empty if the scene has no targets
-
+// Its model is in the rig's reference pose and Krok's frame, with the rig's skeleton. Of the rest
+// of an Actor it has the morph targets.
+struct SceneActor : Actor {
   // The source of each target's weight: a node whose mesh has the target, and its index there.
   struct WeightSource {
     int node = 0;
@@ -27,7 +25,7 @@ struct Actor {
   std::vector<int> part_materials;  // [parts] of the model, in the scene's materials; -1 for none
 };
 
-struct ActorOptions {
+struct SceneActorOptions {
   bool with_morphs = false;  // fill `morphs`
 };
 
@@ -47,13 +45,13 @@ struct ActorOptions {
 //
 // An Error if vertices are not finite (scene-value) or there are too many morph targets
 // (scene-morphs: more than 50 million vertices in all targets together).
-Result<Actor> make_actor(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
-                         const Rig& rig, const Conversion& conversion, const ActorOptions& options,
-                         Diagnostics& diagnostics);
+Result<SceneActor> make_actor(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                              const Rig& rig, const Conversion& conversion,
+                              const SceneActorOptions& options, Diagnostics& diagnostics);
 
 // The weights of an actor's targets over time; animation -1: the weights without animation. An
 // Error (code scene-too-long) for more than 100 million weights in total.
-Result<MorphWeights> make_weights(const Actor& actor, const nodes::Evaluator& evaluator,
+Result<MorphWeights> make_weights(const SceneActor& actor, const nodes::Evaluator& evaluator,
                                   int animation, const Sampling& sampling);
 
 }  // namespace krok::character

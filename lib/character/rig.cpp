@@ -7,8 +7,9 @@
 #include <cmath>
 
 #include "capture/unique_names.h"
-#include "character/rig_internal.h"
+#include "character/bind_pose_internal.h"
 #include "character/space.h"
+#include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "character/rig_internal.h"
+#include "character/tell_internal.h"
 #include "core/numbers.h"
 
 namespace krok::character {

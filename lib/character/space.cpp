@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "character/rig_internal.h"
+#include "character/tell_internal.h"
 #include "core/numbers.h"
 
 namespace krok::character {

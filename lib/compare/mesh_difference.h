@@ -8,6 +8,7 @@
 
 #include "compare/measure.h"
 #include "math/types.h"
+#include "scene/scene.h"
 
 // Mesh comparison shared by models and scenes.
 
@@ -23,12 +24,7 @@ std::string difference_in_triangles(std::span<const Triangle> first,
 // The same triangles wound the other way.
 std::vector<Triangle> reversed(std::span<const Triangle> triangles);
 
-// Skin influences of a mesh's vertices, shape [vertices x per_vertex].
-struct Influences {
-  int per_vertex = 0;
-  std::span<const std::uint16_t> joints;
-  std::span<const float> weights;
-};
+using Influences = SkinInfluences;
 
 // Adds the largest difference of joint weights, per vertex. Weights of a joint that appears twice
 // for a vertex are summed. `first_of_second` maps joints of the second to the first (-1: no

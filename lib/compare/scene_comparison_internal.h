@@ -24,7 +24,34 @@ struct Moment {
   double second_time = 0;  // equal to first_time within the tolerance
 };
 
+// A scene with the texture coordinates that its textures see: a transform that all textures of a
+// material apply to the first set is applied, and no parameter of the material.
+class UsedTextures {
+ public:
+  struct Memory {
+    std::vector<Vec2f> coordinates;
+    std::vector<MaterialParameter> parameters;
+    std::vector<bool> used_sets;  // of texture coordinates, whether a texture uses it
+  };
+
+  explicit UsedTextures(const Scene& from);
+  UsedTextures(const UsedTextures&) = delete;
+  UsedTextures& operator=(const UsedTextures&) = delete;
+
+  bool uses(int mesh, std::size_t set) const {
+    const auto& sets = memory_[static_cast<std::size_t>(mesh)].used_sets;
+    return set < sets.size() && sets[set];
+  }
+
+  Scene scene;
+
+ private:
+  std::vector<Memory> memory_;  // [meshes]
+};
+
 struct SceneComparison {
+  const UsedTextures& first_textures;
+  const UsedTextures& second_textures;
   const Scene& first;
   const Scene& second;
   const SceneOptions& options;
@@ -36,7 +63,7 @@ struct SceneComparison {
   std::vector<SurfaceGroup> groups{};    // meshes compared by nearest points
   std::vector<SurfaceMatch> surfaces{};  // of the groups, in both directions
   std::vector<Moment> moments{};
-  Placement first_placement{}, second_placement{};                    // at the first of the moments
+  ScenePlacement first_placement{}, second_placement{};               // at the first of the moments
   std::set<std::pair<const Material*, const Material*>> materials{};  // already compared
 
   void say(std::string sentence) { result.structure.push_back(std::move(sentence)); }

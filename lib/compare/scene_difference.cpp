@@ -55,7 +55,8 @@ bool SceneDifference::same() const {
 
 Result<SceneDifference> difference(const Scene& first, const Scene& second,
                                    const SceneOptions& options, int jobs, Progress& progress) {
-  SceneComparison comparison{first, second, options};
+  const UsedTextures used(first), other_used(second);
+  SceneComparison comparison{used, other_used, used.scene, other_used.scene, options};
   set_tolerances(options, comparison.result);
   match_scene_joints(comparison);
   match_scene_meshes(comparison);

@@ -5,9 +5,9 @@
 
 #include "compare/matching.h"
 #include "compare/measure.h"
-#include "compare/scene.h"
 #include "core/progress.h"
 #include "core/result.h"
+#include "scene/scene.h"
 
 // Compares two animated scenes by what a viewer shows: both are evaluated at the same times, and
 // vertices and joints are compared in world space. A rig can thus be compared with the same motion

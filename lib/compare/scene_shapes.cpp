@@ -28,8 +28,8 @@ bool is_bake_of(const SceneMesh& a, const SceneMesh& b) {
 }
 
 // The displacements of a morph target in world space.
-SceneMesh::Target displaced(const Placement& placement, const SceneMesh& mesh, int mesh_index,
-                            int target, Placement::Memory& memory) {
+SceneMesh::Target displaced(const ScenePlacement& placement, const SceneMesh& mesh, int mesh_index,
+                            int target, ScenePlacement::Memory& memory) {
   if (placement.displace) return placement.displace(mesh_index, target, memory);
   return mesh.targets[static_cast<std::size_t>(target)];
 }
@@ -59,7 +59,7 @@ void compare_targets(SceneComparison& comparison, std::pair<int, int> meshes,
     comparison.say(
         fmt::format("{}: {} is only in the first", name, label("morph target", target, missing)));
   }
-  Placement::Memory first_memory, second_memory;
+  ScenePlacement::Memory first_memory, second_memory;
   for (const auto& [i, j] : match.pairs) {
     const auto target = displaced(comparison.first_placement, a, meshes.first, i, first_memory);
     const auto other = displaced(comparison.second_placement, b, meshes.second, j, second_memory);
@@ -98,8 +98,10 @@ void say_only_one_has(SceneComparison& comparison, const std::string& name, cons
 }
 
 // Vertex colours, and texture coordinates beside the first set.
-void compare_attributes(SceneComparison& comparison, const SceneMesh& a, const SceneMesh& b,
+void compare_attributes(SceneComparison& comparison, std::pair<int, int> meshes,
                         const std::string& name, ValueLocation place) {
+  const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(meshes.first)];
+  const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(meshes.second)];
   const auto report = [&](std::string text, bool counts) {
     if (counts) {
       comparison.say(std::move(text));
@@ -120,15 +122,13 @@ void compare_attributes(SceneComparison& comparison, const SceneMesh& a, const S
     return set < mesh.more_texture_coordinates.size() ? mesh.more_texture_coordinates[set]
                                                       : std::span<const Vec2f>();
   };
-  const auto uses = [](const SceneMesh& mesh, std::size_t set) {
-    return set < mesh.used_coordinates.size() && mesh.used_coordinates[set];
-  };
   const std::size_t sets =
       std::max(a.more_texture_coordinates.size(), b.more_texture_coordinates.size());
   for (std::size_t set = 0; set < sets; ++set) {
     const auto ours = set_of(a, set), theirs = set_of(b, set);
     if (ours.empty() != theirs.empty()) {
-      const bool used = uses(a, set + 1) || uses(b, set + 1);
+      const bool used = comparison.first_textures.uses(meshes.first, set + 1) ||
+                        comparison.second_textures.uses(meshes.second, set + 1);
       report(fmt::format("{}: only the {} has texture coordinates {}{}", name,
                          ours.empty() ? "second" : "first", set + 1,
                          used ? "" : ", which no texture uses"),
@@ -240,7 +240,7 @@ void compare_pair(SceneComparison& comparison, std::pair<int, int> meshes) {
   if (a.visible != b.visible) {
     comparison.say(fmt::format("{}: hidden in the {}", name, a.visible ? "second" : "first"));
   }
-  compare_attributes(comparison, a, b, name, place);
+  compare_attributes(comparison, meshes, name, place);
   compare_targets(comparison, meshes, name, place);
   compare_weights(comparison, a, b, name, place);
   compare_materials(comparison, a, b, name);

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "compare/scene.h"
 #include "core/result.h"
+#include "scene/scene.h"
 
 // Private to this folder: the nearest point of one surface to each vertex of another.
 

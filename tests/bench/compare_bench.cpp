@@ -22,7 +22,7 @@
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
 #include "math/quaternion.h"
-#include "tools/krok-diff/gltf_scene.h"
+#include "nodes/scene_of.h"
 
 namespace {
 
@@ -122,19 +122,19 @@ std::string write(const std::filesystem::path& path,
   return path.string();
 }
 
-nodes::Scene read(const std::string& path) {
-  auto scene = gltf::read_file(path);
+Scene read(const std::string& path) {
+  auto file = gltf::read_file(path);
+  if (!file) std::abort();
+  auto scene = nodes::scene_of(std::make_shared<const nodes::Scene>(*std::move(file)));
   if (!scene) std::abort();
-  return std::move(*scene);
+  return *std::move(scene);
 }
 
 compare::SceneDifference compare_files(const std::string& first, const std::string& second) {
-  const nodes::Scene a = read(first);
-  const nodes::Scene b = read(second);
-  const auto scene_a = cli::diff::scene_of(a);
-  const auto scene_b = cli::diff::scene_of(b);
+  const Scene a = read(first);
+  const Scene b = read(second);
   Progress quiet;
-  auto found = compare::difference(*scene_a, *scene_b, {}, 1, quiet);
+  auto found = compare::difference(a, b, {}, 1, quiet);
   if (!found) std::abort();
   return std::move(*found);
 }

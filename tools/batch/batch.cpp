@@ -239,6 +239,7 @@ class Batch {
     list_ = list_files(line_, make_spec_, errors);
     tally_ = BatchTally(list_.files.size());
     if (!errors.empty()) return stop(errors);
+    context_.diagnose(list_.left_out);
     if (Status status = prepare(); !status) return stop({status.error()});
     if (Status status = begin_report(); !status) return stop({status.error()});
     do_files();
@@ -347,6 +348,13 @@ class Batch {
     }
     const Result<int> done = run_guarded(ready->spec, context);
     ready_lines_->put_back(file.options, std::move(ready));
+    if (!done && file.found && done.error().code == "motion-missing") {
+      Error error = done.error();
+      error.severity = Severity::warning;
+      error.message += ": it is left out";
+      fail(file, std::move(error), outcome, FileState::left_out);
+      return;
+    }
     if (!done) return fail(file, done.error(), outcome);
     if (*done != kExitDone) {
       return fail(file, Error("failed", fmt::format("ended with exit code {}", *done)), outcome);
@@ -413,7 +421,8 @@ class Batch {
     outcome.report["result"] = std::move(record["result"]);
   }
 
-  void fail(const BatchFile& file, Error error, Outcome& outcome) const {
+  void fail(const BatchFile& file, Error error, Outcome& outcome,
+            FileState state = FileState::failed) const {
     ToolContext& context = outcome.context;
     // The location is a manifest word, or else the file.
     const bool of_line = error.code == "usage" && !list_.option_sets[file.options].options.empty();
@@ -422,7 +431,7 @@ class Batch {
     context.one_of_many = &outcome.run;
     context.subject.file = file.input;
     context.diagnose(error);
-    outcome.state = FileState::failed;
+    outcome.state = state;
     outcome.run.held_files.clear();
     context.report.outputs.clear();
     context.report.result = Json::object();

@@ -13,6 +13,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/batch/check.h"
+#include "tools/cli/folder_inputs.h"
 #include "tools/cli/paths.h"
 
 namespace krok::cli::batch {
@@ -67,18 +68,6 @@ std::string common_folder(const std::vector<std::string>& paths) {
   return common ? common->string() : std::string();
 }
 
-bool has_extension(const std::string& path, const std::vector<std::string>& extensions) {
-  return std::find(extensions.begin(), extensions.end(), extension(path)) != extensions.end();
-}
-
-std::string words(const std::vector<std::string>& list) {
-  std::string text;
-  for (const std::string& word : list) {
-    text += (text.empty() ? "" : word == list.back() ? " or " : ", ") + word;
-  }
-  return text;
-}
-
 class Lister {
  public:
   Lister(const CommandLine& line, const MakeToolSpec& make_spec, Diagnostics& errors)
@@ -129,7 +118,8 @@ class Lister {
         std::string absolute = absolute_path(found.input);
         if (!known.insert(absolute).second) continue;
         absolute_.push_back(std::move(absolute));
-        list_.files.push_back({std::move(found.input), {}, {}, {}, *set, {}});
+        list_.files.push_back(
+            {std::move(found.input), {}, {}, {}, *set, {}, found.base.has_value()});
         bases_.push_back(std::move(found.base));
       }
     }
@@ -148,10 +138,10 @@ class Lister {
       paths = find_files_below(argument);
       if (paths) {
         leave_out_results(argument, *paths);
-        std::erase_if(*paths,
-                      [&](const auto& path) { return !has_extension(path, spec_.batch->reads); });
+        const Diagnostics others = keep_inputs(argument, spec_.batch->reads, *paths);
+        list_.left_out.insert(list_.left_out.end(), others.begin(), others.end());
       }
-      nothing = fmt::format("the folder has no {} file", words(spec_.batch->reads));
+      nothing = fmt::format("the folder has no {} file", any_of_words(spec_.batch->reads));
     } else if (has_wildcards(argument) && !fs::exists(argument, missing)) {
       paths = find_files(argument);
       base = fixed_part(argument);

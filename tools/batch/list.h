@@ -20,6 +20,7 @@ struct BatchFile {
   std::string output;       // output path
   std::size_t options = 0;  // index into BatchList::option_sets
   Location line;            // in the manifest; no file without one
+  bool found = false;       // in a folder or by a pattern, not named
 };
 
 struct BatchList {
@@ -27,6 +28,7 @@ struct BatchList {
   std::vector<BatchFile> files;                  // of this shard
   std::size_t total = 0;                         // in all shards
   std::map<FileNumber, std::string> read_files;  // inputs of all shards, maps, the list itself
+  Diagnostics left_out;                          // for each folder, what the tool does not read
 };
 
 // Expands the path in an option that names an output: "{name}" is replaced by BatchFile::name, and

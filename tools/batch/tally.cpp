@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 #include "core/numbers.h"
 
 namespace krok::cli::batch {
@@ -23,6 +25,8 @@ const char* name_of(FileState state) {
       return "done";
     case FileState::unchanged:
       return "unchanged";
+    case FileState::left_out:
+      return "left out";
     case FileState::failed:
       break;
   }
@@ -36,7 +40,7 @@ void BatchTally::add(FileState state, const std::string& name, bool warned) {
 }
 
 std::size_t BatchTally::left() const {
-  return files_ - counts_[0] - counts_[1] - counts_[2];
+  return files_ - std::accumulate(counts_.begin(), counts_.end(), std::size_t{0});
 }
 
 Json BatchTally::result() const {
@@ -45,6 +49,7 @@ Json BatchTally::result() const {
   json["done"] = count(FileState::done);
   json["with_warnings"] = warned_;
   json["unchanged"] = count(FileState::unchanged);
+  if (count(FileState::left_out) > 0) json["left_out"] = count(FileState::left_out);
   json["failed"] = failed();
   json["left"] = left();
   return json;
@@ -57,6 +62,7 @@ std::string BatchTally::summary(const std::string& of_what) const {
   };
   add(count(FileState::done), "done");
   add(count(FileState::unchanged), "unchanged");
+  add(count(FileState::left_out), "left out");
   add(failed(), "failed");
   add(left(), "left");
   if (warned_ > 0) text += fmt::format("; {} with warnings", warned_);

@@ -11,9 +11,14 @@
 namespace krok::cli::batch {
 
 // Status of a processed file of a batch.
-enum class FileState { done, unchanged, failed };
+enum class FileState {
+  done,
+  unchanged,
+  left_out,  // of a folder: a scene without the animation that the tool takes
+  failed
+};
 
-// "done", "unchanged", "failed".
+// "done", "unchanged", "left out", "failed".
 const char* name_of(FileState state);
 
 // Counts the files of a batch by status.
@@ -24,7 +29,7 @@ class BatchTally {
   void add(FileState state, const std::string& name, bool warned);
 
   std::size_t failed() const { return count(FileState::failed); }
-  // {"files", "done", "with_warnings", "unchanged", "failed", "left"}
+  // {"files", "done", "with_warnings", "unchanged", "left_out" if any, "failed", "left"}
   Json result() const;
   // "12 files{of_what}, 10 done, 2 failed; 3 with warnings"; zero counts are omitted.
   std::string summary(const std::string& of_what) const;
@@ -36,7 +41,7 @@ class BatchTally {
   std::size_t left() const;
 
   std::size_t files_;
-  std::array<std::size_t, 3> counts_{};
+  std::array<std::size_t, 4> counts_{};
   std::size_t warned_ = 0;           // files that are done
   std::vector<std::string> failed_;  // names, the first few
 };

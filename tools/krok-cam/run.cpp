@@ -24,30 +24,22 @@
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
 #include "motion/ground_frame.h"
+#include "nodes/animation_choice.h"
 #include "nodes/evaluate.h"
 #include "nodes/moving.h"
 #include "scene/camera_track.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/animation_choice.h"
 #include "tools/shared/camera_choice.h"
 
 namespace krok::cli::cam {
 
 namespace {
 
-void report_all(Diagnostics& found, const std::string& path, ToolContext& context) {
-  for (Diagnostic& diagnostic : found) {
-    if (diagnostic.where.file.empty()) diagnostic.where.file = path;
-    context.diagnose(std::move(diagnostic));
-  }
-  found.clear();
-}
-
 // The animation that moves the camera most; -1 if none does.
 int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
-  const ChosenAnimation best =
+  const nodes::ChosenAnimation best =
       best_animation(scene, "camera channel", [&](const nodes::Animation& animation) {
         return nodes::camera_count(scene, animation, camera);
       });
@@ -93,7 +85,7 @@ Result<CameraTrack> read_scene_camera(const InputFile& file, const std::string& 
   auto track = character::make_camera(*scene, *evaluator, *camera, Conversion(), Mat4::Identity(),
                                       animation, sampling, found);
   if (!track) return Error(track.error()).in_file(file.path());
-  report_all(found, file.path(), context);
+  context.diagnose_in(file.path(), found);
   return track;
 }
 

@@ -5,47 +5,43 @@
 
 #include "compare/scene_difference.h"
 #include "core/numbers.h"
-#include "formats/io/open_motion.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_scene.h"
-#include "formats/model/model_format.h"
+#include "nodes/scene_of.h"
+#include "skin/scene_of.h"
 #include "tools/krok-diff/compare_two.h"
 #include "tools/krok-diff/comparisons.h"
 #include "tools/krok-diff/difference_plot.h"
-#include "tools/krok-diff/gltf_scene.h"
 #include "tools/krok-diff/heatmap.h"
-#include "tools/krok-diff/other_scenes.h"
+#include "tools/krok-diff/point_scene.h"
 
 namespace krok::cli::diff {
 
 namespace {
 
-// A file as a scene, with the data that the scene refers to.
+// A file as a scene.
 struct Opened {
   InputKind kind = InputKind::gltf;
-  std::optional<nodes::Scene> asset;
-  std::optional<Model> model;
-  std::optional<Clip> clip;
   std::optional<pc2::PointCache> points;
-  compare::Scene scene;
+  Scene scene;
 
   // Reads the file, and builds the scene unless it depends on the partner's.
   Status read(const InputFile& file, ToolContext& context);
-  Status read_gltf_scene(const InputFile& file, ToolContext& context);
+  Status read_gltf(const InputFile& file, ToolContext& context);
   // Builds the scene of a point cache, which depends on the partner's.
   Status finish(const Opened& partner);
 };
 
-Status Opened::read_gltf_scene(const InputFile& file, ToolContext& context) {
+Status Opened::read_gltf(const InputFile& file, ToolContext& context) {
   auto read = io::open_scene(file, context, true);
   if (!read) return std::move(read).error();
   for (const Diagnostic& diagnostic : read->diagnostics) {
     // What a Material leaves out is compared by its parameters.
     if (diagnostic.code != "gltf-material") context.diagnose(diagnostic);
   }
-  asset = std::move(*read);
-  auto made = scene_of(*asset);
+  auto made = scene_of(std::make_shared<const nodes::Scene>(*std::move(read)));
   if (!made) return std::move(made).error();
-  scene = std::move(*made);
+  scene = *std::move(made);
   if (!scene.not_compared.empty()) {
     context.warn("diff-not-compared", fmt::format("{}: not compared: {}", base_name(file.path()),
                                                   fmt::join(scene.not_compared, ", ")));
@@ -54,45 +50,54 @@ Status Opened::read_gltf_scene(const InputFile& file, ToolContext& context) {
 }
 
 Status Opened::read(const InputFile& file, ToolContext& context) {
-  if (kind == InputKind::gltf) return read_gltf_scene(file, context);
-  if (kind == InputKind::model) {
-    auto read = model::read(file.bytes());
-    if (!read) return std::move(read).error();
-    model = std::move(*read);
-    if (Status status = check(*model); !status) return status;
-    scene = scene_of(*model);
-  } else if (kind == InputKind::motion) {
-    auto read = io::open_motion(file, context);
-    if (!read) return std::move(read).error();
-    clip = std::move(*read);
-    if (Status status = check(*clip); !status) return status;
-    scene = scene_of(*clip);
-  } else {
+  if (kind == InputKind::gltf) return read_gltf(file, context);
+  if (kind == InputKind::points) {
     auto read = pc2::PointCache::read(file.bytes());
     if (!read) return std::move(read).error();
     points = *read;
+    return {};
   }
-  return {};
+  auto actor = io::open_actor(file, context);
+  if (!actor) return std::move(actor).error();
+  Status status = kind == InputKind::model ? check(actor->model) : check(actor->motions[0].clip);
+  if (status) scene = scene_of(std::make_shared<const Actor>(*std::move(actor)));
+  return status;
 }
 
 Status Opened::finish(const Opened& partner) {
   if (!points) return {};
   auto made = scene_of(*points, partner.points ? nullptr : &partner.scene);
   if (!made) return std::move(made).error();
-  scene = std::move(*made);
+  scene = *std::move(made);
   return {};
 }
 
-PlaceNames names_of(const compare::Scene& first, const compare::Scene& second) {
+// "1 mesh, 10,120 vertices, 20,236 triangles; 31 joints; 1 animation".
+std::string summary_of(const Scene& scene) {
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  for (const SceneMesh& mesh : scene.meshes) {
+    vertices += mesh.vertex_count;
+    triangles += mesh.triangles.size();
+  }
+  const auto number = [](std::size_t count) { return static_cast<std::int64_t>(count); };
+  return fmt::format("{}, {}, {}; {}; {}", counted(number(scene.meshes.size()), "mesh", "meshes"),
+                     counted(number(vertices), "vertex", "vertices"),
+                     counted(number(triangles), "triangle", "triangles"),
+                     counted(number(scene.joint_names.size()), "joint", "joints"),
+                     counted(number(scene.animations.size()), "animation", "animations"));
+}
+
+PlaceNames names_of(const Scene& first, const Scene& second) {
   PlaceNames names;
   names.joints = first.joint_names;
-  for (const compare::SceneMesh& mesh : first.meshes) {
+  for (const SceneMesh& mesh : first.meshes) {
     names.meshes.push_back(mesh.name);
     names.first_files.emplace_back(mesh.node_name, mesh.mesh_name);
     auto& targets = names.targets.emplace_back();
     for (const auto& target : mesh.targets) targets.push_back(target.name);
   }
-  for (const compare::SceneMesh& mesh : second.meshes) {
+  for (const SceneMesh& mesh : second.meshes) {
     names.second_meshes.push_back(mesh.name);
     names.second_files.emplace_back(mesh.node_name, mesh.mesh_name);
   }
@@ -148,8 +153,8 @@ Outcome outcome_of(const Opened& first, const Opened& second,
 Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
                                const InputFile& second, InputKind second_kind,
                                const Options& options, ToolContext& context) {
-  Opened a{first_kind, {}, {}, {}, {}, {}};
-  Opened b{second_kind, {}, {}, {}, {}, {}};
+  Opened a{first_kind, {}, {}};
+  Opened b{second_kind, {}, {}};
   if (Status status = a.read(first, context); !status)
     return Error(status.error()).in_file(first.path());
   if (Status status = b.read(second, context); !status) {

@@ -121,21 +121,12 @@ class ClipPair {
   std::vector<std::pair<int, int>> frames_;
 };
 
-render::Surface surface_of(const Model& model) {
-  render::Surface surface;
-  surface.positions = model.positions;
-  surface.normals = model.normals;
-  surface.triangles = std::make_shared<render::Triangles>(model.triangles);
-  surface.colours = {kBodyColour};
-  return surface;
-}
-
 // A scene's meshes, or its joints if it has no triangles.
 class ScenePart {
  public:
   // `dressed`: in the base colours of its materials, without textures.
-  ScenePart(const compare::Scene& scene, bool dressed) : scene_(scene) {
-    for (const compare::SceneMesh& mesh : scene.meshes) {
+  ScenePart(const Scene& scene, bool dressed) : scene_(scene) {
+    for (const SceneMesh& mesh : scene.meshes) {
       colours_.push_back(kBodyColour);
       if (dressed && mesh.material != nullptr) {
         colours_.back() = render::to_colour(mesh.material->base_color.head<3>());
@@ -152,13 +143,13 @@ class ScenePart {
                        [](const auto& triangles) { return !triangles->empty(); });
   }
 
-  compare::SceneState state(double time) const {
-    compare::SceneState state;
+  SceneState state(double time) const {
+    SceneState state;
     scene_.evaluate(scene_.animations.empty() ? -1 : 0, time, state);
     return state;
   }
 
-  Actor actor(const compare::SceneState& state) const {
+  Actor actor(const SceneState& state) const {
     Actor actor;
     if (!has_surface()) return bones(state, style_.colours, false);
     for (std::size_t i = 0; i < triangles_.size(); ++i) {
@@ -172,8 +163,7 @@ class ScenePart {
     return actor;
   }
 
-  Actor bones(const compare::SceneState& state, std::vector<render::Colour> colours,
-              bool blended) const {
+  Actor bones(const SceneState& state, std::vector<render::Colour> colours, bool blended) const {
     BoneStyle style = style_;
     style.colours = std::move(colours);
     style.blended = blended;
@@ -186,16 +176,16 @@ class ScenePart {
     return bone_actor(style, positions);
   }
 
-  static std::vector<Vec3f> joints(const compare::SceneState& state) {
+  static std::vector<Vec3f> joints(const SceneState& state) {
     std::vector<Vec3f> positions;
     for (const Transform& joint : state.joints) positions.push_back(joint.position.cast<float>());
     return positions;
   }
 
-  const compare::Scene& scene() const { return scene_; }
+  const Scene& scene() const { return scene_; }
 
  private:
-  const compare::Scene& scene_;
+  const Scene& scene_;
   std::vector<std::shared_ptr<const render::Triangles>> triangles_;
   std::vector<render::Colour> colours_;  // [meshes]
   BoneStyle style_;
@@ -203,8 +193,7 @@ class ScenePart {
 
 class ScenePair {
  public:
-  ScenePair(const compare::Scene& first, const compare::Scene& second, compare::Matching matching,
-            bool dressed)
+  ScenePair(const Scene& first, const Scene& second, compare::Matching matching, bool dressed)
       : first_(first, dressed),
         second_(second, dressed),
         first_of_second_(second.meshes.size(), 0) {
@@ -254,6 +243,7 @@ class ScenePair {
       result.coloured = second_.bones(
           b, colours_of(ScenePart::joints(b), ScenePart::joints(a), key, result.largest), true);
     }
+    if (first_.scene().only_still && second_.scene().only_still) return result;
     const render::Bounds box = render::bounds(result.first);
     const Vec3 place =
         a.joints.empty() ? Vec3(0.5 * (box.low + box.high)) : a.joints.front().position;
@@ -264,9 +254,9 @@ class ScenePair {
   }
 
  private:
-  static std::vector<std::string> mesh_names(const compare::Scene& scene) {
+  static std::vector<std::string> mesh_names(const Scene& scene) {
     std::vector<std::string> names;
-    for (const compare::SceneMesh& mesh : scene.meshes) names.push_back(mesh.name);
+    for (const SceneMesh& mesh : scene.meshes) names.push_back(mesh.name);
     return names;
   }
 
@@ -300,35 +290,17 @@ DifferenceSheet sheet_of(const Clip& first, const Clip& second, const compare::M
   return sheet;
 }
 
-DifferenceSheet sheet_of(const Model& first, const Model& second, const compare::Measure& found) {
-  DifferenceSheet sheet;
-  sheet.measured = first.vertex_count() == second.vertex_count();
-  sheet.largest = found.largest;
-  sheet.tolerance = found.tolerance;
-  sheet.at = [&first, &second, measured = sheet.measured](const ImageMoment&,
-                                                          const ColourKey& key) {
-    Compared result;
-    result.first.surfaces = {surface_of(first)};
-    result.second.surfaces = {surface_of(second)};
-    result.coloured = result.second;
-    if (measured && second.vertex_count() > 0) {
-      result.coloured.surfaces[0].colours =
-          colours_of(second.positions, first.positions, key, result.largest);
-    }
-    return result;
-  };
-  return sheet;
-}
-
-DifferenceSheet sheet_of(const compare::Scene& first, const compare::Scene& second,
-                         const compare::Measure& found, compare::Matching matching, bool dressed) {
+DifferenceSheet sheet_of(const Scene& first, const Scene& second, const compare::Measure& found,
+                         compare::Matching matching, bool dressed) {
   const auto pair = std::make_shared<const ScenePair>(first, second, matching, dressed);
   DifferenceSheet sheet;
   sheet.measured = pair->corresponds();
   sheet.largest = found.largest;
   sheet.tolerance = found.tolerance;
   sheet.span.end = pair->duration();
-  if (found.largest > 0 && found.where.animation <= 0 && found.where.time <= sheet.span.end) {
+  const bool still = first.only_still && second.only_still;
+  if (!still && found.largest > 0 && found.where.animation <= 0 &&
+      found.where.time <= sheet.span.end) {
     sheet.worst = ImageMoment{found.where.time, -1};
   }
   sheet.at = [pair](const ImageMoment& moment, const ColourKey& key) {

@@ -33,7 +33,7 @@ Result<Plot> plot_of(const PlottedClip& first, const PlottedClip& second,
 
 struct PlottedScenes {
   std::string first_name, second_name;
-  const compare::Scene* first = nullptr;
+  const Scene* first = nullptr;
   const compare::SceneDifference* found = nullptr;
 };
 // The differences of vertex positions, normals and tangents and of joint positions and

@@ -43,12 +43,11 @@ struct DifferenceSheet {
   std::function<Compared(const ImageMoment& moment, const render::ColourKey& key)> at;
 };
 
-// The sheet of two clips, models or scenes, which must outlive it. `found` is the measured
+// The sheet of two clips or scenes, which must outlive it. `found` is the measured
 // difference of positions. `dressed`: both in the base colours of their materials.
 DifferenceSheet sheet_of(const Clip& first, const Clip& second, const compare::Measure& found);
-DifferenceSheet sheet_of(const Model& first, const Model& second, const compare::Measure& found);
-DifferenceSheet sheet_of(const compare::Scene& first, const compare::Scene& second,
-                         const compare::Measure& found, compare::Matching matching, bool dressed);
+DifferenceSheet sheet_of(const Scene& first, const Scene& second, const compare::Measure& found,
+                         compare::Matching matching, bool dressed);
 
 // Colours of distances: grey up to the tolerance, then from blue over yellow to red at the max.
 struct DistanceColours {

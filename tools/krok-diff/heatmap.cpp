@@ -10,7 +10,6 @@
 #include "formats/gltf/coloured_meshes.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-diff/difference_sheet.h"
-#include "tools/krok-diff/other_scenes.h"
 
 namespace krok::cli::diff {
 
@@ -30,7 +29,7 @@ Vec3f linear(render::Colour colour) {
 }
 
 // The first scene at the time of the max distance, or at its start.
-compare::SceneState pose_of(const compare::Scene& first, const compare::SceneDifference& found) {
+SceneState pose_of(const Scene& first, const compare::SceneDifference& found) {
   int animation = -1;
   double time = 0;
   if (!first.animations.empty()) {
@@ -40,7 +39,7 @@ compare::SceneState pose_of(const compare::Scene& first, const compare::SceneDif
     const auto& keys = first.animations[static_cast<std::size_t>(animation)].key_times;
     time = known ? worst.time : keys.empty() ? 0.0 : keys.front();
   }
-  compare::SceneState state;
+  SceneState state;
   first.evaluate(animation, time, state);
   return state;
 }
@@ -57,7 +56,7 @@ std::vector<Vec3f> floats(const std::vector<Vec3>& vectors) {
   return result;
 }
 
-MeshColours colours_of(std::size_t mesh, const compare::SceneState& state,
+MeshColours colours_of(std::size_t mesh, const SceneState& state,
                        const compare::SceneDifference& found, const DistanceColours& scale) {
   MeshColours result;
   result.positions = floats(state.positions[mesh]);
@@ -95,7 +94,7 @@ Status check_heatmap_name(const std::string& path) {
                "use the extension .glb");
 }
 
-Status write_heatmap(const compare::Scene& first, const compare::SceneDifference& found,
+Status write_heatmap(const Scene& first, const compare::SceneDifference& found,
                      const std::string& path, ToolContext& context) {
   const bool compared = std::any_of(found.vertex_largest.begin(), found.vertex_largest.end(),
                                     [](const std::vector<float>& mesh) { return !mesh.empty(); });
@@ -105,7 +104,7 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
   }
   const DistanceColours scale =
       distance_colours(found.positions.tolerance, found.positions.largest);
-  const compare::SceneState state = pose_of(first, found);
+  const SceneState state = pose_of(first, found);
   std::vector<MeshColours> colours;
   bool some_not_compared = false;
   for (std::size_t mesh = 0; mesh < first.meshes.size(); ++mesh) {
@@ -115,7 +114,7 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
   }
   std::vector<gltf::ColouredMesh> meshes;
   for (std::size_t mesh = 0; mesh < first.meshes.size(); ++mesh) {
-    const compare::SceneMesh& from = first.meshes[mesh];
+    const SceneMesh& from = first.meshes[mesh];
     const std::string name = from.name.empty() ? fmt::format("mesh {}", mesh) : from.name;
     meshes.push_back({name, colours[mesh].positions, colours[mesh].normals, colours[mesh].colours,
                       from.triangles, from.mesh_name});
@@ -131,14 +130,13 @@ Status write_heatmap(const compare::Scene& first, const compare::SceneDifference
   return status;
 }
 
-Status write_heatmap(const Model& first, const Model& second, const compare::SceneOptions& options,
+Status write_heatmap(const Scene& first, const Scene& second, const compare::SceneOptions& options,
                      const std::string& path, ToolContext& context) {
-  const compare::Scene a = scene_of(first), b = scene_of(second);
   compare::SceneOptions how = options;
   how.keep_vertices = true;
-  const auto found = compare::difference(a, b, how, context.jobs, *context.progress);
+  const auto found = compare::difference(first, second, how, context.jobs, *context.progress);
   if (!found) return found.error();
-  return write_heatmap(a, *found, path, context);
+  return write_heatmap(first, *found, path, context);
 }
 
 }  // namespace krok::cli::diff

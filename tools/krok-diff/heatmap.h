@@ -17,11 +17,11 @@ Status check_heatmap_name(const std::string& path);
 // Writes the first scene's meshes, in the pose of the max difference, with each vertex coloured by
 // its max distance over all times (`found` must have kept them), and prints the legend. If no mesh
 // was compared: a warning, and no file.
-Status write_heatmap(const compare::Scene& first, const compare::SceneDifference& found,
+Status write_heatmap(const Scene& first, const compare::SceneDifference& found,
                      const std::string& path, ToolContext& context);
 
-// The same for two models in their reference poses.
-Status write_heatmap(const Model& first, const Model& second, const compare::SceneOptions& options,
+// The same for two scenes that were not compared as such.
+Status write_heatmap(const Scene& first, const Scene& second, const compare::SceneOptions& options,
                      const std::string& path, ToolContext& context);
 
 }  // namespace krok::cli::diff

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "formats/io/formats.h"
 #include "formats/registry/registry.h"
@@ -15,58 +13,32 @@ namespace {
 
 using registry::Kind;
 
-constexpr std::array<char, 4> kExrMagic = {'\x76', '\x2f', '\x31', '\x01'};
-constexpr std::string_view kPointCacheMagic = "POINTCACHE2";
-
-template <typename Magic>
-bool begins_with(std::span<const std::byte> bytes, const Magic& magic) {
-  return bytes.size() >= magic.size() &&
-         std::equal(magic.begin(), magic.end(), bytes.begin(),
-                    [](char a, std::byte b) { return static_cast<std::byte>(a) == b; });
-}
+struct KindRow {
+  InputKind kind;
+  const char* description;
+  const char* word;
+};
+constexpr KindRow kKindRows[] = {{InputKind::motion, "a motion", "anim"},
+                                 {InputKind::model, "a model (.model)", "model"},
+                                 {InputKind::camera, "a camera (.cam)", "cam"},
+                                 {InputKind::gltf, "glTF", "gltf"},
+                                 {InputKind::points, "a point cache (.pc2)", "pc2"},
+                                 {InputKind::morphs, "morph targets (.exr)", "morphs"}};
 
 }  // namespace
 
 std::string description(InputKind kind) {
-  switch (kind) {
-    case InputKind::motion:
-      return "a motion";
-    case InputKind::model:
-      return "a model (.model)";
-    case InputKind::camera:
-      return "a camera (.cam)";
-    case InputKind::gltf:
-      return "glTF";
-    case InputKind::points:
-      return "a point cache (.pc2)";
-    case InputKind::morphs:
-      break;
-  }
-  return "morph targets (.exr)";
+  return std::ranges::find(kKindRows, kind, &KindRow::kind)->description;
 }
 
 const char* word_of(InputKind kind) {
-  switch (kind) {
-    case InputKind::motion:
-      return "anim";
-    case InputKind::model:
-      return "model";
-    case InputKind::camera:
-      return "cam";
-    case InputKind::gltf:
-      return "gltf";
-    case InputKind::points:
-      return "pc2";
-    case InputKind::morphs:
-      break;
-  }
-  return "morphs";
+  return std::ranges::find(kKindRows, kind, &KindRow::kind)->word;
 }
 
 Result<InputKind> kind_of(const InputFile& file) {
+  if (file.text().starts_with("\x76\x2F\x31\x01")) return InputKind::morphs;
+  if (file.text().starts_with("POINTCACHE2")) return InputKind::points;
   const auto bytes = file.bytes();
-  if (begins_with(bytes, kExrMagic)) return InputKind::morphs;
-  if (begins_with(bytes, kPointCacheMagic)) return InputKind::points;
   if (io::is_motion(file)) return InputKind::motion;
   const Kind kind = registry::identify(file.path(), bytes);
   switch (kind) {

@@ -27,8 +27,8 @@ std::vector<ChosenClip> all_clips(const nodes::Scene& scene) {
 }  // namespace
 
 Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const std::string& wanted,
-                                             const ChosenAnimation& best, const std::string& file,
-                                             ToolContext& context) {
+                                             const nodes::ChosenAnimation& best,
+                                             const std::string& file, ToolContext& context) {
   std::vector<ChosenClip> clips = all_clips(scene);
   if (clips.empty() && (wanted.empty() || wanted == "all")) return clips;
   if (clips.empty()) {
@@ -42,9 +42,9 @@ Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const st
     if (wanted == "all") return clips;
     return found.error();
   }
-  report_animation(scene, best, "import-clips",
-                   "select another with --clip NAME or NUMBER, or all with --clip all", file,
-                   context);
+  context.diagnose(
+      describe_choice(scene, best, "import-clips",
+                      "select another with --clip NAME or NUMBER, or all with --clip all", file));
   ChosenClip chosen = std::move(clips[static_cast<std::size_t>(best.animation)]);
   chosen.why = best.why;
   return std::vector{std::move(chosen)};

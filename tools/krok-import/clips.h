@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/result.h"
+#include "nodes/animation_choice.h"
 #include "nodes/scene.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/animation_choice.h"
 
 // Selects the animations of a scene to import, and their file names.
 
@@ -23,8 +23,8 @@ struct ChosenClip {
 // warning that lists the others. Empty for a scene without animations. Fails (code clip-name) if
 // there is no match.
 Result<std::vector<ChosenClip>> choose_clips(const nodes::Scene& scene, const std::string& wanted,
-                                             const ChosenAnimation& best, const std::string& file,
-                                             ToolContext& context);
+                                             const nodes::ChosenAnimation& best,
+                                             const std::string& file, ToolContext& context);
 
 // Output path of a clip: replaces {clip} by its name; "{clip}" and `extension` are appended to a
 // folder. With `several` clips, a path without {clip} is an Error (code usage).

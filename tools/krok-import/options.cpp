@@ -210,13 +210,7 @@ ToolSpec make_spec() {
       {"krok-import captures --out-dir motions --keep-going",
        "all captures in a folder; run again, it processes only new, changed and failed files"}};
   // Only files with motion; an Acclaim skeleton or an MD5 mesh is read with the motion beside it.
-  std::vector<std::string> endings = io::motion_endings();
-  std::erase(endings, ".anim");
-  std::erase(endings, registry::kOtherAnimEnding);
-  for (const char* scene : {".glb", ".gltf", ".fbx", ".dae", ".smd", ".ms3d", ".ase", ".md5anim"}) {
-    endings.emplace_back(scene);
-  }
-  spec.batch = {std::move(endings), [options]() -> Result<std::string> {
+  spec.batch = {io::foreign_motion_endings(), [options]() -> Result<std::string> {
                   return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
                 }};
   return spec;

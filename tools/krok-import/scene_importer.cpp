@@ -10,7 +10,6 @@
 #include "tools/krok-import/facts.h"
 #include "tools/shared/camera_choice.h"
 #include "tools/shared/role_report.h"
-#include "tools/shared/scene_conventions.h"
 
 namespace krok::cli::import {
 
@@ -28,14 +27,6 @@ Result<int> SceneImporter::run() {
   context_.log(fmt::format("{} -> {}", line_, written));
   if (rig_) log_roles(rig_->skeleton, roles_, context_);
   return kExitDone;
-}
-
-void SceneImporter::report_all(Diagnostics& found) {
-  for (Diagnostic& diagnostic : found) {
-    diagnostic.where.file = path_;
-    context_.diagnose(std::move(diagnostic));
-  }
-  found.clear();
 }
 
 void SceneImporter::warn(const char* code, std::string message, std::string hint,
@@ -82,7 +73,7 @@ Status SceneImporter::choose() {
 }
 
 Status SceneImporter::choose_animations() {
-  ChosenAnimation best, of_camera;
+  nodes::ChosenAnimation best, of_camera;
   if (wants_camera()) {
     of_camera = best_animation(scene_, "camera channel", [&](const auto& animation) {
       return nodes::camera_count(scene_, animation, camera_);
@@ -115,13 +106,11 @@ Status SceneImporter::find_rig() {
   const bool needed = wants_motion() || wants_model() || wants_character() || wants_morphs();
   if (!needed && known) return {};
   Diagnostics found;
-  auto joints = character::choose_joints(scene_, evaluator_, options_.skin, found);
-  if (!joints && !needed) return {};  // a camera needs no skeleton
-  if (!joints) return joints.error();
-  auto rig = character::make_rig(scene_, evaluator_, std::move(*joints), found);
+  auto rig = character::find_rig(scene_, evaluator_, options_.skin, found);
+  if (!rig && !needed && rig.error().code != "scene-value") return {};  // a camera needs none
   if (!rig) return rig.error();
   rig_ = std::move(*rig);
-  if (needed) report_all(found);
+  if (needed) context_.diagnose_in(path_, found);
   auto roles = roles_of(rig_->skeleton, how_);
   if (!roles) return roles.error();
   roles_ = *std::move(roles);
@@ -130,30 +119,12 @@ Status SceneImporter::find_rig() {
 
 Status SceneImporter::find_space() {
   const int first = clips_.empty() ? -1 : clips_[0].animation;
-  const auto conventions =
-      scene_conventions(scene_, evaluator_, rig_ ? &*rig_ : nullptr, roles_, first, how_);
-  if (!conventions) return conventions.error();
-  conventions_ = *conventions;
-  auto conversion = Conversion::make(conventions_);
-  if (!conversion) return conversion.error();
-  conversion_ = *conversion;
-  conversions_ = describe_conversions(conventions_, how_);
-  GivenConventions said = how_;  // from the user or the file
-  if (scene_.space.metres) said.unit = conventions_.unit;
-  if (scene_.space.up_is_y) said.up = conventions_.up;
-  if (scene_.space.file_to_krok) {
-    said.up = conventions_.up;
-    said.forward = conventions_.forward;
-  }
   Diagnostics found;
-  report_conventions(conventions_, said, "scene", path_, found);
-  report_all(found);
-  if (!rig_) return {};
-  auto skeleton = character::skeleton_in_krok(*rig_, conversion_);
-  if (!skeleton) return skeleton.error();
-  if (said.unit) character::check_size(*skeleton, roles_, found);
-  if (said.complete()) character::check_actor(*skeleton, roles_, found);
-  report_all(found);
+  auto place = character::place_scene(scene_, evaluator_, rig_ ? &*rig_ : nullptr, roles_, first,
+                                      how_, path_, found);
+  context_.diagnose_in(path_, found);
+  if (!place) return place.error();
+  place_ = *std::move(place);
   return {};
 }
 
@@ -182,7 +153,7 @@ void SceneImporter::report() {
   // The facts of a single clip go where those of a capture do.
   if (clip_facts_.size() == 1) result.update(clip_facts_[0]);
   if (rig_) result.update(roles_json(rig_->skeleton, roles_));
-  result.update(facts_of(conventions_));
+  result.update(facts_of(place_.conventions));
   if (clip_facts_.size() > 1) result["clips"] = clip_facts_;
   result["animations"] = Json::array();
   for (const nodes::Animation& one : scene_.animations) result["animations"].push_back(one.name);

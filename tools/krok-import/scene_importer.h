@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "character/mesh.h"
-#include "character/motion.h"
+#include "character/scene_motion.h"
 #include "character/space.h"
 #include "core/file.h"
 #include "core/result.h"
@@ -40,8 +40,6 @@ class SceneImporter {
   bool wants_character() const { return !options_.character.empty(); }
   bool wants_camera() const { return !options_.cam.empty(); }
   bool wants_morphs() const { return !options_.morphs.empty() || !options_.weights.empty(); }
-  // Prints diagnostics of the library with this file as location.
-  void report_all(Diagnostics& found);
   void warn(const char* code, std::string message, std::string hint = {},
             Severity severity = Severity::warning);
   static Error missing(const std::string& what, const std::string& option, std::string hint);
@@ -83,10 +81,8 @@ class SceneImporter {
   std::optional<ChosenClip> camera_clip_;  // if it is not that of the motion
   std::optional<character::Rig> rig_;
   RoleMap roles_;  // of the rig's joints
-  character::Actor actor_;
-  Conventions conventions_;
-  Conversion conversion_;
-  std::vector<std::string> conversions_;
+  character::SceneActor actor_;
+  character::ScenePlace place_;
   Json result_ = Json::object(), clip_facts_ = Json::array();
   std::string line_;
 };

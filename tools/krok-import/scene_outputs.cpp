@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "capture/rest_frame.h"
 #include "capture/unique_names.h"
 #include "character/mesh.h"
 #include "core/file.h"
@@ -106,7 +105,7 @@ std::string usable_name(const std::string& name, const std::string& fallback) {
 
 class Adder {
  public:
-  Adder(const CharacterFiles& files, const nodes::Scene& scene, character::Actor& actor,
+  Adder(const CharacterFiles& files, const nodes::Scene& scene, character::SceneActor& actor,
         OutputSet& outputs, NewFolders& folder)
       : files_(files), scene_(scene), actor_(actor), outputs_(outputs), new_folders_(folder) {
     const std::string end = extension(files.path);
@@ -223,7 +222,7 @@ class Adder {
 
   const CharacterFiles& files_;
   const nodes::Scene& scene_;
-  character::Actor& actor_;
+  character::SceneActor& actor_;
   OutputSet& outputs_;
   NewFolders& new_folders_;
   std::string stem_, name_;  // of all files, with and without folder
@@ -236,7 +235,7 @@ class Adder {
 // Adds the files to `outputs`; `folder` is for the images. Parts of the actor get unique names and
 // the names of the scene's materials. Codes: those of the writers.
 Result<AddedCharacter> add_character(const CharacterFiles& files, const nodes::Scene& scene,
-                                     character::Actor& actor, OutputSet& outputs,
+                                     character::SceneActor& actor, OutputSet& outputs,
                                      NewFolders& folder) {
   return Adder(files, scene, actor, outputs, folder).add();
 }
@@ -264,10 +263,10 @@ Json to_json(const ChosenClip& clip) {
 Status SceneImporter::add_actor() {
   if (!wants_model() && !wants_character() && !wants_morphs()) return {};
   Diagnostics found;
-  auto actor = character::make_actor(scene_, evaluator_, *rig_, conversion_,
+  auto actor = character::make_actor(scene_, evaluator_, *rig_, place_.conversion,
                                      {.with_morphs = wants_morphs() || wants_character()}, found);
   if (!actor) return actor.error();
-  report_all(found);
+  context_.diagnose_in(path_, found);
   actor_ = std::move(*actor);
   if (wants_character() && actor_.model.triangles.empty()) {
     return missing(scene_.meshes.empty() ? "mesh" : "mesh with triangles", "--character",
@@ -284,7 +283,7 @@ Status SceneImporter::add_model() {
   if (!wants_model()) return {};
   Model& model = actor_.model;
   model.provenance = context_.provenance();
-  model.provenance.conversions = conversions_;
+  model.provenance.conversions = place_.conversions;
   report_model();
   return outputs_.add(options_.model, [&](OutputFile& file) {
     return model::write(model, {.orientation = options_.orientation}, file);
@@ -305,7 +304,7 @@ void SceneImporter::report_model() {
 
 Status SceneImporter::add_whole_character() {
   CharacterFiles files{options_.character, options_.orientation, {}, context_.provenance()};
-  files.provenance.conversions = conversions_;
+  files.provenance.conversions = place_.conversions;
   if (!actor_.morphs.names.empty()) {
     auto weights = character::make_weights(actor_, evaluator_, -1, {});
     if (!weights) return weights.error();
@@ -329,7 +328,7 @@ Status SceneImporter::add_morphs() {
   if (morphs.names.empty()) return missing("morph target", option, "");
   result_["morph_targets"] = morphs.names;
   morphs.provenance = context_.provenance();
-  morphs.provenance.conversions = conversions_;
+  morphs.provenance.conversions = place_.conversions;
   if (line_.empty()) {
     line_ = fmt::format("{}: {} of {}", base_name(path_),
                         counted(morphs.target_count(), "morph target"),
@@ -386,18 +385,13 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     }
     Stretches stretches;
     auto clip =
-        character::make_clip(evaluator_, *rig_, conversion_, chosen.animation, sampling->sampling,
-                             context_.jobs, context_.progress, found, &stretches);
+        character::make_motion(evaluator_, *rig_, roles_, place_, chosen.animation, *sampling,
+                               context_.jobs, context_.progress, found, &stretches);
     if (!clip) return clip.error();
-    report_all(found);
-    if (const RestPose rest = find_rest_pose(*clip, roles_); rest.first_frame_is_rest) {
-      warn("import-rest-frame", rest.reason + "; it was kept", "drop it with krok-edit --from 1f");
-    }
+    context_.diagnose_in(path_, std::exchange(found, {}));
+    auto conversions = std::move(clip->provenance.conversions);
     clip->provenance = context_.provenance();
-    clip->provenance.conversions = conversions_;
-    clip->provenance.conversions.push_back(
-        fmt::format("keys sampled at {} frames per second from {} s on",
-                    readable(1 / sampling->sampling.step), readable(sampling->keys_from)));
+    clip->provenance.conversions = std::move(conversions);
     const auto path = clip_path(context_.output, "-o", chosen, clips_.size() > 1, ".anim");
     if (!path) return path.error();
     if (Status status = check_output_kind(*path, "-o", Kind::anim); !status) return status;
@@ -416,7 +410,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
     facts["output"] = *path;
     line_ = line_about(path_, frames, roles_);
   }
-  report_all(found);
+  context_.diagnose_in(path_, found);
   facts["source_rate"] = to_json(sampling->rate);
   facts["keys"] = {{"start", sampling->keys_from}, {"end", sampling->keys_to}};
   clip_facts_.push_back(std::move(facts));
@@ -428,12 +422,12 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
                                  const character::ChosenSampling& sampling) {
   Diagnostics found;
   auto track = character::make_camera(
-      scene_, evaluator_, camera_, conversion_, character::rotation_to_apply(scene_.space),
+      scene_, evaluator_, camera_, place_.conversion, character::rotation_to_apply(scene_.space),
       (camera_clip_ ? *camera_clip_ : clip).animation, sampling.sampling, found);
   if (!track) return track.error();
-  report_all(found);
+  context_.diagnose_in(path_, found);
   track->provenance = context_.provenance();
-  track->provenance.conversions = conversions_;
+  track->provenance.conversions = place_.conversions;
   const auto path = clip_path(options_.cam, "--cam", clip, clips_.size() > 1, ".cam");
   if (!path) return path.error();
   if (Status status = check_output_kind(*path, "--cam", Kind::cam); !status) return status;

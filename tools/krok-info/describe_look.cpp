@@ -148,7 +148,7 @@ void add_expressions(const io::LoadedCharacter& loaded, Description& out) {
   std::vector<std::string> texts;
   for (std::size_t t = 0; t < loaded.morphs.names.size(); ++t) {
     const std::string& name = loaded.morphs.names[t];
-    const float weight = loaded.weights[t];
+    const float weight = loaded.rest_weights[t];
     texts.push_back(weight == 0 ? shown(name)
                                 : fmt::format("{} ({})", shown(name), readable(weight, 3)));
     list.push_back({{"name", name}, {"weight", weight}});

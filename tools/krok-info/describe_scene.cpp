@@ -4,15 +4,14 @@
 #include <array>
 #include <optional>
 
-#include "character/rig.h"
+#include "character/scene_motion.h"
 #include "character/space.h"
 #include "core/numbers.h"
 #include "formats/io/open_scene.h"
+#include "nodes/animation_choice.h"
 #include "nodes/evaluate.h"
 #include "tools/krok-info/describe.h"
 #include "tools/krok-info/volumes.h"
-#include "tools/shared/animation_choice.h"
-#include "tools/shared/scene_conventions.h"
 
 namespace krok::cli::info {
 
@@ -123,19 +122,6 @@ bool moves_nodes(const nodes::Scene& scene) {
   });
 }
 
-// The skeleton that krok-import uses; empty if there is none.
-Result<std::optional<character::Rig>> find_rig(const nodes::Scene& scene,
-                                               const nodes::Evaluator& evaluator,
-                                               Diagnostics& found) {
-  std::optional<character::Rig> none;
-  auto joints = character::choose_joints(scene, evaluator, "", found);
-  if (!joints && joints.error().code == "scene-skeleton") return none;
-  if (!joints) return joints.error();
-  auto rig = character::make_rig(scene, evaluator, *std::move(joints), found);
-  if (!rig) return rig.error();
-  return std::optional(*std::move(rig));
-}
-
 // Volumes of the meshes; `positions` as in an Evaluation, but in metres. The primitives of a mesh
 // at a node are one volume.
 void add_volumes(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
@@ -198,29 +184,27 @@ Status add_actor(const nodes::Scene& scene, const std::string& path, const Skele
   const auto evaluator = nodes::Evaluator::create(scene);
   if (!evaluator) return evaluator.error();
   Diagnostics found;
-  const auto rig = find_rig(scene, *evaluator, found);
-  if (!rig) return rig.error();
+  auto rig = character::find_rig(scene, *evaluator, "", found);
+  if (!rig && rig.error().code != "scene-skeleton") return rig.error();
+  const character::Rig* const skeleton = rig ? &*rig : nullptr;
   // With neither skins nor animated nodes any node might be a joint, which is no skeleton to tell
   // of.
   const bool listed = !scene.skins.empty() || moves_nodes(scene);
   if (!listed) found.clear();
-  for (Diagnostic& diagnostic : found) {
-    diagnostic.where.file = path;
-    context.diagnose(std::move(diagnostic));
-  }
+  context.diagnose_in(path, found);
   RoleMap roles;
-  if (*rig) {
-    auto map = how.roles((*rig)->skeleton);
+  if (skeleton != nullptr) {
+    auto map = how.roles(skeleton->skeleton);
     if (!map) return map.error();
     roles = *std::move(map);
   }
-  const std::vector<int> joints = *rig ? (*rig)->joints.nodes : std::vector<int>();
+  const std::vector<int> joints = skeleton != nullptr ? skeleton->joints.nodes : std::vector<int>();
   const int animation = best_animation(scene, joints).animation;
   const auto conventions =
-      scene_conventions(scene, *evaluator, *rig ? &**rig : nullptr, roles, animation, {});
+      character::scene_conventions(scene, *evaluator, skeleton, roles, animation, {});
   if (!conventions) return conventions.error();
-  if (listed && *rig) {
-    add_skeleton((*rig)->skeleton, roles, how.verbose, conventions->unit.metres, out);
+  if (listed && skeleton != nullptr) {
+    add_skeleton(skeleton->skeleton, roles, how.verbose, conventions->unit.metres, out);
   }
   add_conventions(*conventions, out);
   return add_shown_size(scene, *evaluator, *conventions, out);

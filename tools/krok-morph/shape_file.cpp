@@ -4,11 +4,9 @@
 
 #include <algorithm>
 
-#include "character/mesh.h"
-#include "character/rig.h"
 #include "core/numbers.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_scene.h"
-#include "formats/model/model_format.h"
 #include "formats/obj/obj_reader.h"
 #include "formats/registry/registry.h"
 #include "skin/surface_normals.h"
@@ -20,13 +18,6 @@ namespace {
 using registry::Kind;
 using Triangle = std::array<std::uint32_t, 3>;
 
-void report_all(Diagnostics found, const std::string& path, ToolContext& context) {
-  for (Diagnostic& diagnostic : found) {
-    if (diagnostic.where.file.empty()) diagnostic.where.file = path;
-    context.diagnose(std::move(diagnostic));
-  }
-}
-
 // +Z up, facing -Y, becomes +Y up, facing +Z.
 void turn_up(std::vector<Vec3f>& vectors) {
   for (Vec3f& vector : vectors) vector = Vec3f(vector.x(), vector.z(), -vector.y());
@@ -35,7 +26,7 @@ void turn_up(std::vector<Vec3f>& vectors) {
 Result<ShapeFile> read_obj(const InputFile& file, const Options& options, ToolContext& context) {
   auto read = obj::read(file.text(), file.path(), {.metres_per_unit = options.metres_per_unit});
   if (!read) return read.error();
-  report_all(std::move(read->diagnostics), file.path(), context);
+  context.diagnose_in(file.path(), read->diagnostics);
   ShapeFile shape;
   shape.source = Source::obj;
   shape.model = std::move(read->model);
@@ -46,49 +37,24 @@ Result<ShapeFile> read_obj(const InputFile& file, const Options& options, ToolCo
   return shape;
 }
 
-Result<ShapeFile> read_scene(const InputFile& file, ToolContext& context, bool with_morphs) {
-  const auto scene = io::open_scene(file, context);
-  if (!scene) return scene.error();
-  report_all(scene->diagnostics, file.path(), context);
-  const auto evaluator = nodes::Evaluator::create(*scene);
-  if (!evaluator) return evaluator.error();
-  Diagnostics found;
-  auto joints = character::choose_joints(*scene, *evaluator, "", found);
-  if (!joints) return joints.error();
-  const auto rig = character::make_rig(*scene, *evaluator, std::move(*joints), found);
-  if (!rig) return rig.error();
-  // glTF has Krok's unit and axes.
-  auto actor = character::make_actor(*scene, *evaluator, *rig, Conversion(),
-                                     {.with_morphs = with_morphs}, found);
-  if (!actor) return actor.error();
-  report_all(std::move(found), file.path(), context);
-  ShapeFile shape;
-  shape.source = Source::gltf;
-  shape.model = std::move(actor->model);
-  shape.morphs = std::move(actor->morphs);
-  return shape;
-}
-
 Result<ShapeFile> read_any(const InputFile& file, const Options& options, ToolContext& context,
                            bool with_morphs) {
   const Kind kind = registry::identify(file.path(), file.bytes());
-  if (kind == Kind::glb || kind == Kind::gltf) return read_scene(file, context, with_morphs);
-  if (kind == Kind::model) {
-    auto model = model::read(file.bytes());
-    if (!model) return model.error();
-    ShapeFile shape;
-    shape.model = *std::move(model);
-    return shape;
-  }
   if (kind == Kind::unknown && extension(file.path()) == ".obj") {
     return read_obj(file, options, context);
   }
-  return Error("morph-input",
-               fmt::format("this is {}, expected .obj, .glb, .gltf or .model",
-                           registry::describe_content(file.bytes())),
-               registry::is_read_through_assimp(kind)
-                   ? "convert such characters to .model with krok-import --model"
-                   : "");
+  if (kind != Kind::model && !io::is_scene(kind)) {
+    return Error("morph-input", fmt::format("this is {}, expected .obj, .glb, .gltf or .model",
+                                            registry::describe_content(file.bytes())));
+  }
+  auto actor = io::open_actor(
+      file, context, {.with_materials = false, .with_morphs = with_morphs, .with_motions = false});
+  if (!actor) return actor.error();
+  ShapeFile shape;
+  shape.source = kind == Kind::model ? Source::model : Source::gltf;
+  shape.model = std::move(actor->model);
+  shape.morphs = std::move(actor->morphs);
+  return shape;
 }
 
 // Rotated to start at the smallest index.

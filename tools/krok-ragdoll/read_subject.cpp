@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "core/text.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_terrain.h"
 #include "formats/limits/limits_format.h"
-#include "formats/model/model_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/anatomical_limits.h"
 #include "retarget/stance.h"
@@ -92,11 +92,15 @@ Status SubjectReader::read_bodies() {
   how.mass = options_.mass;
   std::optional<Model> model;
   if (!given().model.empty()) {
-    const auto file = context_.open_input(given().model);
-    if (!file) return file.error();
-    auto read = model::read(file->bytes());
-    if (!read) return std::move(read).error().in_file(given().model);
-    model = std::move(*read);
+    auto actor =
+        io::open_actor(given().model, context_, {.with_materials = false, .with_motions = false});
+    if (!actor) return actor.error();
+    if (!actor->motions.empty()) {
+      return Error("ragdoll-model", "is a motion, not a model",
+                   "krok-body makes a model for a motion")
+          .in_file(given().model);
+    }
+    model = std::move(actor->model);
     how.model = &*model;
   }
   auto bodies = krok::ragdoll::make_bodies(neutral_, subject_.roles, how);

@@ -169,9 +169,7 @@ ToolSpec make_spec() {
        "a file per frame, filmed by a camera of krok-cam; needs no ffmpeg"},
       {"krok-render captures --out-dir films --format webp --keep-going",
        "a film of each capture in a folder"}};
-  std::vector<std::string> endings = io::motion_endings();
-  for (const char* scene : {".glb", ".gltf"}) endings.emplace_back(scene);
-  spec.batch = {std::move(endings), [arguments]() -> Result<std::string> {
+  spec.batch = {io::motion_endings(), [arguments]() -> Result<std::string> {
                   switch (arguments->format) {
                     case Format::gif:
                       return std::string(".gif");

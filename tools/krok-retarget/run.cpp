@@ -12,7 +12,6 @@
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_terrain.h"
 #include "formats/keys/keys.h"
-#include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
 #include "gait/shown_prints.h"
 #include "plant/follow_feet.h"
@@ -34,34 +33,19 @@ struct Target {
   std::optional<double> floor;
 };
 
-void take_model(Model model, Target& target) {
-  for (const Vec3f& position : model.positions) {
+Result<Target> read_target(const std::string& path, ToolContext& context) {
+  auto actor = io::open_actor(path, context, {.with_motions = false});
+  if (!actor) return actor.error();
+  Target target;
+  if (!actor->motions.empty()) {
+    target.clip = std::move(actor->motions[0].clip);
+    return target;
+  }
+  for (const Vec3f& position : actor->model.positions) {
     const double height = position.y();
     target.floor = std::min(target.floor.value_or(height), height);
   }
-  target.clip.skeleton = std::move(model.skeleton);
-}
-
-Result<Target> read_target(const std::string& path, ToolContext& context) {
-  const auto file = context.open_input(path);
-  if (!file) return file.error();
-  const registry::Kind kind = registry::identify(path, file->bytes());
-  Target target;
-  if (kind == registry::Kind::model) {
-    auto model = model::read(file->bytes());
-    if (!model) return std::move(model).error().in_file(path);
-    take_model(std::move(*model), target);
-    return target;
-  }
-  if (kind == registry::Kind::character) {
-    auto loaded = io::open_character(*file, context);
-    if (!loaded) return loaded.error();
-    take_model(std::move(loaded->model), target);
-    return target;
-  }
-  auto clip = io::open_motion(*file, context);
-  if (!clip) return clip.error();
-  target.clip = std::move(*clip);
+  target.clip.skeleton = std::move(actor->model.skeleton);
   return target;
 }
 

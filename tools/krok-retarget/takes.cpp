@@ -11,19 +11,15 @@
 #include "formats/io/open_motion.h"
 #include "retarget/stance.h"
 #include "retarget/take_pool.h"
+#include "tools/cli/folder_inputs.h"
 
 namespace krok::cli::retarget {
 
 namespace {
 
-bool is_motion(const std::string& path) {
-  const std::vector<std::string> endings = io::motion_endings();
-  const std::string extension = ascii_lower(std::filesystem::path(path).extension().string());
-  return std::ranges::find(endings, extension) != endings.end();
-}
-
 // All files, each once.
-Result<std::vector<std::string>> files_of(const std::vector<std::string>& takes) {
+Result<std::vector<std::string>> files_of(const std::vector<std::string>& takes,
+                                          ToolContext& context) {
   std::vector<std::string> files;
   for (const std::string& given : takes) {
     std::error_code ignored;
@@ -33,7 +29,7 @@ Result<std::vector<std::string>> files_of(const std::vector<std::string>& takes)
     if (is_folder) found = find_files_below(given);
     if (is_pattern) found = find_files(given);
     if (!found) return found.error();
-    if (is_folder) std::erase_if(*found, [](const auto& path) { return !is_motion(path); });
+    if (is_folder) context.diagnose(keep_inputs(given, io::motion_endings(), *found));
     if (found->empty()) {
       return Error("usage", fmt::format("--takes: no {} there", is_folder ? "motion" : "file"))
           .in_file(given);
@@ -55,7 +51,7 @@ Result<std::vector<Transform>> pose_of_takes(const std::vector<std::string>& tak
   if (!roles.humanoid || krok::retarget::stands({source.skeleton, roles, reference})) {
     return std::vector<Transform>();
   }
-  const auto files = files_of(takes);
+  const auto files = files_of(takes, context);
   if (!files) return files.error();
   krok::retarget::TakePool pool(1 + files->size(), roles);
   pool.add(source);

@@ -7,6 +7,7 @@
 
 #include "capture/unique_names.h"
 #include "core/numbers.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
@@ -38,38 +39,28 @@ class Loader {
 
  private:
   Status read_subject() {
-    if (Status status = is_character(options_.subject) ? read_character() : read_model(); !status) {
-      return status;
-    }
-    if (!subject_.model.triangles.empty()) return {};
-    return Error("skin-empty-model", "the model has no triangles",
-                 "create a model with a mesh with krok-body")
-        .in_file(options_.subject);
-  }
-
-  Status read_model() {
     const auto file = context_.open_input(options_.subject);
     if (!file) return file.error();
-    auto model = model::read(file->bytes());
-    if (!model) return std::move(model.error()).in_file(options_.subject);
-    subject_.model = std::move(*model);
-    return {};
-  }
-
-  Status read_character() {
-    auto loaded = io::open_character(options_.subject, context_);
-    if (!loaded) return loaded.error();
-    subject_.model = std::move(loaded->model);
-    subject_.materials = std::move(loaded->materials);
+    const io::Format& format = io::format_of(*file);
+    if (format.read_actor == nullptr && format.read_scene == nullptr) {
+      return Error(model::read(file->bytes()).error()).in_file(options_.subject);
+    }
+    auto actor = io::open_actor(*file, context_, {.with_morphs = true, .with_motions = false});
+    if (!actor) return actor.error();
+    subject_.model = std::move(actor->model);
+    subject_.materials = std::move(actor->materials);
     Model& model = subject_.model;
     if (model.tangents.empty() && needs_tangents(model, subject_.materials)) {
       model.tangents =
           make_tangents(model.positions, model.normals, model.texture_coordinates, model.triangles);
     }
-    subject_.eyes = std::move(loaded->character.eyes);
-    subject_.morphs = std::move(loaded->morphs);
-    rest_weights_ = std::move(loaded->weights);
-    return {};
+    subject_.eyes = std::move(actor->eyes);
+    subject_.morphs = std::move(actor->morphs);
+    rest_weights_ = std::move(actor->rest_weights);
+    if (!subject_.model.triangles.empty()) return {};
+    return Error("skin-empty-model", "the model has no triangles",
+                 "create a model with a mesh with krok-body")
+        .in_file(options_.subject);
   }
 
   Status read_morphs() {

@@ -12,16 +12,16 @@
 #include "character/sampling.h"
 #include "core/glob.h"
 #include "core/text.h"
-#include "formats/cam/cam.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/pack_glb.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
-#include "formats/io/open_motion.h"
 #include "formats/registry/registry.h"
+#include "nodes/animation_choice.h"
 #include "tools/cli/file_name.h"
+#include "tools/cli/folder_inputs.h"
 #include "tools/krok-view/goals.h"
 #include "tools/krok-view/ragdoll_bodies.h"
-#include "tools/shared/animation_choice.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::view {
@@ -39,18 +39,16 @@ std::string folder_of(const std::string& path) {
 }
 
 // The motions and characters in a folder and its sub-folders, by name.
-Result<std::vector<std::string>> files_in(const std::string& folder) {
+Result<std::vector<std::string>> files_in(const std::string& folder, ToolContext& context) {
   auto found = find_files_below(folder);
   if (!found) return found.error();
-  static constexpr std::array<std::string_view, 6> kEndings = {".anim", ".bvh",  ".amc",
-                                                               ".glb",  ".gltf", ".character"};
-  std::erase_if(*found, [](const std::string& path) {
-    const std::string ending = ascii_lower(fs::path(path).extension().string());
-    return std::find(kEndings.begin(), kEndings.end(), ending) == kEndings.end();
+  const auto wanted = io::endings([](const io::Format& format) {
+    return format.reads_motion() || format.kind == Kind::character;
   });
+  context.diagnose(keep_inputs(folder, wanted, *found));
   if (!found->empty()) return found;
   return Error("view-input", "the folder contains no motion or character",
-               "supported: .anim, .bvh, .amc, .glb, .gltf and .character files")
+               fmt::format("supported: {} files", any_of_words(wanted)))
       .in_file(folder);
 }
 
@@ -90,19 +88,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
   auto input = context.open_input(path);
   if (!input) return input.error();
   const Kind kind = registry::identify(input->path(), input->bytes());
-  if (io::is_shown_model(kind)) {
-    auto shown = io::open_shown_model(*input, context);
-    if (!shown) return shown.error();
-    files.models.push_back({path, name_of_input(path), *std::move(shown), false});
-    return {};
-  }
   switch (kind) {
-    case Kind::cam: {
-      auto camera = cam::read(input->bytes());
-      if (!camera) return std::move(camera).error().in_file(path);
-      files.cameras.push_back({name_of_input(path), std::move(*camera)});
-      return {};
-    }
     case Kind::glb: {
       const auto bytes = input->bytes();
       return add_glb(path, {bytes.begin(), bytes.end()}, files);
@@ -120,36 +106,49 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       }
       return add_glb(path, std::move(packed->bytes), files);
     }
-    default: {
-      auto clip = io::open_motion(*input, context);
-      if (!clip) return std::move(clip).error().in_file(path);
-      auto keys = keys_of(path, *clip, choice, context);
-      if (!keys) return std::move(keys).error().in_file(path);
-      files.motions.push_back(
-          {path, name_of_input(path), std::move(*clip), nullptr, {}, std::move(*keys), {}});
-      return {};
-    }
+    default:
+      break;
   }
+  auto actor = io::open_actor(*input, context, {.with_camera = true});
+  if (!actor) return std::move(actor).error().in_file(path);
+  for (Actor::Camera& camera : actor->cameras) {
+    files.cameras.push_back({name_of_input(path), std::move(camera.track)});
+  }
+  if (actor->skeleton().empty()) return {};
+  if (actor->motions.empty()) {
+    files.models.push_back({path, name_of_input(path), *std::move(actor), false});
+    return {};
+  }
+  Clip clip = std::move(actor->motions[0].clip);
+  auto keys = keys_of(path, clip, choice, context);
+  if (!keys) return std::move(keys).error().in_file(path);
+  Files::Motion& motion = files.motions.emplace_back(
+      Files::Motion{path, name_of_input(path), std::move(clip), nullptr, {}, *std::move(keys), {}});
+  if (!actor->has_mesh()) return {};
+  files.models.push_back({path, motion.name, *std::move(actor), true});
+  motion.body = &files.models.back().actor.model;
+  motion.materials = files.models.back().actor.materials;
+  return {};
 }
 
 void share_models(Files& files) {
   for (Files::Character& character : files.models) {
     for (Files::Motion& motion : files.motions) {
-      if (motion.body != nullptr || character.shown.model.triangles.empty()) continue;
-      if (!difference_in_structure(motion.clip.skeleton, character.shown.model.skeleton).empty())
+      if (motion.body != nullptr || !character.actor.has_mesh()) continue;
+      if (!difference_in_structure(motion.clip.skeleton, character.actor.model.skeleton).empty())
         continue;
-      motion.body = &character.shown.model;
-      motion.materials = character.shown.materials;
+      motion.body = &character.actor.model;
+      motion.materials = character.actor.materials;
       character.used = true;
     }
   }
   for (Files::Character& character : files.models) {
     if (character.used) continue;
     Files::Motion still{character.path, character.name, {}, nullptr, {}, {}, {}};
-    still.clip.skeleton = character.shown.model.skeleton;
-    if (!character.shown.model.triangles.empty()) {
-      still.body = &character.shown.model;
-      still.materials = character.shown.materials;
+    still.clip.skeleton = character.actor.model.skeleton;
+    if (character.actor.has_mesh()) {
+      still.body = &character.actor.model;
+      still.materials = character.actor.materials;
     }
     files.motions.push_back(std::move(still));
   }
@@ -241,7 +240,7 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
     std::vector<std::string> paths = {path};
     std::error_code unknown;
     if (path != "-" && fs::is_directory(path, unknown)) {
-      auto found = files_in(path);
+      auto found = files_in(path, context);
       if (!found) return found.error();
       paths = std::move(*found);
     }

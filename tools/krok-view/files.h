@@ -7,11 +7,7 @@
 
 #include "core/result.h"
 #include "draw/viewer_page.h"
-#include "formats/io/open_character.h"
-#include "scene/camera_track.h"
-#include "scene/clip.h"
-#include "scene/material.h"
-#include "scene/model.h"
+#include "scene/actor.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-view/options.h"
 
@@ -40,7 +36,7 @@ struct Files {
   };
   struct Character {
     std::string path, name;
-    io::ShownModel shown;
+    Actor actor;
     bool used = false;
   };
   std::deque<Motion> motions;

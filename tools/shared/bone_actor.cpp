@@ -54,7 +54,10 @@ double bone_radius(double extent) {
 BoneStyle bone_style(const Skeleton& skeleton) {
   BoneStyle style;
   style.parents = skeleton.parents;
-  for (const BodySide side : body_sides(skeleton)) style.colours.push_back(side_colour(side));
+  style.colours.assign(skeleton.parents.size(), side_colour(BodySide::middle));
+  if (check(skeleton)) {
+    std::ranges::transform(body_sides(skeleton), style.colours.begin(), side_colour);
+  }
   style.radius = bone_radius(reference_extent(skeleton));
   return style;
 }

@@ -30,7 +30,8 @@ struct BoneStyle {
   double radius = 0.01;                 // of joints, metres
 };
 
-// Coloured by side, with a radius that suits the skeleton's size.
+// Coloured by side, with a radius that suits the skeleton's size. Names that are not unique tell no
+// sides.
 BoneStyle bone_style(const Skeleton& skeleton);
 
 // A tapered bar from each parent to its child joint and a ball at each joint. Short bones are

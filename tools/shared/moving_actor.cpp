@@ -9,19 +9,20 @@
 #include <optional>
 
 #include "body/body.h"
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
 #include "formats/io/open_character.h"
-#include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
 #include "motion/ground_frame.h"
-#include "nodes/evaluate.h"
+#include "nodes/animation_choice.h"
+#include "nodes/scene_of.h"
+#include "skin/scene_of.h"
 #include "tools/cli/file_name.h"
-#include "tools/shared/animation_choice.h"
 #include "tools/shared/bone_actor.h"
-#include "tools/shared/drawn_body.h"
+#include "tools/shared/drawn_scene.h"
 
 namespace krok::cli {
 
@@ -29,268 +30,120 @@ namespace {
 
 using registry::Kind;
 
-// The body of a motion: a mesh or none, with materials if from a character.
-struct Body {
-  std::shared_ptr<const Model> model;
-  std::vector<Material> materials;
-};
+// A scene as it is drawn, and the animation of it that is.
+struct Drawn {
+  std::shared_ptr<const DrawnScene> scene;
+  Skeleton skeleton;  // of an actor, for headings; otherwise empty
+  int animation = -1;
+  int carrier = 0;        // joint
+  double frame_rate = 0;  // of an actor's motion: drawn at its frames, not in between
+  int frame_count = 0;
 
-// A clip with its body, if any, prepared for drawing at any time.
-class ClipActor {
- public:
-  ClipActor(Clip clip, const Body& body, SkinMethod method, const DecodedImages& images)
-      : clip_(std::move(clip)),
-        style_(bone_style(clip_.skeleton)),
-        carrier_(carrying_joint(find_roles(clip_.skeleton))) {
-    if (body.model != nullptr) body_.emplace(body.model, body.materials, method, images);
-  }
-
-  render::Actor at(double time) const {
-    const auto pose = pose_at(time);
-    render::Actor actor;
-    if (body_) {
-      actor.surfaces = body_->at(pose);
-    } else {
-      std::vector<Vec3f> positions;
-      positions.reserve(pose.size());
-      for (const Transform& joint : pose) positions.push_back(joint.position.cast<float>());
-      actor = bone_actor(style_, positions);
+  SceneState state_at(double time, bool joints_alone) const {
+    if (frame_count > 0) {
+      const double last = frame_count - 1;
+      time = std::clamp(std::round(time * frame_rate), 0.0, last) / frame_rate;
     }
-    const Vec3& place = pose[static_cast<std::size_t>(carrier_)].position;
-    actor.centre = Vec3(place.x(), 0, place.z());
-    return actor;
+    SceneState state;
+    state.joints_alone = joints_alone;
+    scene->scene().evaluate(animation, time, state);
+    return state;
   }
 
-  Vec3 carrier(double time) const {
-    return pose_at(time)[static_cast<std::size_t>(carrier_)].position;
-  }
-
-  double heading(double time) const {
-    const auto pose = pose_at(time);
-    return ground_frame(clip_.skeleton, carrier_, pose[static_cast<std::size_t>(carrier_)]).heading;
-  }
-
-  const Clip& clip() const { return clip_; }
-
- private:
-  std::vector<Transform> pose_at(double time) const {
-    if (clip_.frame_count() == 0) return clip_.skeleton.reference;
-    const double last = clip_.frame_count() - 1;
-    std::vector<Transform> pose(static_cast<std::size_t>(clip_.joint_count()));
-    clip_.get_pose(static_cast<int>(std::clamp(std::round(time * clip_.rate), 0.0, last)), pose);
-    return pose;
-  }
-
-  Clip clip_;
-  std::optional<DrawnBody> body_;
-  BoneStyle style_;
-  int carrier_ = 0;
-};
-
-MovingActor actor_of(const std::string& path, Clip clip, const Body& body, SkinMethod method,
-                     const DecodedImages& images) {
-  MovingActor actor;
-  actor.path = path;
-  actor.name = name_of_input(path);
-  actor.has_body = body.model != nullptr;
-  actor.frame_count = clip.frame_count();
-  actor.rate = clip.rate;
-  actor.duration = clip.duration();
-  actor.facts = counted(clip.joint_count(), "joint");
-  if (actor.frame_count > 0) {
-    actor.facts +=
-        fmt::format(", {}, {} fps", counted(actor.frame_count, "frame"), readable(clip.rate, 4));
-  }
-  const auto source = std::make_shared<const ClipActor>(std::move(clip), body, method, images);
-  actor.at = [source](double time) { return source->at(time); };
-  actor.carrier = [source](double time) { return source->carrier(time); };
-  actor.heading = [source](double time) { return source->heading(time); };
-  return actor;
-}
-
-// A node scene, drawn as its meshes or as its joints.
-class SceneActor {
- public:
-  // With the base colours, textures and vertex colours of its meshes; if all are one grey, in the
-  // default body colour.
-  static Result<std::shared_ptr<const SceneActor>> create(nodes::Scene scene, int animation,
-                                                          bool bones, const DecodedImages& images) {
-    auto actor = std::make_shared<SceneActor>(std::move(scene));
-    actor->animation_ = animation;
-    auto evaluator = nodes::Evaluator::create(actor->scene_);
-    if (!evaluator) return evaluator.error();
-    actor->evaluator_ = std::make_unique<nodes::Evaluator>(std::move(*evaluator));
-    const nodes::Evaluator& from = *actor->evaluator_;
-    for (const nodes::Instance& instance : from.instances()) {
-      actor->triangles_.push_back(
-          std::make_shared<render::Triangles>(from.primitive(instance).triangles));
-    }
-    const bool has_surface = std::any_of(actor->triangles_.begin(), actor->triangles_.end(),
-                                         [](const auto& triangles) { return !triangles->empty(); });
-    actor->bones_ = !from.joints().empty() && (bones || !has_surface);
-    if (!actor->bones_ && !has_surface) {
-      return Error("figure-input", "the file has neither meshes nor joints");
-    }
-    actor->set_style();
-    actor->set_looks(images);
-    if (animation >= 0) {
-      const auto times = from.key_times(animation);
-      if (!times.empty()) actor->duration_ = std::max(0.0, times.back());
-    }
-    return std::shared_ptr<const SceneActor>(actor);
-  }
-  explicit SceneActor(nodes::Scene scene) : scene_(std::move(scene)) {}
-
-  double duration() const { return duration_; }
-  bool has_body() const { return !bones_; }
-  std::string facts() const {
-    return fmt::format("{}, {}", counted(static_cast<int>(triangles_.size()), "mesh", "meshes"),
-                       counted(static_cast<int>(evaluator_->joints().size()), "joint"));
-  }
-
-  render::Actor at(double time) const {
-    nodes::Evaluation moment;
-    evaluator_->evaluate(animation_, time, moment);
-    const auto joints = positions(moment);
-    render::Actor actor;
-    if (bones_) {
-      actor = bone_actor(style_, joints);
-    } else {
-      for (std::size_t i = 0; i < triangles_.size(); ++i) {
-        if (looks_[i]) actor.surfaces.push_back(surface(moment, i));
-      }
-    }
-    actor.centre = joints.empty() ? middle(actor) : Vec3(joints[0].cast<double>());
-    actor.centre.y() = 0;
-    return actor;
-  }
-
-  Vec3 carrier(double time) const {
-    if (evaluator_->joints().empty()) return middle(at(time));
-    nodes::Evaluation moment;
-    evaluator_->place_nodes(animation_, time, moment);
-    return positions(moment)[0].cast<double>();
-  }
-
- private:
   static Vec3 middle(const render::Actor& actor) {
     const render::Bounds box = render::bounds(actor);
     return 0.5 * (box.low + box.high);
   }
 
-  std::vector<Vec3f> positions(const nodes::Evaluation& moment) const {
-    std::vector<Vec3f> result;
-    for (const int joint : evaluator_->joints()) {
-      const Mat4& matrix = moment.node_to_world[static_cast<std::size_t>(joint)];
-      result.push_back(matrix.topRightCorner<3, 1>().cast<float>());
-    }
-    return result;
+  // Of a file's scene in the floats that are drawn.
+  Vec3 carrier_of(const SceneState& state) const {
+    const Vec3& place = state.joints[krok::at(carrier)].position;
+    return skeleton.empty() ? Vec3(place.cast<float>().cast<double>()) : place;
   }
 
-  render::Surface surface(const nodes::Evaluation& moment, std::size_t instance) const {
-    render::Surface result;
-    for (const Vec3& point : moment.positions[instance]) {
-      result.positions.push_back(point.cast<float>());
-    }
-    for (const Vec3& normal : moment.normals[instance]) {
-      result.normals.push_back(normal.cast<float>());
-    }
-    result.triangles = triangles_[instance];
-    result.colours = vertex_colours_[instance];
-    if (result.colours.empty()) result.colours = {looks_[instance]->colour};
-    result.paint = looks_[instance]->paint;
-    return result;
+  render::Actor at(double time) const {
+    const SceneState state = state_at(time, scene->as_bones());
+    render::Actor actor = scene->at(state);
+    actor.centre = state.joints.empty() ? middle(actor) : carrier_of(state);
+    actor.centre.y() = 0;
+    return actor;
   }
 
-  void set_looks(const DecodedImages& images) {
-    bool chosen = false, drawn = false;
-    std::optional<render::Colour> before;
-    vertex_colours_.resize(triangles_.size());
-    for (const nodes::Instance& instance : evaluator_->instances()) {
-      const nodes::Primitive& primitive = evaluator_->primitive(instance);
-      static const Material kUsual;
-      const auto place = static_cast<std::size_t>(std::max(primitive.material_index, 0));
-      const Material& material = primitive.material_index >= 0 ? scene_.materials[place] : kUsual;
-      const auto set = static_cast<std::size_t>(material.base_color_texture.set);
-      const auto& more = primitive.more_texture_coordinates;
-      looks_.push_back(look_of(material,
-                               set == 0             ? primitive.texture_coordinates
-                               : set <= more.size() ? more[set - 1]
-                                                    : nullptr,
-                               images));
-      drawn = drawn || (looks_.back() && !primitive.triangles.empty());
-      if (!looks_.back()) continue;
-      if (primitive.colours != nullptr) {
-        chosen = true;
-        // A texture has the base colour as its factor.
-        const Vec3f factor = looks_.back()->paint != nullptr ? Vec3f(Vec3f::Ones())
-                                                             : Vec3f(material.base_color.head<3>());
-        for (const Vec4f& colour : *primitive.colours) {
-          vertex_colours_[looks_.size() - 1].push_back(
-              render::to_colour(factor.cwiseProduct(colour.head<3>())));
-        }
-      }
-      const render::Colour& colour = looks_.back()->colour;
-      const bool grey = colour.red == colour.green && colour.green == colour.blue;
-      chosen =
-          chosen || looks_.back()->paint != nullptr || !grey || (before && !(*before == colour));
-      before = colour;
-    }
-    // One grey for all is what exporters write where nobody chose a colour.
-    if (!chosen || !drawn) looks_.assign(triangles_.size(), SurfaceLook{kBodyColour, nullptr});
+  Vec3 carrier_at(double time) const {
+    const SceneState state = state_at(time, true);
+    return state.joints.empty() ? middle(at(time)) : carrier_of(state);
   }
 
-  // Joint colours by name; names need not be unique here.
-  void set_style() {
-    Skeleton skeleton;
-    nodes::Evaluation still;
-    evaluator_->place_nodes(-1, 0, still);
-    const auto& joints = evaluator_->joints();
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      const auto node = static_cast<std::size_t>(joints[i]);
-      skeleton.add(scene_.nodes[node].name, evaluator_->joint_parents()[i],
-                   nodes::rigid_part(still.node_to_world[node]));
-    }
-    if (check(skeleton)) {
-      style_ = bone_style(skeleton);
-      return;
-    }
-    style_.parents = skeleton.parents;
-    style_.colours.assign(joints.size(), side_colour(BodySide::middle));
-    style_.radius = bone_radius(reference_extent(skeleton));
+  double heading(double time) const {
+    if (skeleton.empty()) return 0;
+    const SceneState state = state_at(time, true);
+    return ground_frame(skeleton, carrier, state.joints[krok::at(carrier)]).heading;
   }
-
-  nodes::Scene scene_;
-  std::unique_ptr<nodes::Evaluator> evaluator_;
-  std::vector<std::shared_ptr<const render::Triangles>> triangles_;  // [instances]
-  std::vector<std::optional<SurfaceLook>> looks_;            // [instances]; empty: not drawn
-  std::vector<std::vector<render::Colour>> vertex_colours_;  // [instances][vertices] or none
-  BoneStyle style_;
-  bool bones_ = false;
-  int animation_ = -1;  // that is shown
-  double duration_ = 0;
 };
 
-// The files that were read, before bodies and motions are matched.
+MovingActor moving(const std::string& path, Drawn drawn) {
+  MovingActor actor;
+  actor.path = path;
+  actor.name = name_of_input(path);
+  actor.has_body = !drawn.scene->as_bones();
+  actor.frame_count = drawn.frame_count;
+  actor.rate = drawn.frame_rate;
+  if (drawn.animation >= 0) {
+    const auto& times = drawn.scene->scene().animations[at(drawn.animation)].key_times;
+    if (!times.empty()) actor.duration = std::max(0.0, times.back());
+  }
+  const auto source = std::make_shared<const Drawn>(std::move(drawn));
+  actor.at = [source](double time) { return source->at(time); };
+  actor.carrier = [source](double time) { return source->carrier_at(time); };
+  actor.heading = [source](double time) { return source->heading(time); };
+  return actor;
+}
+
+// What was read, before bodies and motions are matched: an actor, and where it is shown: for each
+// of its motions, or once at rest.
 struct Read {
-  struct Motion {
-    std::size_t place;  // input index
+  struct Place {
+    std::size_t index;  // of the input
     std::string path;
-    Clip clip;
-    Body body;
-    bool made = false;  // the body, for this motion
   };
-  struct Character {
-    std::size_t place;
-    std::string path;
-    Body body;
-    bool used = false;
+  struct One {
+    Actor actor;
+    std::vector<Place> places;
   };
-  std::vector<Motion> motions;
-  std::vector<Character> models;
+  std::vector<One> motions, models;
   std::map<std::size_t, MovingActor> actors;  // keyed by input index
   DecodedImages images;                       // of all of them
+
+  void draw(One one, SkinMethod method, bool bones);
 };
+
+void Read::draw(One one, SkinMethod method, bool bones) {
+  if (one.places.empty()) return;
+  const auto actor = std::make_shared<const Actor>(std::move(one.actor));
+  const bool painted = !actor->materials.empty() || !actor->model.colours.empty();
+  const auto scene =
+      std::make_shared<const DrawnScene>(scene_of(actor, {.method = method, .by_part = painted}),
+                                         images, DrawnSceneOptions{.bones = bones});
+  for (std::size_t i = 0; i < one.places.size(); ++i) {
+    Drawn drawn{scene, actor->skeleton()};
+    std::string facts = counted(actor->skeleton().joint_count(), "joint");
+    if (i < actor->motions.size()) {
+      const Clip& clip = actor->motions[i].clip;
+      drawn.skeleton = clip.skeleton;
+      drawn.animation = clip.frame_count() > 0 ? static_cast<int>(i) : -1;
+      drawn.frame_count = clip.frame_count();
+      drawn.frame_rate = clip.rate;
+      if (clip.frame_count() > 0) {
+        facts += fmt::format(", {}, {} fps", counted(clip.frame_count(), "frame"),
+                             readable(clip.rate, 4));
+      }
+    }
+    drawn.carrier = carrying_joint(find_roles(drawn.skeleton));
+    MovingActor made = moving(one.places[i].path, std::move(drawn));
+    made.facts = std::move(facts);
+    actors.emplace(one.places[i].index, std::move(made));
+  }
+}
 
 // Warnings about materials matter only if they are drawn: with images or vertex colours.
 void report_scene(const nodes::Scene& scene, ToolContext& context) {
@@ -309,109 +162,118 @@ void report_scene(const nodes::Scene& scene, ToolContext& context) {
   }
 }
 
+// glTF files are drawn as viewers show them.
+Result<MovingActor> read_gltf(const InputFile& input, const ActorOptions& options,
+                              ToolContext& context, DecodedImages& images) {
+  const std::string& path = input.path();
+  const bool bones = options.body == BodyChoice::none;
+  auto read = io::open_scene(input, context, !bones);
+  if (!read) return read.error();
+  const auto file = std::make_shared<const nodes::Scene>(*std::move(read));
+  decode_base_colours(file->materials, path, context, images);
+  report_scene(*file, context);
+  Diagnostics choice;
+  const auto animation = choose_animation(*file, options.clip, path, choice);
+  if (!animation) return animation.error();
+  context.diagnose(choice);
+  auto scene = scene_of(file);
+  if (!scene) return Error(scene.error()).in_file(path);
+  const std::string facts =
+      fmt::format("{}, {}", counted(static_cast<int>(scene->meshes.size()), "mesh", "meshes"),
+                  counted(static_cast<int>(scene->joint_names.size()), "joint"));
+  const auto drawn_scene = std::make_shared<const DrawnScene>(
+      *std::move(scene), images, DrawnSceneOptions{.bones = bones, .one_grey_is_none = true});
+  if (!drawn_scene->as_bones() && !drawn_scene->has_triangles()) {
+    return Error("figure-input", "the file has neither meshes nor joints").in_file(path);
+  }
+  MovingActor actor = moving(path, {drawn_scene, {}, *animation});
+  actor.facts = facts;
+  return actor;
+}
+
 Status add_file(const std::string& path, std::size_t place, const ActorOptions& options,
                 ToolContext& context, Read& read) {
   const bool bones = options.body == BodyChoice::none;
   auto input = context.open_input(path);
   if (!input) return input.error();
   const Kind kind = registry::identify(input->path(), input->bytes());
-  if (io::is_shown_model(kind)) {
-    auto shown = io::open_shown_model(*input, context);
-    if (!shown) return shown.error();
-    if (!bones && !shown->model.texture_coordinates.empty()) {
-      decode_base_colours(shown->materials, path, context, read.images);
-    }
-    Body body{std::make_shared<Model>(std::move(shown->model)), std::move(shown->materials)};
-    read.models.push_back({place, path, std::move(body), false});
+  if (kind == Kind::glb || kind == Kind::gltf) {
+    auto actor = read_gltf(*input, options, context, read.images);
+    if (!actor) return actor.error();
+    read.actors.emplace(place, *std::move(actor));
     return {};
   }
-  switch (kind) {
-    case Kind::glb:
-    case Kind::gltf: {
-      auto scene = io::open_scene(*input, context, !bones);
-      if (!scene) return scene.error();
-      decode_base_colours(scene->materials, path, context, read.images);
-      report_scene(*scene, context);
-      const auto animation = choose_animation(*scene, options.clip, path, context);
-      if (!animation) return animation.error();
-      const auto source = SceneActor::create(std::move(*scene), *animation, bones, read.images);
-      if (!source) return Error(source.error()).in_file(path);
-      MovingActor actor;
-      actor.path = path;
-      actor.name = name_of_input(path);
-      actor.facts = (*source)->facts();
-      actor.duration = (*source)->duration();
-      actor.has_body = (*source)->has_body();
-      actor.at = [kept = *source](double time) { return kept->at(time); };
-      actor.carrier = [kept = *source](double time) { return kept->carrier(time); };
-      actor.heading = [](double) { return 0.0; };
-      read.actors.emplace(place, std::move(actor));
-      return {};
-    }
-    case Kind::cam:
-      return Error("figure-input", "a camera has no actor",
-                   "give a motion, model, character or glTF file")
-          .in_file(path);
-    default: {
-      auto clip = io::open_motion(*input, context);
-      if (!clip) return std::move(clip).error().in_file(path);
-      read.motions.push_back({place, path, std::move(*clip), {}});
-      return {};
-    }
+  auto actor = io::open_actor(*input, context,
+                              {.clip = options.clip, .with_mesh = !bones, .with_camera = true});
+  if (!actor) return std::move(actor).error().in_file(path);
+  if (actor->skeleton().empty()) {
+    return Error("figure-input", "a camera has no actor",
+                 "give a motion, model, character or glTF file")
+        .in_file(path);
   }
+  if (!bones && !actor->model.texture_coordinates.empty()) {
+    decode_base_colours(actor->materials, path, context, read.images);
+  }
+  auto& list = actor->motions.empty() ? read.models : read.motions;
+  list.push_back({*std::move(actor), {{place, path}}});
+  return {};
 }
 
-// Assigns each model to the motions of its skeleton; models without a motion are static.
-void share_models(bool bones, SkinMethod method, Read& read) {
-  for (Read::Character& character : read.models) {
-    for (Read::Motion& motion : read.motions) {
-      const Model& model = *character.body.model;
-      if (motion.body.model != nullptr ||
-          !difference_in_structure(motion.clip.skeleton, model.skeleton).empty()) {
+// Moves a motion to another actor of its skeleton, which then is not shown at rest.
+void move_motion(Read::One& from, Read::One& to) {
+  if (to.actor.motions.empty()) to.places.clear();
+  to.actor.motions.push_back(std::move(from.actor.motions[0]));
+  to.places.push_back(std::move(from.places[0]));
+  from.places.clear();
+}
+
+// Assigns the motions of a model's skeleton to it.
+void share_models(bool bones, Read& read) {
+  for (Read::One& model : read.models) {
+    for (Read::One& motion : read.motions) {
+      if (motion.places.empty() || motion.actor.has_mesh() ||
+          !difference_in_structure(motion.actor.skeleton(), model.actor.skeleton()).empty()) {
         continue;
       }
-      character.used = true;
-      if (!bones && !model.triangles.empty()) motion.body = character.body;
+      if (!bones && model.actor.has_mesh()) {
+        move_motion(motion, model);
+      } else {
+        model.places.clear();
+      }
     }
-  }
-  for (const Read::Character& character : read.models) {
-    if (character.used) continue;
-    Clip still;
-    still.skeleton = character.body.model->skeleton;
-    const bool drawn = !bones && !character.body.model->triangles.empty();
-    read.actors.emplace(character.place,
-                        actor_of(character.path, std::move(still), drawn ? character.body : Body(),
-                                 method, read.images));
   }
 }
 
-bool same_reference(const Clip& a, const Clip& b) {
+bool same_reference(const Skeleton& a, const Skeleton& b) {
   const auto same = [](const Transform& one, const Transform& other) {
     return one.position == other.position && one.orientation.coeffs() == other.orientation.coeffs();
   };
-  return difference_in_structure(a.skeleton, b.skeleton).empty() &&
-         std::ranges::equal(a.skeleton.reference, b.skeleton.reference, same);
+  return difference_in_structure(a, b).empty() &&
+         std::ranges::equal(a.reference, b.reference, same);
 }
 
 Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   if (choice == BodyChoice::none) return {};
-  const auto bare = std::count_if(read.motions.begin(), read.motions.end(),
-                                  [](const Read::Motion& motion) { return !motion.body.model; });
+  const auto is_bare = [](const Read::One& motion) {
+    return !motion.places.empty() && !motion.actor.has_mesh();
+  };
+  const auto bare = std::ranges::count_if(read.motions, is_bare);
   if (choice == BodyChoice::automatic) choice = bare > 2 ? BodyChoice::low : BodyChoice::medium;
   const BodyOptions how = body_options(choice, context);
-  for (Read::Motion& motion : read.motions) {
-    if (motion.body.model != nullptr) continue;
-    const auto same = std::ranges::find_if(read.motions, [&](const Read::Motion& other) {
-      return &other < &motion && other.made && same_reference(other.clip, motion.clip);
+  std::vector<Read::One*> made;
+  for (Read::One& motion : read.motions) {
+    if (!is_bare(motion)) continue;
+    const auto same = std::ranges::find_if(made, [&](const Read::One* other) {
+      return same_reference(other->actor.motions[0].clip.skeleton, motion.actor.skeleton());
     });
-    if (same != read.motions.end()) {
-      motion.body.model = same->body.model;
+    if (same != made.end()) {
+      move_motion(motion, **same);
       continue;
     }
-    motion.made = true;
-    auto body = make_body(motion.clip, how);
-    if (!body) return std::move(body).error().in_file(motion.path);
-    motion.body.model = std::make_shared<Model>(std::move(body->model));
+    auto body = make_body(motion.actor.motions[0].clip, how);
+    if (!body) return std::move(body).error().in_file(motion.places[0].path);
+    motion.actor.model = std::move(body->model);
+    made.push_back(&motion);
   }
   return {};
 }
@@ -474,11 +336,10 @@ Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& pat
       return status.error();
     }
   }
-  share_models(bones, method, read);
+  share_models(bones, read);
   if (Status status = make_bodies(options.body, context, read); !status) return status.error();
-  for (Read::Motion& motion : read.motions) {
-    read.actors.emplace(motion.place, actor_of(motion.path, std::move(motion.clip), motion.body,
-                                               method, read.images));
+  for (auto* list : {&read.models, &read.motions}) {
+    for (Read::One& one : *list) read.draw(std::move(one), method, bones);
   }
   std::vector<MovingActor> actors;
   for (auto& [place, actor] : read.actors) actors.push_back(std::move(actor));

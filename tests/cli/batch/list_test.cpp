@@ -65,6 +65,24 @@ TEST_F(BatchList, AFolderStandsForTheFilesThatTheToolReads) {
   expect_usage_error(import({"empty", "--out-dir", "out"}), "empty: error: the folder has no .bvh");
 }
 
+// Takes that a tool does not read would go missing without a word.
+TEST_F(BatchList, WhatAFolderLeavesOutIsNamedAndCounted) {
+  put_capture("takes/x.bvh");
+  put_capture("takes/y.bvh");
+  put("takes/a.anim", "");
+  put("takes/b.KANIM", "");
+  put("takes/c.model", "");
+  put("takes/skeleton.asf", "");
+  put("takes/notes.txt", "no capture");
+  const ToolRun run = import({"takes", "--out-dir", "out"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("takes: warning: 3 of 7 files are left out: 1 .anim, 1 .kanim, 1 "
+                                 ".model [folder-left-out]\n"));
+  for (const char* name : {"a.anim", "b.KANIM"}) std::filesystem::remove(path("takes/") + name);
+  // A model is not missed.
+  EXPECT_THAT(import({"takes", "--out-dir", "out"}).err, Not(HasSubstr("left out")));
+}
+
 TEST_F(BatchList, AFileGivenTwiceIsDoneOnce) {
   put_capture("takes/x.bvh");
   const ToolRun run =

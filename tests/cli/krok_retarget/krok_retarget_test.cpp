@@ -13,6 +13,7 @@
 #include "math/quaternion.h"
 #include "roles/roles.h"
 #include "samples/generator/walk.h"
+#include "support/glb_builder.h"
 #include "support/human_skeleton.h"
 #include "support/skeleton_text.h"
 #include "support/test_scenes.h"
@@ -56,6 +57,23 @@ class KrokRetarget : public MotionTest {
 
   Clip walk_;
 };
+
+// Takes of a folder would be left out, and a character would have to be imported first.
+TEST_F(KrokRetarget, TakesAndTargetMayBeScenes) {
+  std::filesystem::create_directory(path("takes"));
+  ASSERT_EQ(run_here("krok-export", {"walk.anim", "-o", "takes/walk.glb"}).exit_code, 0);
+  GlbBuilder prop = rig();
+  prop.json.erase("animations");
+  const auto bytes = prop.glb();
+  put("takes/prop.glb", std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  const ToolRun run = retarget({"takes", "--onto", "takes/walk.glb", "--out-dir", "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("prop.glb: warning: the file has no animation: it is left out"));
+  EXPECT_THAT(run.err, HasSubstr("krok-retarget: 2 files, 1 done, 1 left out"));
+  const Clip clip = read("out/walk.anim");
+  EXPECT_EQ(clip.skeleton.names, walk_.skeleton.names);
+  EXPECT_EQ(clip.frame_count(), walk_.frame_count());
+}
 
 TEST_F(KrokRetarget, OntoItsOwnSkeletonAMotionComesBack) {
   const auto run = retarget({"walk.anim", "--onto", "walk.anim", "-o", "out.anim"});

@@ -21,7 +21,7 @@ using namespace character;
 struct Imported {
   Rig rig;
   Conversion conversion;
-  Actor actor;
+  SceneActor actor;
   Clip clip;
   Stretches stretches;
   Sampling sampling;

@@ -9,7 +9,9 @@
 
 #include "formats/io/formats.h"
 #include "formats/io/open_scene.h"
+#include "formats/io/readers_internal.h"
 #include "support/folder_test.h"
+#include "support/glb_builder.h"
 #include "support/this_build.h"
 #include "unit/acclaim/small_files.h"
 
@@ -35,38 +37,45 @@ std::string capture() {
   return test::source_folder() + "/samples/captures/walk.bvh";
 }
 
-using OpenFiles = test::FolderTest;
+class OpenFiles : public test::FolderTest {
+ protected:
+  std::string put_rig(const test::GlbBuilder& rig) const {
+    const auto bytes = rig.glb();
+    return put("rig.glb", std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  }
+};
 
 TEST(Formats, EachRowReadsSomethingAndHasAName) {
   std::set<Kind> kinds;
   for (const Format& format : formats()) {
+    const bool reads =
+        format.read_motion || format.open_capture || format.read_scene || format.read_actor;
     if (format.kind == Kind::unknown) continue;  // added by another test
+    EXPECT_TRUE(reads || !format.companion) << registry::kind_name(format.kind);
     EXPECT_TRUE(kinds.insert(format.kind).second) << registry::kind_name(format.kind);
     EXPECT_NE(registry::kind_name(format.kind), "unknown");
-    EXPECT_TRUE(format.read_motion || format.open_capture || format.read_scene ||
-                format.read_model);
     EXPECT_FALSE(format.read_motion && format.open_capture) << "two ways to read a motion";
     // The ending leads back to the row where the content does not decide.
-    const std::string name = "x." + std::string(registry::kind_name(format.kind));
-    EXPECT_EQ(registry::kind_of_name(name), format.kind);
+    for (const std::string& ending : registry::endings_of(format.kind)) {
+      if (ending != ".ragdoll.json") EXPECT_EQ(registry::kind_of_name("x" + ending), format.kind);
+    }
   }
   EXPECT_EQ(format_of(Kind::unknown).read_motion, nullptr);
   EXPECT_EQ(format_of(Kind::unknown).open_capture, nullptr);
 }
 
 // A made-up format: "dots", then the height of a single joint in each frame.
-Result<Clip> read_dots(const InputFile& file, Inputs& /*inputs*/,
-                       const MotionOptions& /*options*/) {
+Result<Clip> read_dots(std::string_view content, const std::string& file_name) {
   Clip clip;
   clip.skeleton.add("Dot", -1, {});
-  std::istringstream text{std::string(file.text())};
+  std::istringstream text{std::string(content)};
   std::string word;
   text >> word;
   for (float height = 0; text >> height;) {
     clip.positions.emplace_back(0.0F, height, 0.0F);
     clip.orientations.push_back(Quatf::Identity());
   }
-  if (Status status = check(clip); !status) return std::move(status).error().in_file(file.path());
+  if (Status status = check(clip); !status) return std::move(status).error().in_file(file_name);
   return clip;
 }
 
@@ -83,7 +92,7 @@ TEST_F(OpenFiles, AFormatThatIsAddedIsReadLikeAnyOther) {
                                             content.size())
                         .starts_with("dots");
                   },
-              .read_motion = read_dots});
+              .read_motion = motion_of<read_dots>});
   const auto by_content = open_motion(path("a.txt"), inputs);
   ASSERT_TRUE(by_content) << by_content.error().message;
   EXPECT_EQ(by_content->frame_count(), 3);
@@ -108,7 +117,9 @@ TEST_F(OpenFiles, AFormatThatIsAddedIsReadLikeAnyOther) {
       });
   ASSERT_TRUE(imported) << imported.error().message;
   EXPECT_EQ(frames, 3);
-  EXPECT_THAT(motion_endings(), testing::ElementsAre(".anim", ".kanim", ".bvh", ".amc", ".dots"));
+  EXPECT_THAT(motion_endings(), testing::ElementsAre(".anim", ".kanim", ".bvh", ".amc", ".glb",
+                                                     ".gltf", ".zip", ".fbx", ".dae", ".smd",
+                                                     ".ms3d", ".3ds", ".ase", ".md5anim", ".dots"));
   // What is known goes before what a program added.
   EXPECT_GT(open_motion(capture(), inputs)->frame_count(), 3);
 }
@@ -141,6 +152,40 @@ TEST(Formats, TheErrorOfAUserOfAStreamIsPassedOn) {
   EXPECT_EQ(summary.error().code, "mine");
 }
 
+// Folders of takes in formats of scenes would be skipped or refused.
+TEST_F(OpenFiles, ASceneIsReadAsAMotion) {
+  const std::string path = put_rig(test::rig());
+  RecordedInputs inputs;
+  const auto clip = open_motion(path, inputs);
+  ASSERT_TRUE(clip) << clip.error().message;
+  EXPECT_EQ(clip->skeleton.names, (std::vector<std::string>{"Root", "Tip"}));
+  EXPECT_EQ(clip->rate, 30);  // keys at 0, 0.5 and 1 s
+  EXPECT_EQ(clip->frame_count(), 31);
+  EXPECT_FALSE(clip->provenance.conversions.empty());
+  const auto summary = stream_motion(path, inputs, [](const FrameSource&) -> Status { return {}; });
+  ASSERT_TRUE(summary) << summary.error().message;
+  EXPECT_EQ(summary->conversions, clip->provenance.conversions);
+  test::GlbBuilder still = test::rig();
+  still.json.erase("animations");
+  const auto none = open_motion(put_rig(still), inputs);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, "motion-missing");
+}
+
+TEST_F(OpenFiles, AnActorHasWhatTheFileHolds) {
+  RecordedInputs inputs;
+  const auto scene = open_actor(put_rig(test::rig()), inputs);
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(scene->model.vertex_count(), 4);
+  EXPECT_TRUE(scene->has_mesh());
+  ASSERT_EQ(scene->motions.size(), 1u);
+  EXPECT_EQ(scene->motions[0].clip.frame_count(), 31);
+  const auto motion = open_actor(capture(), inputs);
+  ASSERT_TRUE(motion) << motion.error().message;
+  EXPECT_FALSE(motion->has_mesh());
+  EXPECT_EQ(motion->skeleton().names, motion->motions.at(0).clip.skeleton.names);
+}
+
 TEST_F(OpenFiles, AMotionOpensItsSkeletonAndReportsTheChoice) {
   put("small.asf", small_files::kAsf);
   const std::string motion = put("small_01.amc", small_files::kAmc);
@@ -164,7 +209,7 @@ TEST_F(OpenFiles, WhatIsNotOfTheKindIsAnErrorWithTheFile) {
   ASSERT_TRUE(file);
   for (const Error& error :
        {open_motion(page, inputs).error(), open_scene(*file, inputs).error(),
-        open_shown_model(*file, inputs).error(), open_motion(path("none.bvh"), inputs).error()}) {
+        open_actor(*file, inputs).error(), open_motion(path("none.bvh"), inputs).error()}) {
     EXPECT_FALSE(error.code.empty());
     EXPECT_NE(error.where.file, "") << error.code;
   }

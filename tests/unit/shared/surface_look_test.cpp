@@ -5,8 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "skin/scene_of.h"
 #include "support/small_images.h"
-#include "tools/shared/drawn_body.h"
+#include "tools/shared/drawn_scene.h"
 
 namespace krok::cli {
 namespace {
@@ -85,9 +86,14 @@ TEST(SurfaceLook, ABodysPartsHaveTheCoordinatesOfTheirVertices) {
   model.triangles = {{0, 1, 2}, {3, 2, 1}};
   model.parts = {{"a", "Other", 0, 1}, {"b", "Skin", 1, 1}};
   ASSERT_TRUE(check(model).ok());
-  const auto shared = std::make_shared<const Model>(model);
-  const DrawnBody body(shared, std::vector{painted.material}, SkinMethod::linear, painted.images);
-  const auto surfaces = body.at(model.skeleton.reference);
+  Actor actor;
+  actor.model = model;
+  actor.materials = {painted.material};
+  const DrawnScene body(
+      scene_of(std::make_shared<const Actor>(std::move(actor)), {.by_part = true}), painted.images);
+  SceneState state;
+  body.scene().evaluate(-1, 0, state);
+  const auto surfaces = body.at(state).surfaces;
   ASSERT_EQ(surfaces.size(), 2u);
   EXPECT_EQ(surfaces[0].paint, nullptr);
   ASSERT_NE(surfaces[1].paint, nullptr);
@@ -96,8 +102,7 @@ TEST(SurfaceLook, ABodysPartsHaveTheCoordinatesOfTheirVertices) {
     EXPECT_EQ((*surfaces[1].paint->coordinates)[corners[k]],
               model.texture_coordinates[model.triangles[1][k]]);
   }
-  EXPECT_EQ(body.at(model.skeleton.reference)[1].paint, surfaces[1].paint)
-      << "the moments share it";
+  EXPECT_EQ(body.at(state).surfaces[1].paint, surfaces[1].paint) << "the moments share it";
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
-#include "tools/krok-diff/other_scenes.h"
+#include "tools/krok-diff/point_scene.h"
 
 #include <algorithm>
 #include <cmath>
-
-#include "math/quaternion.h"
 
 namespace krok::cli::diff {
 
@@ -32,11 +30,6 @@ std::vector<double> frame_times(int frames, double rate) {
   return times;
 }
 
-void add_skeleton(const Skeleton& skeleton, compare::Scene& scene) {
-  scene.joint_names = skeleton.names;
-  scene.joint_parents.assign(skeleton.parents.begin(), skeleton.parents.end());
-}
-
 template <typename From, typename To = Eigen::Matrix<double, From::RowsAtCompileTime, 1>>
 std::vector<To> in_doubles(std::span<const From> values) {
   std::vector<To> result;
@@ -50,12 +43,12 @@ struct Run {
   std::size_t begin = 0, count = 0;
 };
 
-std::vector<Run> runs_of(std::size_t points, const compare::Scene* partner) {
+std::vector<Run> runs_of(std::size_t points, const Scene* partner) {
   std::vector<Run> runs;
   if (partner != nullptr) {
     std::size_t begin = 0;
     bool each = !partner->meshes.empty();
-    for (const compare::SceneMesh& mesh : partner->meshes) {
+    for (const SceneMesh& mesh : partner->meshes) {
       runs.push_back({begin, mesh.vertex_count});
       begin += mesh.vertex_count;
       each = each && mesh.vertex_count == points;
@@ -68,66 +61,17 @@ std::vector<Run> runs_of(std::size_t points, const compare::Scene* partner) {
 
 }  // namespace
 
-compare::Scene scene_of(const Clip& clip) {
-  compare::Scene scene;
-  scene.only_joints = true;
-  add_skeleton(clip.skeleton, scene);
-  const auto times = frame_times(clip.frame_count(), clip.rate);
-  scene.animations.push_back({"", times});
-  scene.evaluate = [&clip, times](int animation, double time, compare::SceneState& state) {
-    state.positions.clear();
-    state.normals.clear();
-    state.joints = clip.skeleton.reference;
-    if (animation < 0 || times.empty()) return;
-    const KeyInterval place = place_of(time, times);
-    clip.get_pose(static_cast<int>(place.key), state.joints);
-    if (place.share == 0) return;
-    std::vector<Transform> next(state.joints.size());
-    clip.get_pose(static_cast<int>(place.key) + 1, next);
-    for (std::size_t j = 0; j < next.size(); ++j) {
-      Transform& joint = state.joints[j];
-      joint.position += place.share * (next[j].position - joint.position);
-      joint.orientation = slerp(joint.orientation, next[j].orientation, place.share);
-    }
-  };
-  return scene;
-}
-
-compare::Scene scene_of(const Model& model) {
-  compare::Scene scene;
-  scene.only_still = true;
-  add_skeleton(model.skeleton, scene);
-  compare::SceneMesh mesh;
-  mesh.vertex_count = model.positions.size();
-  mesh.has_normals = !model.normals.empty();
-  mesh.has_tangents = !model.tangents.empty();
-  mesh.triangles = model.triangles;
-  mesh.texture_coordinates = model.texture_coordinates;
-  mesh.more_texture_coordinates.assign(model.more_texture_coordinates.begin(),
-                                       model.more_texture_coordinates.end());
-  mesh.colours = model.colours;
-  mesh.influences = {model.influences_per_vertex, model.influence_joints, model.influence_weights};
-  scene.meshes.push_back(mesh);
-  scene.evaluate = [&model](int, double, compare::SceneState& state) {
-    state.positions = {in_doubles(std::span(model.positions))};
-    state.normals = {in_doubles(std::span(model.normals))};
-    state.tangents = {in_doubles(std::span(model.tangents))};
-    state.joints = model.skeleton.reference;
-  };
-  return scene;
-}
-
-Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Scene* partner) {
+Result<Scene> scene_of(const pc2::PointCache& points, const Scene* partner) {
   const auto count = static_cast<std::size_t>(points.points());
   if (points.samples() == 0) return Error("pc2-value", "the file has no samples");
   std::vector<Vec3f> sample(count);
   for (std::int64_t i = 0; i < points.samples(); ++i) {
     if (Status status = points.get(i, sample); !status) return status.error();
   }
-  compare::Scene scene;
+  Scene scene;
   const std::vector<Run> runs = runs_of(count, partner);
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    compare::SceneMesh mesh;
+    SceneMesh mesh;
     mesh.only_points = true;
     mesh.vertex_count = runs[i].count;
     if (runs.size() > 1 && partner != nullptr) mesh.name = partner->meshes[i].name;
@@ -143,7 +87,7 @@ Result<compare::Scene> scene_of(const pc2::PointCache& points, const compare::Sc
   if (samples != 1 || (partner != nullptr && !partner->animations.empty())) {
     scene.animations.push_back({"", times});
   }
-  scene.evaluate = [&points, runs, times, count](int, double time, compare::SceneState& state) {
+  scene.evaluate = [&points, runs, times, count](int, double time, SceneState& state) {
     std::vector<Vec3f> one, next;
     const KeyInterval place = place_of(time, times);
     // Cannot fail: all samples were validated before.

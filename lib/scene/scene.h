@@ -3,22 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "compare/mesh_difference.h"
 #include "math/transform.h"
 #include "math/types.h"
 #include "scene/key_gap.h"
 #include "scene/material.h"
 #include "scene/material_parameter.h"
+#include "scene/skeleton.h"
 
-// An animated scene for comparison: its contents, and a function that evaluates it at any time. How
-// it is animated (skin, morph targets, node animation, cached points) does not matter.
+// An animated scene as it is shown and compared: its contents, and a function that evaluates it at
+// any time. How it is animated (skin, morph targets, node animation, cached points) does not
+// matter. Made by scene_of() of what a file holds: lib/nodes, lib/skin.
 
-namespace krok::compare {
+namespace krok {
+
+// Skin influences of a mesh's vertices, shape [vertices x per_vertex].
+struct SkinInfluences {
+  int per_vertex = 0;
+  std::span<const std::uint16_t> joints;
+  std::span<const float> weights;
+};
 
 // A mesh in the scene. The spans point into memory of the creator.
 struct SceneMesh {
@@ -29,7 +39,7 @@ struct SceneMesh {
   bool has_normals = false;
   bool has_tangents = false;
   bool only_points = false;  // the file has only positions; missing attributes are not a difference
-  std::span<const Triangle> triangles;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
   std::span<const Vec2f> texture_coordinates;                      // [vertices] or none
   std::vector<std::span<const Vec2f>> more_texture_coordinates{};  // sets 1 and so on, or empty
   std::span<const Vec4f> colours{};  // [vertices] or none: linear red, green, blue, alpha
@@ -40,7 +50,7 @@ struct SceneMesh {
   bool visible = true;
 
   // Displacements of a morph target, [vertices] or empty; in world space unless the scene has
-  // Placement::displace.
+  // ScenePlacement::displace.
   struct Target {
     std::string name;
     std::span<const Vec3f> positions;
@@ -52,14 +62,13 @@ struct SceneMesh {
 
   const Material* material = nullptr;  // null if none
   std::span<const MaterialParameter> material_parameters{};
-  // Whether a texture of the material uses a set of texture coordinates.
-  std::vector<bool> used_coordinates{};
 
-  Influences influences;  // indices into Scene::joint_names; per_vertex = 0 if there are none
+  SkinInfluences influences;  // indices into Scene::joint_names; per_vertex = 0 if there are none
 };
 
 // Vertices and joints at one time, in world space, metres.
 struct SceneState {
+  bool joints_alone = false;  // set by the caller: the rest is not needed and left empty
   std::vector<std::vector<Vec3>> positions;  // [meshes][vertices]
   std::vector<std::vector<Vec3>>
       normals;  // [meshes][vertices], or empty for a mesh without normals
@@ -72,7 +81,7 @@ struct SceneState {
 };
 
 // How meshes are placed at one time.
-struct Placement {
+struct ScenePlacement {
   std::vector<int> windings;  // as SceneState::windings
   // Displacements of a morph target in world space; the spans of the result point into `memory`
   // or are those of the target. Not set if all are in world space.
@@ -81,14 +90,17 @@ struct Placement {
 };
 
 struct Scene {
+  std::shared_ptr<const void> memory{};  // what the spans point into, or null if that is outside
+
   // Missing data that the file format cannot store is not a difference.
   bool only_joints = false;  // no meshes
   bool only_still = false;   // no animations
 
   std::vector<SceneMesh> meshes;
-  bool knows_materials = false;          // whether a missing material means that there is none
-  std::vector<std::string> joint_names;  // matched by index if names are empty or repeat
-  std::vector<int> joint_parents;        // nearest ancestor that is a joint, or -1
+  bool knows_materials = false;            // whether a missing material means that there is none
+  std::vector<std::string> joint_names;    // matched by index if names are empty or repeat
+  std::vector<int> joint_parents;          // nearest ancestor that is a joint, or -1
+  std::vector<std::uint8_t> joint_ends{};  // as Skeleton::end_sites, or empty for none
 
   struct Animation {
     std::string name;
@@ -102,10 +114,14 @@ struct Scene {
   // thread-safe with one state per thread. Never fails.
   std::function<void(int animation, double time, SceneState& state)> evaluate;
   // The same for how meshes are placed. May be empty: all face as wound, displaced in world space.
-  std::function<Placement(int animation, double time)> place{};
+  std::function<ScenePlacement(int animation, double time)> place{};
 
   // Contents that neither evaluate() nor the meshes hold: "2 lights".
   std::vector<std::string> not_compared{};
 };
 
-}  // namespace krok::compare
+// The joints in the pose without animation. Names may be empty or repeat, unlike what
+// check(Skeleton) asks for.
+Skeleton skeleton_of(const Scene& scene);
+
+}  // namespace krok

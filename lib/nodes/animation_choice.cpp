@@ -1,4 +1,4 @@
-#include "tools/shared/animation_choice.h"
+#include "nodes/animation_choice.h"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,14 @@
 #include "core/text.h"
 #include "nodes/moving.h"
 
-namespace krok::cli {
+namespace krok::nodes {
 
-std::string animation_name(const nodes::Scene& scene, std::size_t index) {
+std::string animation_name(const Scene& scene, std::size_t index) {
   const std::string& name = scene.animations[index].name;
   return name.empty() ? fmt::format("animation {}", index) : to_utf8(name);
 }
 
-std::string animation_list(const nodes::Scene& scene) {
+std::string animation_list(const Scene& scene) {
   constexpr std::size_t kMaxListed = 20;
   std::string list;
   for (std::size_t i = 0; i < scene.animations.size() && i < kMaxListed; ++i) {
@@ -25,8 +25,7 @@ std::string animation_list(const nodes::Scene& scene) {
   return list + (scene.animations.size() > kMaxListed ? ", ..." : "");
 }
 
-Result<int> find_animation(const nodes::Scene& scene, const std::string& wanted,
-                           const std::string& file) {
+Result<int> find_animation(const Scene& scene, const std::string& wanted, const std::string& file) {
   const std::size_t count = scene.animations.size();
   if (count == 0) {
     return Error("clip-name",
@@ -45,9 +44,9 @@ Result<int> find_animation(const nodes::Scene& scene, const std::string& wanted,
       .in_file(file);
 }
 
-void report_animation(const nodes::Scene& scene, const ChosenAnimation& chosen, const char* code,
-                      const char* hint, const std::string& file, ToolContext& context) {
-  if (scene.animations.size() < 2) return;
+Diagnostics describe_choice(const Scene& scene, const ChosenAnimation& chosen, const char* code,
+                            const char* hint, const std::string& file) {
+  if (scene.animations.size() < 2) return {};
   const std::string name = shown(animation_name(scene, static_cast<std::size_t>(chosen.animation)));
   Diagnostic warning =
       make_warning(code,
@@ -55,14 +54,14 @@ void report_animation(const nodes::Scene& scene, const ChosenAnimation& chosen, 
                                scene.animations.size(), chosen.why, animation_list(scene)),
                    hint);
   warning.where.file = file;
-  context.diagnose(std::move(warning));
+  return {std::move(warning)};
 }
 
 ChosenAnimation best_animation(
-    const nodes::Scene& scene, const char* what,
-    const std::function<std::size_t(const nodes::Animation& animation)>& count) {
+    const Scene& scene, const char* what,
+    const std::function<std::size_t(const Animation& animation)>& count) {
   std::vector<std::size_t> counts;
-  for (const nodes::Animation& animation : scene.animations) counts.push_back(count(animation));
+  for (const Animation& animation : scene.animations) counts.push_back(count(animation));
   ChosenAnimation best;
   best.moving =
       static_cast<std::size_t>(std::ranges::count_if(counts, [](auto n) { return n > 0; }));
@@ -85,28 +84,27 @@ ChosenAnimation best_animation(
   return best;
 }
 
-ChosenAnimation best_animation(const nodes::Scene& scene) {
-  const ChosenAnimation best =
-      best_animation(scene, "node", [&](const nodes::Animation& animation) {
-        return std::ranges::count(nodes::moved_nodes(scene, animation), 1);
-      });
-  return best.count > 0 ? best : best_animation(scene, "morph target", nodes::target_count);
+ChosenAnimation best_animation(const Scene& scene) {
+  const ChosenAnimation best = best_animation(scene, "node", [&](const Animation& animation) {
+    return std::ranges::count(moved_nodes(scene, animation), 1);
+  });
+  return best.count > 0 ? best : best_animation(scene, "morph target", target_count);
 }
 
-ChosenAnimation best_animation(const nodes::Scene& scene, std::span<const int> joints) {
-  return best_animation(scene, "joint", [&](const nodes::Animation& animation) {
-    return nodes::moved_count(scene, animation, joints);
+ChosenAnimation best_animation(const Scene& scene, std::span<const int> joints) {
+  return best_animation(scene, "joint", [&](const Animation& animation) {
+    return moved_count(scene, animation, joints);
   });
 }
 
-Result<int> choose_animation(const nodes::Scene& scene, const std::string& wanted,
-                             const std::string& file, ToolContext& context) {
+Result<int> choose_animation(const Scene& scene, const std::string& wanted, const std::string& file,
+                             Diagnostics& diagnostics) {
   if (!wanted.empty()) return find_animation(scene, wanted, file);
   if (scene.animations.empty()) return -1;
   const ChosenAnimation chosen = best_animation(scene);
-  report_animation(scene, chosen, "clip-choice", "select another with --clip NAME or NUMBER", file,
-                   context);
+  diagnostics = describe_choice(scene, chosen, "clip-choice",
+                                "select another with --clip NAME or NUMBER", file);
   return chosen.animation;
 }
 
-}  // namespace krok::cli
+}  // namespace krok::nodes

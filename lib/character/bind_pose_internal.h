@@ -1,33 +1,14 @@
 #pragma once
 
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "character/joints.h"
 #include "core/result.h"
 #include "nodes/evaluate.h"
 
-// Private to this folder.
-
-namespace krok {
-
-// Appends a diagnostic about the file as a whole.
-inline void tell(Diagnostics& diagnostics, Severity severity, const char* code, std::string message,
-                 std::string hint = {}) {
-  Diagnostic diagnostic;
-  diagnostic.severity = severity;
-  diagnostic.code = code;
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
-  diagnostics.push_back(std::move(diagnostic));
-}
-
-}  // namespace krok
+// Private to this folder: the transforms of joints in the bind pose.
 
 namespace krok::character {
-
-// Private to this folder: the transforms of joints in the bind pose.
 
 struct BindPose {
   std::vector<Mat4> joint_to_world;  // F_j of rig.h, [joints]

@@ -6,22 +6,20 @@
 
 #include "core/result.h"
 #include "nodes/scene.h"
-#include "tools/cli/tool.h"
 
 // The animations of a scene, by name or number.
 
-namespace krok::cli {
+namespace krok::nodes {
 
 // From the file, as UTF-8, or "animation 3".
-std::string animation_name(const nodes::Scene& scene, std::size_t index);
+std::string animation_name(const Scene& scene, std::size_t index);
 
 // "0 (walk), 1 (run)", of at most 20, for messages.
-std::string animation_list(const nodes::Scene& scene);
+std::string animation_list(const Scene& scene);
 
 // The animation of that name, else of that number. Code clip-name if there is none; `file` is for
 // the message.
-Result<int> find_animation(const nodes::Scene& scene, const std::string& wanted,
-                           const std::string& file);
+Result<int> find_animation(const Scene& scene, const std::string& wanted, const std::string& file);
 
 // An animation, and for messages why it was chosen: "the first of 3 that move any to move at least
 // half as many joints as the most: 41 joints".
@@ -33,21 +31,20 @@ struct ChosenAnimation {
 };
 // The first animation for which `count` is at least half of the largest; the first if all are 0.
 // `what` is counted: "joint".
-ChosenAnimation best_animation(
-    const nodes::Scene& scene, const char* what,
-    const std::function<std::size_t(const nodes::Animation& animation)>& count);
+ChosenAnimation best_animation(const Scene& scene, const char* what,
+                               const std::function<std::size_t(const Animation& animation)>& count);
 // By how many nodes move, else by morph targets.
-ChosenAnimation best_animation(const nodes::Scene& scene);
+ChosenAnimation best_animation(const Scene& scene);
 // By nodes::moved_count().
-ChosenAnimation best_animation(const nodes::Scene& scene, std::span<const int> joints);
+ChosenAnimation best_animation(const Scene& scene, std::span<const int> joints);
 
 // If there are several: a warning that `chosen` is used and why, with a list of all.
-void report_animation(const nodes::Scene& scene, const ChosenAnimation& chosen, const char* code,
-                      const char* hint, const std::string& file, ToolContext& context);
+Diagnostics describe_choice(const Scene& scene, const ChosenAnimation& chosen, const char* code,
+                            const char* hint, const std::string& file);
 
 // find_animation(), where an empty `wanted` is best_animation(), with a warning (code clip-choice)
 // if there are others; -1 for a scene without any, unless one is wanted.
-Result<int> choose_animation(const nodes::Scene& scene, const std::string& wanted,
-                             const std::string& file, ToolContext& context);
+Result<int> choose_animation(const Scene& scene, const std::string& wanted, const std::string& file,
+                             Diagnostics& diagnostics);
 
-}  // namespace krok::cli
+}  // namespace krok::nodes

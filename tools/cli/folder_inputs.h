@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace krok::cli {
+
+// Keeps those of a folder's files that have one of the endings, in lower case with the dot. Names
+// and counts the others of known formats (code folder-left-out): a warning if one may hold a
+// motion, else a note; nothing if there are none. What is read with the motion beside it, such as
+// an Acclaim skeleton, does not count.
+Diagnostics keep_inputs(const std::string& folder, const std::vector<std::string>& endings,
+                        std::vector<std::string>& paths);
+
+// ".anim, .bvh or .amc"
+std::string any_of_words(const std::vector<std::string>& endings);
+
+}  // namespace krok::cli
