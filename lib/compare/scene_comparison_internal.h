@@ -111,6 +111,9 @@ void report_tangents(SceneComparison& comparison, const std::string& before, boo
 // Fills `moments`. Code: compare-too-long.
 Status choose_moments(SceneComparison& comparison);
 
+// Reports what differs at rest where both have animations, which show none of it.
+void compare_rest_pose(SceneComparison& comparison);
+
 // Fills `surfaces` from `groups`. Code: compare-value.
 Status match_surfaces(SceneComparison& comparison, int jobs);
 

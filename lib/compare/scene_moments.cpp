@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "compare/scene_comparison_internal.h"
+#include "core/index.h"
 #include "core/numbers.h"
+#include "math/quaternion.h"
 
 namespace krok::compare {
 
@@ -219,6 +221,48 @@ Status choose_moments(SceneComparison& comparison) {
   }
   if (comparison.moments.empty()) comparison.moments.push_back({});
   return {};
+}
+
+void compare_rest_pose(SceneComparison& comparison) {
+  const Scene &first = comparison.first, &second = comparison.second;
+  if (first.animations.empty() || second.animations.empty()) return;
+  // A bake rests where its motion begins.
+  if (first.joint_names.empty() != second.joint_names.empty()) return;
+  SceneState a, b;
+  first.evaluate(-1, 0, a);
+  second.evaluate(-1, 0, b);
+  // The largest of what is over its tolerance, in tolerances.
+  double worst = 1;
+  std::string where;
+  const auto consider = [&](double size, double tolerance, const auto& text) {
+    if (!(size > worst * tolerance)) return;
+    worst = size / tolerance;
+    where = text();
+  };
+  const Tolerance& tolerance = comparison.options.tolerance;
+  for (const auto& [i, j] : comparison.joints) {
+    const Transform &one = a.joints[at(i)], &other = b.joints[at(j)];
+    const auto joint = [&, k = i] { return label("joint", first.joint_names[at(k)], k); };
+    const double angle = angle_between(one.orientation, other.orientation);
+    consider(angle, tolerance.of_joint_orientations(), [&] {
+      return fmt::format("{} is turned by {} deg", joint(), readable(angle / kRadiansPerDegree, 3));
+    });
+    const double way = (one.position - other.position).norm();
+    consider(way, tolerance.of_joint_positions(),
+             [&] { return fmt::format("{} is {} mm off", joint(), readable(1000 * way, 3)); });
+  }
+  for (const auto& [i, j] : comparison.meshes) {
+    const auto &one = a.positions[at(i)], &other = b.positions[at(j)];
+    double most = 0;
+    for (std::size_t v = 0; v < std::min(one.size(), other.size()); ++v) {
+      most = std::max(most, (one[v] - other[v]).norm());
+    }
+    consider(most, tolerance.length, [&, k = i] {
+      return fmt::format("{} is up to {} mm off", label("mesh", first.meshes[at(k)].name, k),
+                         readable(1000 * most, 3));
+    });
+  }
+  if (!where.empty()) comparison.say("without an animation, at rest: " + where);
 }
 
 }  // namespace krok::compare

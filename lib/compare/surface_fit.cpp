@@ -148,10 +148,58 @@ std::size_t best_of(const std::vector<Fit>& fits, double most) {
 
 }  // namespace
 
-std::pair<SurfacePoint, SurfacePoint> choose(const std::vector<SurfacePoint>& points,
-                                             const Surfaces& surfaces, int mesh,
-                                             std::size_t vertex) {
-  if (points.size() == 1) return {points.front(), points.front()};
+namespace {
+
+double distance_over_moments(const SurfacePoint& point, const Surfaces& surfaces, int mesh,
+                             std::size_t vertex) {
+  double largest = 0;
+  for (std::size_t k = 0; k < surfaces.own.states.size(); ++k) {
+    const Vec3& place = surfaces.own.states[k].positions[static_cast<std::size_t>(mesh)][vertex];
+    largest =
+        std::max(largest, (place - value_at(point, surfaces.other.states[k].positions)).norm());
+  }
+  return largest;
+}
+
+// The joints of a part of the body share at least so much of its vertices' weights.
+constexpr double kSamePart = 0.5;
+
+// Whether a point hangs on other joints than the vertex: on an arm that touches the trunk.
+bool is_other_part(const SurfacePoint& point, const Surfaces& surfaces, int mesh,
+                   std::size_t vertex) {
+  const SkinInfluences& own = surfaces.own.meshes[static_cast<std::size_t>(mesh)].influences;
+  const SkinInfluences& other = mesh_of(point, surfaces.other).influences;
+  if (own.per_vertex == 0 || other.per_vertex == 0) return false;
+  const auto places = static_cast<std::size_t>(own.per_vertex);
+  const auto their_places = static_cast<std::size_t>(other.per_vertex);
+  double shared = 0;
+  for (std::size_t i = vertex * places; i < (vertex + 1) * places; ++i) {
+    double theirs = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t first = point.corners[k] * their_places;
+      for (std::size_t n = first; n < first + their_places; ++n) {
+        if (surfaces.own_joints[other.joints[n]] != int{own.joints[i]}) continue;
+        theirs += point.shares[k] * static_cast<double>(other.weights[n]);
+      }
+    }
+    shared += std::min(static_cast<double>(own.weights[i]), theirs);
+  }
+  return shared < kSamePart;
+}
+
+}  // namespace
+
+ChosenPoints choose(std::vector<SurfacePoint> points, const Surfaces& surfaces, int mesh,
+                    std::size_t vertex) {
+  const auto is_other = [&](const SurfacePoint& point) {
+    return is_other_part(point, surfaces, mesh, vertex);
+  };
+  const bool other_part = std::ranges::all_of(points, is_other);
+  if (!other_part) std::erase_if(points, is_other);
+  if (points.size() == 1) {
+    return {points.front(), points.front(),
+            distance_over_moments(points.front(), surfaces, mesh, vertex), other_part};
+  }
   std::vector<Fit> fits;
   double least = std::numeric_limits<double>::infinity();
   for (const SurfacePoint& point : points) {
@@ -159,8 +207,8 @@ std::pair<SurfacePoint, SurfacePoint> choose(const std::vector<SurfacePoint>& po
     least = std::min(least, fits.back().distance);
   }
   const double touching = least + surfaces.tree.touching();
-  return {points[best_of(fits, touching)],
-          points[best_of(fits, std::max(touching, surfaces.near))]};
+  return {points[best_of(fits, touching)], points[best_of(fits, std::max(touching, surfaces.near))],
+          least, other_part};
 }
 
 }  // namespace krok::compare

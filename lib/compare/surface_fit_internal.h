@@ -21,6 +21,7 @@ struct Surfaces {
   double near = 0;        // a point at most this far away is as good as the nearest
   double tried = 0;       // points at most this far away are tried
   SameMaterials same_materials{};
+  std::vector<int> own_joints{};  // [joints of `other`] of `own`, -1 for none
 };
 
 // Fills SurfaceMoments::faces of a scene.
@@ -34,9 +35,14 @@ SameMaterials same_materials(const SceneComparison& comparison, const SurfaceMom
 bool lies_behind(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
                  std::size_t vertex, const SurfaceMoments& other);
 
-// The point that stays nearest, and the one whose attributes fit best of those about as near.
-std::pair<SurfacePoint, SurfacePoint> choose(const std::vector<SurfacePoint>& points,
-                                             const Surfaces& surfaces, int mesh,
-                                             std::size_t vertex);
+struct ChosenPoints {
+  SurfacePoint nearest;     // that stays nearest
+  SurfacePoint fits;        // whose attributes fit best of those about as near
+  double distance = 0;      // of the nearest, the largest over all moments
+  bool other_part = false;  // it hangs on other joints than the vertex
+};
+// Points on other joints are left out where there are others.
+ChosenPoints choose(std::vector<SurfacePoint> points, const Surfaces& surfaces, int mesh,
+                    std::size_t vertex);
 
 }  // namespace krok::compare

@@ -17,14 +17,19 @@ namespace krok::compare {
 
 namespace {
 
-constexpr std::size_t kSpreadProbes = 5;  // times used to choose between touching surfaces
-constexpr std::size_t kMaxProbes = 16;    // with those of the animations
-constexpr std::size_t kMaxTried = 1024;   // touching points, to bound the run time
-constexpr double kNoShare = 1e-9;         // smaller coordinates are rounding errors
-constexpr std::size_t kSampled = 1024;    // vertices, for the median distance
-constexpr double kOfMedian = 4;           // distances at which a point is as good as the nearest
-constexpr double kMaxNear = 1e-3;         // of the size, the same
-constexpr std::size_t kFewOf = 50;        // one vertex of that many may lie at a sharp edge
+constexpr std::size_t kFewProbes = 5,
+                      kManyProbes = 16;  // times used to choose between touching surfaces
+constexpr std::size_t kProbedVertices = 2'000'000;  // over all of them, which bounds memory
+constexpr std::size_t kMoreProbes = 11;             // those of the animations
+constexpr std::size_t kMaxTried = 1024;             // touching points, to bound the run time
+constexpr double kNoShare = 1e-9;                   // smaller coordinates are rounding errors
+constexpr std::size_t kSampled = 1024;              // vertices, for the median distance
+constexpr double kOfMedian = 4;            // distances at which a point is as good as the nearest
+constexpr double kMaxNear = 1e-3;          // of the size, the same
+constexpr double kWider = 4;               // times that far, where the right one is not found
+constexpr std::size_t kSamples = 100'000;  // of a surface, for holes
+constexpr int kMostParts = 64;             // of a triangle's edge, the same
+constexpr std::size_t kFewOf = 50;         // one vertex of that many may lie at a sharp edge
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;
@@ -78,9 +83,11 @@ bool finite(const SceneState& state) {
 
 // The first of the moments, some spread over all, and the middle one of each animation: surfaces
 // that touch in one may part in another.
-std::vector<std::size_t> probes_of(const std::vector<Moment>& moments) {
+std::vector<std::size_t> probes_of(const std::vector<Moment>& moments, std::size_t vertices) {
   std::vector<std::size_t> probes;
-  const std::size_t spread = std::min(moments.size(), kSpreadProbes);
+  const std::size_t spread = std::min(
+      moments.size(),
+      std::clamp(kProbedVertices / std::max<std::size_t>(vertices, 1), kFewProbes, kManyProbes));
   for (std::size_t i = 0; i < spread; ++i) {
     probes.push_back(spread == 1 ? 0 : i * (moments.size() - 1) / (spread - 1));
   }
@@ -88,7 +95,7 @@ std::vector<std::size_t> probes_of(const std::vector<Moment>& moments) {
     while (end < moments.size() && moments[end].first_animation == moments[begin].first_animation) {
       ++end;
     }
-    if (probes.size() < kMaxProbes) probes.push_back((begin + end) / 2);
+    if (probes.size() < spread + kMoreProbes) probes.push_back((begin + end) / 2);
   }
   std::ranges::sort(probes);
   probes.erase(std::unique(probes.begin(), probes.end()), probes.end());
@@ -185,7 +192,17 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
         tree.find(vertices[v], found, surfaces.tried);
         points = distinct_points(tree, vertices[v], found);
       }
-      std::tie(match.points[v], match.fits[v]) = choose(points, surfaces, mesh, v);
+      ChosenPoints chosen = choose(points, surfaces, mesh, v);
+      // One that stays nearer is at most that far away at the first moment, too.
+      const double wider = std::min({chosen.other_part ? tree.size() : chosen.distance,
+                                     kWider * surfaces.tried, kWider * kMaxNear * tree.size()});
+      if (wider > surfaces.tried) {
+        std::vector<FoundFacet> more;
+        tree.find(vertices[v], more, wider);
+        chosen = choose(distinct_points(tree, vertices[v], more), surfaces, mesh, v);
+      }
+      match.points[v] = chosen.nearest;
+      match.fits[v] = chosen.fits;
     }
   });
   return match;
@@ -253,6 +270,84 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   }
 }
 
+// Reports triangles whose corners lie on the other surface and whose insides do not: holes.
+void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& matches,
+                const Surfaces& surfaces, int jobs) {
+  const auto has_no_faces = [](const SceneMesh& mesh) { return mesh.triangles.empty(); };
+  if (std::ranges::any_of(surfaces.other.meshes, has_no_faces)) return;
+  double all_area = 0;
+  struct Sampled {
+    const SurfaceMatch* match = nullptr;
+    Triangle corners{};
+    double area = 0, gap = 0;
+  };
+  std::vector<Sampled> triangles;
+  for (const SurfaceMatch& match : matches) {
+    const auto m = static_cast<std::size_t>(match.mesh);
+    const Points& points = surfaces.own.states[0].positions[m];
+    for (const Triangle& t : surfaces.own.meshes[m].triangles) {
+      const double area =
+          0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
+      triangles.push_back({&match, t, area});
+      all_area += area;
+    }
+  }
+  if (!(all_area > 0)) return;
+  const double about = std::max(comparison.options.tolerance.length, surfaces.near);
+  parallel_for(triangles.size(), 256, jobs, [&](std::size_t begin, std::size_t end) {
+    std::vector<FoundFacet> found;
+    for (std::size_t t = begin; t < end; ++t) {
+      Sampled& one = triangles[t];
+      const auto m = static_cast<std::size_t>(one.match->mesh);
+      const Points& points = surfaces.own.states[0].positions[m];
+      // What the corners are off counts elsewhere.
+      double allowed = about;
+      for (const std::uint32_t corner : one.corners) {
+        const Vec3 other = value_at(one.match->points[corner], surfaces.other.states[0].positions);
+        allowed = std::max(allowed, about + (points[corner] - other).norm());
+      }
+      // The middles of parts of about the same size.
+      const int parts = std::clamp(
+          static_cast<int>(std::ceil(std::sqrt(one.area / all_area * kSamples))), 1, kMostParts);
+      const auto sample = [&](double u, double v) {
+        const Vec3 place = u * points[one.corners[0]] + v * points[one.corners[1]] +
+                           (1 - u - v) * points[one.corners[2]];
+        surfaces.tree.find(place, found);
+        for (const FoundFacet& facet : found) {
+          if (facet.distance > allowed) one.gap = std::max(one.gap, facet.distance);
+        }
+      };
+      for (int i = 0; i < parts; ++i) {
+        for (int j = 0; i + j < parts; ++j) {
+          sample((i + 1.0 / 3) / parts, (j + 1.0 / 3) / parts);
+          if (i + j + 1 < parts) sample((i + 2.0 / 3) / parts, (j + 2.0 / 3) / parts);
+        }
+      }
+    }
+  });
+  double missing = 0;
+  std::size_t count = 0;
+  const Sampled* worst = nullptr;
+  for (const Sampled& one : triangles) {
+    if (!(one.gap > 0)) continue;
+    missing += one.area;
+    ++count;
+    if (worst == nullptr || one.gap > worst->gap) worst = &one;
+  }
+  if (worst == nullptr) return;
+  const bool in_second = worst->match->in_second;
+  const auto m = static_cast<std::size_t>(worst->match->mesh);
+  comparison.say(fmt::format(
+      "{}{}: {} of its {}, {} % of its surface, {} not in the {}: the largest gap is {} mm, at "
+      "vertices {}, {}, {}",
+      in_second ? "the second's " : "",
+      label("mesh", surfaces.own.meshes[m].name, worst->match->mesh), grouped(count),
+      counted(static_cast<long long>(triangles.size()), "triangle"),
+      readable(100 * missing / all_area, 2), count == 1 ? "is" : "are",
+      in_second ? "first" : "second", readable(1000 * worst->gap, 3), worst->corners[0],
+      worst->corners[1], worst->corners[2]));
+}
+
 // Matches the meshes of a group of one scene with the other's, whose facets are in the tree.
 void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bool in_second,
                  Surfaces surfaces, int jobs) {
@@ -261,12 +356,20 @@ void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bo
   surfaces.near = reach.near;
   surfaces.tried = reach.tried;
   surfaces.same_materials = same_materials(comparison, surfaces.own, surfaces.other);
+  surfaces.own_joints = in_second ? std::vector<int>(comparison.first.joint_names.size(), -1)
+                                  : comparison.first_joint_of_second;
+  for (const auto& [first, second] : comparison.joints) {
+    if (in_second) surfaces.own_joints[static_cast<std::size_t>(first)] = second;
+  }
+  std::vector<SurfaceMatch> matches;
   for (const int mesh : meshes) {
     SurfaceMatch match = match_surface(surfaces, mesh, jobs);
     match.in_second = in_second;
     compare_surface(comparison, surfaces, match);
-    comparison.surfaces.push_back(std::move(match));
+    matches.push_back(std::move(match));
   }
+  find_holes(comparison, matches, surfaces, jobs);
+  std::ranges::move(matches, std::back_inserter(comparison.surfaces));
 }
 
 }  // namespace
@@ -274,7 +377,9 @@ void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bo
 Status match_surfaces(SceneComparison& comparison, int jobs) {
   if (comparison.groups.empty()) return {};
   std::vector<SceneState> first, second;
-  for (const std::size_t probe : probes_of(comparison.moments)) {
+  std::size_t vertices = 0;
+  for (const SceneMesh& mesh : comparison.first.meshes) vertices += mesh.vertex_count;
+  for (const std::size_t probe : probes_of(comparison.moments, vertices)) {
     const Moment& moment = comparison.moments[probe];
     comparison.first.evaluate(moment.first_animation, moment.first_time, first.emplace_back());
     comparison.second.evaluate(moment.second_animation, moment.second_time, second.emplace_back());

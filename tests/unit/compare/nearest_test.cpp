@@ -371,6 +371,61 @@ TEST(Nearest, NormalsAtHardEdgesAreThoseOfTheRightFace) {
   }
 }
 
+// Each vertex is still touched by a triangle: only the insides of triangles show what is missing.
+TEST(Nearest, FindsOneTriangleThatIsMissingOrRewired) {
+  const Grid grid = make_grid();
+  for (const bool rewired : {false, true}) {
+    Grid other = shuffled(grid, 3);
+    auto& triangles = other.triangles[0];
+    if (rewired) {
+      triangles[100][2] = triangles[7][0];
+    } else {
+      triangles.erase(triangles.begin() + 100);
+    }
+    for (const bool swapped : {false, true}) {
+      const Scene a = scene_of(grid), b = scene_of(other);
+      const SceneDifference found = swapped ? compare_by_place(b, a) : compare_by_place(a, b);
+      EXPECT_FALSE(found.same()) << rewired << swapped;
+      EXPECT_TRUE(found.positions.within());
+      ASSERT_FALSE(found.structure.empty());
+      EXPECT_NE(found.structure[0].find("1 of its "), std::string::npos) << found.structure[0];
+    }
+  }
+}
+
+// Two sheets on joints of their own, which touch at the times that are looked at first and part in
+// between: a vertex belongs to the sheet that hangs on its joint.
+TEST(Nearest, PrefersWhatHangsOnTheSameJoints) {
+  const Grid grid = make_grid();
+  const auto vertices = static_cast<std::uint32_t>(grid.vertices[0].size());
+  Grid both = grid;
+  for (std::uint32_t v = 0; v < vertices; ++v) both.vertices[0].push_back(grid.vertices[0][v]);
+  for (const Triangle& t : grid.triangles[0]) {
+    both.triangles[0].push_back({t[0] + vertices, t[1] + vertices, t[2] + vertices});
+  }
+  std::vector<std::uint16_t> joints(2 * vertices, 0);
+  std::fill(joints.begin() + vertices, joints.end(), std::uint16_t{1});
+  const std::vector<float> weights(2 * vertices, 1.0F);
+  const auto with_joints = [&](double shift) {
+    Scene scene = scene_of(both, [vertices, shift](double time, SceneState& state) {
+      const bool apart = std::abs(time - 0.03) < 1e-9;
+      for (std::uint32_t v = 0; v < 2 * vertices; ++v) {
+        state.positions[0][v].z() += shift + (v < vertices ? 0 : apart ? 0.3 : 0.0004);
+      }
+      state.joints = {{}, {}};
+    });
+    scene.animations[0].key_times.clear();
+    for (int k = 0; k <= 100; ++k) scene.animations[0].key_times.push_back(0.01 * k);
+    scene.joint_names = {"Trunk", "Arm"};
+    scene.joint_parents = {-1, 0};
+    scene.meshes[0].influences = {1, joints, weights};
+    return scene;
+  };
+  // Moved by half of what the sheets are apart, so that the other one is as near.
+  const SceneDifference found = compare_by_place(with_joints(0), with_joints(0.0003));
+  EXPECT_LT(found.positions.largest, 0.0004);
+}
+
 TEST(Nearest, APointCloudIsHeldAgainstASurface) {
   const Grid grid = make_grid();
   Scene points = scene_of(grid);

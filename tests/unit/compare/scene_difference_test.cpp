@@ -80,6 +80,23 @@ TEST(SceneDifference, FindsOneVertexMovedByATenthOfAMillimetreInOneFrame) {
   }
 }
 
+// What a viewer shows before an animation is chosen; the animations hide it.
+TEST(SceneDifference, FindsAJointThatIsTurnedAtRestAlone) {
+  Scene other = moving_triangle();
+  other.evaluate = [plain = other.evaluate](int which, double time, SceneState& state) {
+    plain(which, time, state);
+    if (which < 0) state.joints[0].orientation = Eigen::AngleAxisd(kPi / 4, Vec3::UnitX());
+  };
+  for (const bool swapped : {false, true}) {
+    const SceneDifference found = swapped ? compare_scenes(other, moving_triangle())
+                                          : compare_scenes(moving_triangle(), other);
+    EXPECT_FALSE(found.same());
+    ASSERT_EQ(found.structure.size(), 1u);
+    EXPECT_EQ(found.structure[0], "without an animation, at rest: joint Hips is turned by 45 deg");
+    EXPECT_TRUE(found.joint_orientations.within());
+  }
+}
+
 TEST(SceneDifference, ResultsDoNotDependOnTheNumberOfJobs) {
   const Scene other = changed([](double time, SceneState& state) {
     for (Vec3& p : state.positions[0]) p.z() += 1e-3 * std::sin(40 * time);
