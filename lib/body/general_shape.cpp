@@ -1,4 +1,4 @@
-#include "body/general_shape.h"
+#include "body/shapes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <vector>
 
+#include "math/quaternion.h"
+#include "math/window.h"
 #include "roles/joint_names.h"
+#include "roles/limbs.h"
 
 namespace krok::body {
 
@@ -98,12 +103,6 @@ bool is_on_four_legs(std::span<const Transform> pose, const HumanActor& actor, c
   });
 }
 
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
-}
-
 }  // namespace
 
 std::vector<int> joint_path(const Skeleton& skeleton, int ancestor, int joint) {
@@ -126,17 +125,16 @@ std::optional<HumanActor> find_human(const Skeleton& skeleton, const RoleMap& ro
   actor.head = roles.joint(Role::head);
   const auto children = skeleton.children();
   for (std::size_t side = 0; side < 2; ++side) {
-    const auto role = [&](Role left, Role right) { return roles.joint(side == 0 ? left : right); };
     auto& arm = actor.arms[side];
-    arm.collar = role(Role::left_collar, Role::right_collar);
-    arm.shoulder = role(Role::left_upper_arm, Role::right_upper_arm);
-    arm.elbow = role(Role::left_lower_arm, Role::right_lower_arm);
-    arm.wrist = role(Role::left_hand, Role::right_hand);
+    arm.collar = roles.joint(kArmRoles[side].collar);
+    arm.shoulder = roles.joint(kArmRoles[side].upper);
+    arm.elbow = roles.joint(kArmRoles[side].lower);
+    arm.wrist = roles.joint(kArmRoles[side].hand);
     auto& leg = actor.legs[side];
-    leg.hip = role(Role::left_upper_leg, Role::right_upper_leg);
-    leg.knee = role(Role::left_lower_leg, Role::right_lower_leg);
-    leg.ankle = role(Role::left_foot, Role::right_foot);
-    leg.toes = role(Role::left_toes, Role::right_toes);
+    leg.hip = roles.joint(kLegRoles[side].upper);
+    leg.knee = roles.joint(kLegRoles[side].lower);
+    leg.ankle = roles.joint(kLegRoles[side].foot);
+    leg.toes = roles.joint(kLegRoles[side].toes);
     if (arm.shoulder < 0 || arm.elbow < 0 || arm.wrist < 0) return std::nullopt;
     if (leg.hip < 0 || leg.knee < 0 || leg.ankle < 0) return std::nullopt;
     find_fingers(skeleton, children, arm.wrist, 0, arm.fingers);
@@ -193,6 +191,25 @@ HumanAxes human_axes(const HumanActor& actor, std::span<const Transform> pose) {
   }
   axes.forward = axes.left.cross(axes.up);
   return axes;
+}
+
+void turn_joint(const Skeleton& skeleton, int joint, const Quat& rotation,
+                std::span<Transform> joint_to_world) {
+  const auto first = static_cast<std::size_t>(joint);
+  const Vec3 pivot = joint_to_world[first].position;
+  std::vector<char> below(joint_to_world.size(), 0);
+  for (std::size_t j = first; j < joint_to_world.size(); ++j) {
+    const int parent = skeleton.parents[j];
+    below[j] = j == first || (parent >= 0 && below[static_cast<std::size_t>(parent)]) ? 1 : 0;
+    if (!below[j]) continue;
+    Transform& transform = joint_to_world[j];
+    transform.position = pivot + rotation * (transform.position - pivot);
+    transform.orientation = normalized_or_identity(rotation * transform.orientation);
+  }
+}
+
+double turn_angle(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 }  // namespace krok::body

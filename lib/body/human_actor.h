@@ -50,4 +50,11 @@ HumanAxes human_axes(const HumanActor& actor, std::span<const Transform> pose);
 // descendant.
 std::vector<int> joint_path(const Skeleton& skeleton, int ancestor, int joint);
 
+// Rotates a joint and its descendants about the joint's position, in world space.
+void turn_joint(const Skeleton& skeleton, int joint, const Quat& rotation,
+                std::span<Transform> joint_to_world);
+
+// The angle between two vectors, radians in [0, pi]; 0 if either is zero.
+double turn_angle(const Vec3& a, const Vec3& b);
+
 }  // namespace krok::body

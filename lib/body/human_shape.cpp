@@ -1,4 +1,4 @@
-#include "body/human_shape.h"
+#include "body/shapes.h"
 
 #include <algorithm>
 #include <cmath>

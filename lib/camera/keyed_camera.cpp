@@ -1,13 +1,15 @@
 #include "camera/keyed_camera.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
 
-#include "camera/keyed_curve_internal.h"
 #include "camera/look_at.h"
 #include "core/numbers.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
 #include "math/squad.h"
 #include "scene/frame_moment.h"
@@ -15,6 +17,107 @@
 namespace krok {
 
 namespace {
+
+// Interpolation of one camera property through its keys.
+
+// Key data that does not depend on the type of the property.
+struct KeyTimes {
+  std::vector<double> times;     // seconds, strictly increasing
+  std::vector<Between> between;  // [keys], from each to the next; the last one is unused
+  std::vector<double> tensions;  // [keys]
+  bool closed = false;           // all keys are smooth and the last equals the first
+};
+
+// The keys of one smooth curve: index of the first, and count.
+struct SmoothRun {
+  std::size_t first = 0, count = 0;
+};
+
+// A time relative to the keys: the interval from `key` to the next, and the interpolation weight
+// `t` after easing (0 for step and at the last key). Clamped to the keys.
+struct Moment {
+  std::size_t key = 0;
+  double t = 0;     // in [0, 1)
+  double span = 1;  // seconds from key to the next
+  bool smooth = false;
+};
+
+std::vector<SmoothRun> smooth_runs(const KeyTimes& keys) {
+  std::vector<SmoothRun> runs;
+  const std::size_t count = keys.times.size();
+  for (std::size_t first = 0; first + 1 < count;) {
+    std::size_t last = first;
+    while (last + 1 < count && keys.between[last] == Between::smooth) ++last;
+    if (last > first) runs.push_back({first, last - first + 1});
+    first = std::max(last, first + 1);
+  }
+  return runs;
+}
+
+Moment moment_at(const KeyTimes& keys, double time) {
+  Moment moment;
+  moment.key = key_before(keys.times, time);
+  const bool within = moment.key + 1 < keys.times.size() && time > keys.times[moment.key];
+  if (!within) return moment;
+  moment.span = keys.times[moment.key + 1] - keys.times[moment.key];
+  const double t = (time - keys.times[moment.key]) / moment.span;
+  switch (keys.between[moment.key]) {
+    case Between::smooth:
+      moment.smooth = true;
+      moment.t = t;
+      break;
+    case Between::linear:
+      moment.t = t;
+      break;
+    case Between::ease:
+      moment.t = t * t * (3 - 2 * t);
+      break;
+    case Between::step:
+      break;
+  }
+  return moment;
+}
+
+// Values with a velocity at each key for the curves that start and end there; within a run both are
+// the same. `Kind` has Value, Velocity, velocities(times, values, ends, velocities), smooth(...)
+// and straight(from, to, t).
+template <typename Kind>
+class KeyedCurve {
+ public:
+  using Value = typename Kind::Value;
+  using Velocity = typename Kind::Velocity;
+
+  KeyedCurve(KeyTimes keys, std::vector<Value> values)
+      : keys_(std::move(keys)), values_(std::move(values)), velocities_(values_.size()) {
+    for (const SmoothRun& run : smooth_runs(keys_)) {
+      const auto part = [&run](auto& list) {
+        return std::span(list).subspan(run.first, run.count);
+      };
+      std::vector<Velocity> velocities(run.count);
+      Kind::velocities(std::span<const double>(part(keys_.times)),
+                       std::span<const Value>(part(values_)),
+                       keys_.closed ? Ends::closed : Ends::open, velocities);
+      for (std::size_t i = 0; i < run.count; ++i) {
+        const std::size_t key = run.first + i;
+        velocities_[key] = (1 - keys_.tensions[key]) * velocities[i];
+      }
+    }
+  }
+
+  Value at(double time) const {
+    const Moment moment = moment_at(keys_, time);
+    const std::size_t k = moment.key;
+    if (moment.t == 0) return values_[k];
+    if (!moment.smooth) return Kind::straight(values_[k], values_[k + 1], moment.t);
+    return Kind::smooth(values_[k], velocities_[k], values_[k + 1], velocities_[k + 1], moment.span,
+                        moment.t);
+  }
+
+ private:
+  KeyTimes keys_;
+  std::vector<Value> values_;
+  std::vector<Velocity> velocities_;
+};
 
 constexpr double kMaxFrames = 1e7;
 

@@ -1,12 +1,13 @@
 #include "capture/rest_frame.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "capture/capture.h"
 #include "math/quaternion.h"
+#include "scene/frame_moment.h"
 
 namespace krok {
 
@@ -174,6 +175,14 @@ bool settle_rest_frame(const RestPose& rest, RestFrame wish, const std::string& 
   }
   capture.diagnostics.push_back(std::move(diagnostic));
   return drop;
+}
+
+Result<RoleMap> roles_of(const Skeleton& skeleton, const CaptureOptions& options) {
+  return options.roles ? options.roles(skeleton) : find_roles(skeleton);
+}
+
+Status check_rate(const std::optional<double>& rate, const std::string& code) {
+  return rate ? check_frame_rate(*rate, code) : Status();
 }
 
 }  // namespace krok

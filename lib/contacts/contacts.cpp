@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "contacts/series_internal.h"
-#include "math/median.h"
+#include "math/window.h"
 
 namespace krok {
 

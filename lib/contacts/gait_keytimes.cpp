@@ -1,18 +1,75 @@
 #include "contacts/gait_keytimes.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
-#include "contacts/doubled_rate_internal.h"
 #include "contacts/event_pairing_internal.h"
 #include "contacts/gait_plausibility.h"
 #include "contacts/series_internal.h"
 #include "contacts/walking_feet_internal.h"
+#include "math/window.h"
 #include "motion/ground_frame.h"
+#include "scene/clip.h"
+
+namespace krok::contacts {
+
+namespace {
+
+// Frames and weights for the moment between two frames.
+struct Between {
+  std::array<int, 4> frames{};
+  std::array<float, 4> weights{};
+};
+
+// The cubic through two frames on either side; the parabola through three at the clip's ends. The
+// first frame is not used for others: it may be a rest pose.
+Between between(int frame, int frames) {
+  if (frame == 0) return {{1, 2, 3, 3}, {1.875F, -1.25F, 0.375F, 0}};
+  if (frame == 1) return {{1, 2, 3, 3}, {0.375F, 0.75F, -0.125F, 0}};
+  if (frame + 2 == frames) {
+    return {{frames - 1, frames - 2, frames - 3, frames - 3}, {0.375F, 0.75F, -0.125F, 0}};
+  }
+  return {{frame - 1, frame, frame + 1, frame + 2}, {-0.0625F, 0.5625F, 0.5625F, -0.0625F}};
+}
+
+// The clip with a frame between each two, by cubic interpolation of world positions and
+// orientations; at least four frames. Feet move by half a metre per frame at 30 frames per second,
+// and stop within one: events are found between frames, from speeds that need a higher rate.
+Clip doubled_rate(const Clip& clip) {
+  Clip dense;
+  dense.skeleton = clip.skeleton;
+  dense.rate = 2 * clip.rate;
+  const int frames = clip.frame_count();
+  dense.resize(2 * frames - 1);
+  for (int f = 0; f < frames; ++f) {
+    std::ranges::copy(clip.frame_positions(f), dense.frame_positions(2 * f).begin());
+    std::ranges::copy(clip.frame_orientations(f), dense.frame_orientations(2 * f).begin());
+    if (f + 1 == frames) break;
+    const Between parts = between(f, frames);
+    const auto positions = dense.frame_positions(2 * f + 1);
+    const auto orientations = dense.frame_orientations(2 * f + 1);
+    for (std::size_t j = 0; j < positions.size(); ++j) {
+      Vec3f position = Vec3f::Zero();
+      Eigen::Vector4f turn = Eigen::Vector4f::Zero();
+      const Quatf& like = clip.frame_orientations(parts.frames[0])[j];
+      for (std::size_t i = 0; i < parts.frames.size(); ++i) {
+        position += parts.weights[i] * clip.frame_positions(parts.frames[i])[j];
+        const Quatf& q = clip.frame_orientations(parts.frames[i])[j];
+        turn += (q.dot(like) < 0 ? -parts.weights[i] : parts.weights[i]) * q.coeffs();
+      }
+      positions[j] = position;
+      orientations[j] = turn.norm() > 1e-3F ? Quatf(Eigen::Vector4f(turn.normalized())) : like;
+    }
+  }
+  return dense;
+}
+
+}  // namespace
+
+}  // namespace krok::contacts
 
 namespace krok {
 
@@ -68,7 +125,7 @@ class KeytimeFinder {
         before = &key;
       }
     }
-    return lengths.empty() ? 0 : contacts::middle(lengths);
+    return lengths.empty() ? 0 : upper_median(lengths);
   }
 
   // Of two consecutive strikes of a foot that belong to one stance keeps the first, of two toe-offs
@@ -215,7 +272,7 @@ class KeytimeFinder {
       }
     }
     if (rolls.empty() || !(first_roll > 0)) return;
-    const double strike = first_roll - contacts::middle(rolls);
+    const double strike = first_roll - upper_median(rolls);
     if (is_cut_short(foot, strike)) return;
     if (strike > -kFrame && strike < std::min(first_roll, 3 * kFrame)) {
       strikes.insert(strikes.begin(), std::max(0.0, strike));
@@ -230,7 +287,7 @@ class KeytimeFinder {
       if (!stance.open_start && !stance.open_end) lengths.push_back(stance.end - stance.start);
     }
     if (lengths.empty() || foot.stances.front().open_end) return false;
-    return foot.stances.front().end - strike < kWhole * contacts::middle(lengths);
+    return foot.stances.front().end - strike < kWhole * upper_median(lengths);
   }
 
   // A clip cut at a strike ends with a foot about to touch, a usual swing after its toe-off; the
@@ -246,7 +303,7 @@ class KeytimeFinder {
     if (foot.stances.back().open_end && !begun) return;
     const Stance& last = foot.stances[foot.stances.size() - (begun ? 2 : 1)];
     if (begun) swings.pop_back();
-    const double expected = last.end + contacts::middle(swings);
+    const double expected = last.end + upper_median(swings);
     if (expected < end - 3 * kFrame || expected > end + 1.5 * kFrame) return;
     while (!strikes.empty() && strikes.back() > last.end) strikes.pop_back();
     strikes.push_back(std::min(expected, end));
@@ -256,10 +313,6 @@ class KeytimeFinder {
   const FoundContacts& found_;
   contacts::WalkingFeet feet_;
 };
-
-}  // namespace
-
-namespace {
 
 Gait find_between_frames(const Clip& clip, const RoleMap& roles, const GaitOptions& options,
                          bool jittery) {

@@ -46,12 +46,6 @@ std::vector<double> norms(const std::vector<Vec3>& vectors) {
   return result;
 }
 
-double middle(std::vector<double> values) {
-  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), half, values.end());
-  return *half;
-}
-
 namespace {
 
 // How much better a sudden start must fit to be accepted: it overfits jitter, and feet mostly start

@@ -17,9 +17,6 @@ std::vector<Vec3> smoothed(const std::vector<Vec3>& track, double rate, double c
 std::vector<Vec3> velocities(const std::vector<Vec3>& track, double rate);
 std::vector<double> norms(const std::vector<Vec3>& vectors);
 
-// The median (of an even number of values the upper one); `values` must not be empty.
-double middle(std::vector<double> values);
-
 // The time near `guess` (fractional frames) at which a moving point comes to rest (`arrives`) or a
 // resting one starts to move. Two pieces that meet at that time are fitted by least squares to the
 // positions within `window` frames: on the moving side a cubic that starts without velocity (or a

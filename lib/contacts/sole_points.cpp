@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contacts/legs.h"
 #include "contacts/series_internal.h"
-#include "math/median.h"
+#include "math/window.h"
+#include "roles/limbs.h"
 
 namespace krok {
 
@@ -25,14 +27,9 @@ constexpr double kLowest = 0.2;         // of all frames
 constexpr int kFewest = 5;              // frames
 constexpr double kShortestToes = 0.02;  // leg lengths
 
-struct Leg {
-  int upper = -1, lower = -1, foot = -1, toes = -1, tip = -1;
+struct Leg : LegJoints {
+  int tip = -1;
 };
-
-bool is_below(const Skeleton& skeleton, int joint, int ancestor) {
-  while (joint >= 0 && joint != ancestor) joint = skeleton.parents[static_cast<std::size_t>(joint)];
-  return joint >= 0;
-}
 
 double apart(const Skeleton& skeleton, int a, int b) {
   return (skeleton.reference[static_cast<std::size_t>(a)].position -
@@ -55,11 +52,8 @@ double length_of(const Skeleton& skeleton, const Leg& leg) {
 }
 
 Leg find_leg(const Skeleton& skeleton, const RoleMap& roles, FootSide side) {
-  const bool left = side == FootSide::left;
-  Leg leg;
-  leg.upper = roles.joint(left ? Role::left_upper_leg : Role::right_upper_leg);
-  leg.lower = roles.joint(left ? Role::left_lower_leg : Role::right_lower_leg);
-  leg.foot = roles.joint(left ? Role::left_foot : Role::right_foot);
+  Leg leg{leg_joints(roles, side)};
+  leg.toes = -1;
   const auto ends_below = [&](int joint) {
     std::vector<int> ends;
     for (int j = joint + 1; j < skeleton.joint_count(); ++j) {
@@ -73,7 +67,7 @@ Leg find_leg(const Skeleton& skeleton, const RoleMap& roles, FootSide side) {
     if (leg.lower >= 0) leg.foot = furthest(skeleton, leg.lower, ends_below(leg.lower));
     return leg;
   }
-  std::vector<int> toes = roles.joints(left ? Role::left_toes : Role::right_toes);
+  std::vector<int> toes = roles.joints(kLegRoles[static_cast<std::size_t>(side)].toes);
   std::erase_if(toes, [&](int j) { return !is_below(skeleton, j, leg.foot); });
   std::vector<int> beyond;
   for (const int joint : toes) {
@@ -100,11 +94,6 @@ Leg find_leg(const Skeleton& skeleton, const RoleMap& roles, FootSide side) {
 
 Vec3 position(const Clip& clip, int frame, int joint) {
   return clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>();
-}
-Quat orientation(const Clip& clip, int frame, int joint) {
-  return clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
-      .cast<double>()
-      .normalized();
 }
 
 // The frames in which the foot is probably flat; empty: use the reference pose.
@@ -143,7 +132,7 @@ Vec3 up_in(const Clip& clip, int joint, const std::vector<int>& flat, const UpOf
   std::vector<Vec3> ups;
   for (const int frame : flat) {
     const Vec3 there = ground ? ground(position(clip, frame, joint)) : Vec3(Vec3::UnitY());
-    ups.emplace_back(orientation(clip, frame, joint).conjugate() * there);
+    ups.emplace_back(joint_at(clip, frame, joint).orientation.conjugate() * there);
   }
   const Vec3 up = median_point(ups);
   return up.norm() > 0.1 ? Vec3(up.normalized()) : at_reference;
@@ -162,7 +151,7 @@ Vec3 place_in(const Clip& clip, int joint, int frame_joint, const std::vector<in
   std::vector<Vec3> places;
   for (const int frame : flat) {
     places.push_back(relative(position(clip, frame, joint), position(clip, frame, frame_joint),
-                              orientation(clip, frame, frame_joint)));
+                              joint_at(clip, frame, frame_joint).orientation));
   }
   return median_point(places);
 }
@@ -214,8 +203,8 @@ std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side
         ahead = at(leg.toes).conjugate() * (at(leg.foot) * forward);
       } else {
         const int frame = flat[flat.size() / 2];
-        ahead = orientation(clip, frame, leg.toes).conjugate() *
-                (orientation(clip, frame, leg.foot) * forward);
+        ahead = joint_at(clip, frame, leg.toes).orientation.conjugate() *
+                (joint_at(clip, frame, leg.foot).orientation * forward);
       }
       ahead -= toes_up * toes_up.dot(ahead);
       points.push_back({side, FootPart::tip, leg.toes,
@@ -278,8 +267,7 @@ std::vector<Vec3> track_of(const Clip& clip, const SolePoint& point, double leg_
   std::vector<Vec3> track;
   track.reserve(static_cast<std::size_t>(clip.frame_count()));
   for (int f = 0; f < clip.frame_count(); ++f) {
-    track.push_back(position(clip, f, point.joint) +
-                    orientation(clip, f, point.joint) * point.offset);
+    track.push_back(joint_at(clip, f, point.joint) * point.offset);
   }
   if (track.size() > 3) {
     const double after = std::max((track[2] - track[1]).norm(), (track[3] - track[2]).norm());

@@ -5,6 +5,7 @@
 
 #include "contacts/gait_metrics.h"
 #include "contacts/series_internal.h"
+#include "math/window.h"
 
 namespace krok {
 
@@ -44,8 +45,8 @@ std::vector<FootPlace> places_of(const Clip& clip, const std::array<int, 2>& ank
   return places;
 }
 
-std::optional<double> median(const std::vector<double>& values) {
-  return values.empty() ? std::nullopt : std::optional(contacts::middle(values));
+std::optional<double> median_if_any(const std::vector<double>& values) {
+  return values.empty() ? std::nullopt : std::optional(upper_median(values));
 }
 
 }  // namespace
@@ -75,10 +76,10 @@ StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
     lengths[between.side].push_back(step.dot(ahead));
     widths.push_back(step.dot(across) * (between.side == 0 ? 1 : -1));
   }
-  measures.speed = median(speeds);
-  measures.stride_length = median(strides);
-  measures.step_length = {median(lengths[0]), median(lengths[1])};
-  measures.step_width = median(widths);
+  measures.speed = median_if_any(speeds);
+  measures.stride_length = median_if_any(strides);
+  measures.step_length = {median_if_any(lengths[0]), median_if_any(lengths[1])};
+  measures.step_width = median_if_any(widths);
   return measures;
 }
 

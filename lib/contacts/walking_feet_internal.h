@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "contacts/contacts.h"
+#include "contacts/event_pairing_internal.h"
 #include "contacts/gait_keytimes.h"
-#include "contacts/gait_seeds_internal.h"
 
 // The feet of a walking character: turning points relative to the pelvis, and stances.
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "draw/drawn_bones_internal.h"
+#include "draw/pack_motion_internal.h"
 #include "retarget/stance.h"
 #include "roles/roles.h"
 

@@ -6,6 +6,7 @@
 #include "math/quaternion.h"
 #include "retarget/pose_alignment.h"
 #include "retarget/stance.h"
+#include "roles/limbs.h"
 
 namespace krok::draw {
 
@@ -44,16 +45,11 @@ struct Limbs {
 };
 
 Limbs limbs_of(const RoleMap& roles, Side side) {
-  const bool left = side == Side::left;
-  const auto joint = [&](Role on_left, Role on_right) {
-    return roles.joint(left ? on_left : on_right);
-  };
-  return {joint(Role::left_upper_leg, Role::right_upper_leg),
-          joint(Role::left_lower_leg, Role::right_lower_leg),
-          joint(Role::left_foot, Role::right_foot),
-          joint(Role::left_upper_arm, Role::right_upper_arm),
-          joint(Role::left_lower_arm, Role::right_lower_arm),
-          joint(Role::left_hand, Role::right_hand)};
+  const std::size_t of = side == Side::left ? 0 : 1;
+  const LegRoles& leg = kLegRoles[of];
+  const ArmRoles& arm = kArmRoles[of];
+  return {roles.joint(leg.upper), roles.joint(leg.lower), roles.joint(leg.foot),
+          roles.joint(arm.upper), roles.joint(arm.lower), roles.joint(arm.hand)};
 }
 
 // Hips and shoulders, for the axes of the trunk.

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "core/base64.h"
-#include "draw/drawn_bones_internal.h"
 #include "draw/pack_motion_internal.h"
 #include "math/quaternion.h"
 

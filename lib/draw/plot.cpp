@@ -7,12 +7,8 @@
 #include <iterator>
 
 #include "core/markup.h"
-#include "draw/plot_axis_internal.h"
-#include "draw/plot_field_internal.h"
-#include "draw/plot_legend_internal.h"
 #include "draw/plot_panel_internal.h"
 #include "draw/plot_style_internal.h"
-#include "draw/svg_text_internal.h"
 
 namespace krok::draw {
 

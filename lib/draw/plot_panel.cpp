@@ -6,9 +6,7 @@
 
 #include "core/markup.h"
 #include "core/numbers.h"
-#include "draw/plot_field_internal.h"
 #include "draw/plot_style_internal.h"
-#include "draw/svg_text_internal.h"
 
 namespace krok::draw {
 

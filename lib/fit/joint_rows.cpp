@@ -7,7 +7,6 @@
 
 #include "core/parallel.h"
 #include "fit/joint_rows_internal.h"
-#include "fit/row_products_internal.h"
 
 namespace krok::fit::detail {
 

@@ -5,6 +5,11 @@
 
 namespace krok::fit::detail {
 
+// Adds `count` rows of n numbers, each times a factor, to `to`; `stride`: distance between factors.
+// SIMD, bit-identical on all instruction sets.
+void add_products(const double* factors, std::size_t stride, const double* rows, std::size_t count,
+                  std::size_t n, double* to);
+
 // Linear model of how blends at points depend on changes of the rows of inserted points.
 struct JointRows {
   std::size_t points = 0, dimensions = 0, rows = 0, examples = 0;

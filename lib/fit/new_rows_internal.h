@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "fit/refine.h"
@@ -8,6 +9,21 @@
 #include "rbf/weight_solver.h"
 
 namespace krok::fit::detail {
+
+struct BlendWeights {
+  std::vector<double> weights;
+  double error = 0;  // |f(w) - wanted|, scaled; infinity if there are no such weights
+};
+
+// Finds weights near `start` (sum 1) whose blend has the parameters `wanted`: minimises the cost in
+// refine.h with Ceres, on this thread. `inverse_ranges`: [d].
+BlendWeights solve_weights(const rbf::Measure& measure, std::span<const double> inverse_ranges,
+                           std::span<const double> wanted, std::span<const double> start,
+                           const RefineOptions& options);
+
+// Restores the rows as they were found. Affine part and coefficients are still those of the
+// polished rows; a solver recomputes them.
+Refined without_polish(Refined refined);
 
 // A point to insert.
 struct Found {

@@ -5,10 +5,8 @@
 
 #include "core/parallel.h"
 #include "fit/error_field_internal.h"
-#include "fit/held_out_internal.h"
 #include "fit/joint_rows_internal.h"
 #include "fit/new_rows_internal.h"
-#include "fit/polished_internal.h"
 #include "rbf/sobol.h"
 #include "rbf/weight_solver.h"
 

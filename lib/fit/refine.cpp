@@ -11,10 +11,7 @@
 
 #include "core/parallel.h"
 #include "fit/error_field_internal.h"
-#include "fit/held_out_internal.h"
-#include "fit/low_weights_internal.h"
 #include "fit/new_rows_internal.h"
-#include "fit/polished_internal.h"
 #include "fit/worst_points_internal.h"
 #include "rbf/weight_solver.h"
 

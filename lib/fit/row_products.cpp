@@ -1,4 +1,4 @@
-#include "fit/row_products_internal.h"
+#include "fit/joint_rows_internal.h"
 
 // Compiles only targets that KROK_BEST_VERSION can choose.
 #include <hwy/detect_targets.h>

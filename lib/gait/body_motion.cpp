@@ -8,7 +8,6 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "gait/smooth_internal.h"
 #include "math/euler.h"
 #include "math/smoother_step.h"
 #include "motion/ground_frame.h"
@@ -23,8 +22,8 @@ constexpr double kFlatPart = 0.4;  // of the swing, when the stance foot is flat
 constexpr double kBeside = 0.5;    // of the swing: where the swing foot is beside the other
 constexpr double kLifted = 0.4;    // share of the blend in the middle of an only step
 constexpr double kShortestStep = 0.2, kLongestStep = 10;  // seconds
-// Metres that a step is from the examples where it begins to be blended with standing, and where it
-// is nothing else: steps on the spot, to the side.
+// Distance of a step from the examples, metres, from which it is blended with standing, and from
+// which only standing is left, as in steps on the spot or to the side.
 constexpr double kNear = 0.12, kFar = 0.55;
 constexpr double kShortest = 1.0 / 120;  // seconds between poses that a velocity is taken from
 constexpr double kUsualGap = 0.06;       // metres between the hips of steps that are alike
@@ -39,9 +38,9 @@ double speed_up(double s) {
 struct EndState {
   PoseVector value, velocity, acceleration;
 };
-// `inwards`: +1 at the start of the step, -1 at its end. Velocities are of the parabola through
-// three poses, accelerations of the cubic through four: longer fits would count what a strike
-// shakes.
+// `inwards`: +1 at the start of the step, -1 at its end. Velocities are from the parabola through
+// three poses, accelerations from the cubic through four: longer fits would include the shock of a
+// heel strike.
 EndState end_state(const BodyStep& step, double time, double inwards, double spacing) {
   auto scratch = step.motion.make_scratch();
   EndState end;
@@ -66,8 +65,8 @@ void match_signs(PoseVector& pose, const PoseVector& to) {
   }
 }
 
-// Where the blend is set so that its stance foot, when flat, is on the print. (Captures tell a
-// strike while the foot still moves, and the footprint of that moment lies behind.)
+// Places the blend so that its flat stance foot is on the print. (The foot still moves at the
+// strike that captures mark, so the footprint of that moment lies further back.)
 Transform stance_frame(const Walker& walker, const GroundedPrint& print, const StepLibrary& library,
                        const BodyStep& step) {
   const BodyStep plain(step.motion, walker);
@@ -180,7 +179,8 @@ Gap BodyMotion::gap_after(std::size_t step) const {
       is_accelerated_.cwiseProduct(gap.sign.cwiseProduct(b.acceleration) - a.acceleration);
   gap.before = 0.5 * (before.strike - before.start);
   gap.after = 0.5 * (after.strike - after.start);
-  // The first step and the last, which are no blends alone, take all: they may be short.
+  // The first and the last step, which are not only blends, take the whole difference: they may be
+  // short.
   if (before.kind == BodyStep::Kind::first && after.kind == BodyStep::Kind::middle) {
     gap.share = 1;
     gap.before = before.strike - before.start;
@@ -197,7 +197,7 @@ Gap BodyMotion::gap_after(std::size_t step) const {
 
 namespace {
 
-// What closes a gap `since` seconds from it on one side.
+// The correction that closes a gap, `since` seconds away from it on one side.
 void add_correction(const Gap& gap, double since, double width, double inwards, double root_part,
                     double part, PoseVector& pose) {
   const Fading wide = fading(since / width);
@@ -205,7 +205,7 @@ void add_correction(const Gap& gap, double since, double width, double inwards, 
   const double narrow = std::min(width, kVelocityWidth);
   const Fading close = fading(since / narrow);
   const auto rest = pose.size() - kPoseValues;
-  // The body takes its time, the limbs, which swing, do not.
+  // Differences of the body fade slowly, those of swinging limbs quickly.
   pose.head<kPoseValues>() +=
       root_part * (wide.value * gap.value.head<kPoseValues>() +
                    inwards * width * wide.slope * gap.velocity.head<kPoseValues>());
@@ -267,7 +267,7 @@ Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
   if (lead > 0) {
     step.off = step.start + step.lead + 0.05 * moving * step.scale;
   } else if (step.kind == last) {
-    // When the blend, which slows down, comes to its off: by bisection.
+    // When the slowing blend reaches its toe-off: by bisection.
     double low = 0, high = 1;
     for (int i = 0; i < 40; ++i) {
       const double middle = 0.5 * (low + high);
@@ -293,7 +293,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   step.start = steps_.empty() ? 0 : steps_.back().strike;
   const std::vector<double>& times = step.motion.keytimes();
   const double toes_off = times[index_of_time(maker.library(), "swing_off")];
-  // Out of standing the ball leaves as long before the toes as in a walk.
+  // At a start the ball leaves the ground as long before the toes as in a walk.
   const double off =
       libraries[at(planned.library)].kind() == StepKind::start
           ? toes_off - std::min((1 - walker.ball_off) * walker.usual_off, toes_off / 2)

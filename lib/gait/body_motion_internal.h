@@ -1,18 +1,59 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "gait/plan_steps_internal.h"
+#include "gait/ground_prints_internal.h"
+#include "gait/walk.h"
+#include "parametric/blended_motion.h"
 
-// The motion of the whole body over all steps, joined, before the feet are set on their prints.
-// Used by walk().
+// Which step of which library goes from print to print.
 
 namespace krok::gait {
 
-// A step's blend in the world and in the walk's time. The first step begins standing: a captured
-// start is one from its begin; of any other step it starts with the swing foot beside the stance
-// foot, slowly, out of the standing pose. The last ends so. A walk of one step goes from standing
-// to standing.
+// The step over print `stance`, from print stance - 1 to print stance + 1.
+struct PlannedStep {
+  int stance = 0;
+  int library = 0;
+  std::vector<double> asked;    // parameters by the prints
+  std::vector<double> nearest;  // the nearest inside the examples' range
+  double far = 0;               // metres from `asked` to `nearest`
+  std::vector<double> weights;
+  std::vector<double> made;  // parameters of the blend
+};
+
+struct PlannedWalk {
+  std::vector<Print> prints;  // moved where `adapt` asked for it
+  std::vector<GroundedPrint> grounded;
+  std::vector<PlannedStep> steps;
+  std::vector<double> moved;  // metres, [prints]
+  std::vector<std::string> why_moved;
+  Diagnostics warnings;
+};
+
+Result<PlannedWalk> plan_steps(std::span<const StepLibrary> libraries, const Walker& walker,
+                               std::span<const Print> prints, const Terrain& ground,
+                               const WalkOptions& options);
+
+// The quintic that is 1, with slope or with acceleration 1, at s = 0, its two other derivatives
+// zero, and zero with two derivatives at s = 1.
+struct Fading {
+  double value, slope, acceleration;
+};
+inline Fading fading(double s) {
+  if (s >= 1) return {0, 0, 0};
+  const double s2 = s * s, s3 = s2 * s;
+  return {1 - s3 * (10 - s * (15 - 6 * s)), s - s3 * (6 - s * (8 - 3 * s)),
+          0.5 * s2 - s3 * (1.5 - s * (1.5 - 0.5 * s))};
+}
+
+// The motion of the whole body over all steps, joined, before the feet are set on their prints.
+//
+
+// The blend of a step, placed in the world and in the time of the walk. The first step starts from
+// standing: a captured start is used from its first frame; any other step starts slowly from the
+// standing pose, with the swing foot beside the stance foot. The last step ends likewise. A walk of
+// one step goes from standing to standing.
 struct BodyStep {
   enum class Kind : unsigned char { middle, captured_start, captured_stop, first, last, only };
 
@@ -39,15 +80,15 @@ struct BodyStep {
   void pose(double time, PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) const;
 };
 
-// The gap between two steps and its derivatives by time, after less before, in the signs that the
-// quaternions have before.
+// The difference between two steps where they meet, the later minus the earlier one, and its time
+// derivatives; quaternions are in the hemisphere of the earlier step.
 struct Gap {
   PoseVector value, velocity, acceleration;
   PoseVector sign;               // of quaternions after, by value
   double before = 0, after = 0;  // seconds that the correction takes on either side
   double share = 0.5;            // of the correction that the step before takes
-  // The same for the root. Where the hips are far apart, steps of very different length meet: the
-  // step before ends with both feet on their prints, the one after begins with its own stride.
+  // The same for the root. The hips are far apart where steps of very different length meet: the
+  // earlier step ends with both feet on their prints, the later one begins with its own stride.
   double root_share = 0.5;
 };
 
@@ -68,8 +109,8 @@ class BodyMotion {
 
   std::vector<BodyStep> steps_;
   double rate_ = 30;  // of the examples
-  // 1 for values whose accelerations are joined: not those of legs, which strikes shake and feet
-  // lead anew, and not the lengths of bones.
+  // 1 for values whose accelerations are matched between steps: not those of legs, which heel
+  // strikes disturb and which are solved again for the feet, and not bone lengths.
   PoseVector is_accelerated_;
 };
 

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "gait/body_motion_internal.h"
 
-// Where the feet go: fixed on their prints, rolling over heel and ball as in the blend, and over
-// the ground in between. Used by walk().
+// Paths of the feet: fixed on their prints while they roll over heel and ball as in the blend, and
+// clear of the ground in between.
 
 namespace krok::gait {
 
@@ -48,22 +49,22 @@ class Stance {
   Vec3 heel_ = Vec3::Zero(), pivot_ = Vec3::Zero();  // world
 };
 
-// The way of a foot from print to print: what is added to the blend's.
+// The path of a foot from print to print, as an offset from the blend's.
 class Swing {
  public:
   Swing(const Leg& leg, double off, double strike) : leg_(&leg), off_(off), strike_(strike) {}
 
-  // What the foot on a print is off the blend's, at the off and 1 and 2 `spacing` seconds before,
-  // or at the strike and after.
+  // The foot in the blend and on its print, at toe-off and 1 and 2 `spacing` seconds before, or at
+  // the strike and after.
   struct Ends {
     std::array<FootPose, 3> blend, wanted;
     double spacing = 0;
   };
   void set_ends(const Ends& off, const Ends& strike);
 
-  // Leads the foot over the ground: raises it, and where edges of stairs are in the way, holds it
-  // back until it is up, or carries it on before it goes down. `blend` are its poses at `times` of
-  // the swing, `from` is the height of the higher print.
+  // Keeps the foot clear of the ground: raises it, and at the edges of stairs holds it back until
+  // it is high enough, or moves it on before it comes down. `blend` has its poses at `times` of the
+  // swing, `from` is the height of the higher print.
   void clear(const Terrain& ground, std::span<const double> times, std::span<const FootPose> blend,
              double clearance, double from);
 
@@ -75,7 +76,8 @@ class Swing {
  private:
   using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
   static Offset offset_of(const FootPose& blend, const FootPose& wanted);
-  // What leads the foot over the ground: bumps u^a (1 - u)^b over the part u of the swing.
+  // Offsets that keep the foot clear of the ground: bumps u^a (1 - u)^b over the part u of the
+  // swing.
   struct Detour {
     double lift = 0, hold = 0;  // metres up, and along the swing
     int rise = 3, fall = 3;     // exponents of the lift
@@ -104,5 +106,24 @@ std::array<Vec3, 3> sole_points(const Leg& leg, const FootPose& foot);
 FootPose in_signs_of(const Leg& leg, const Quat& reference, FootPose foot);
 
 FootPose foot_of(const Leg& leg, std::span<const Transform> joint_to_world);
+
+// Legs from where the pelvis and the feet are.
+
+// Metres by which the pelvis must be lowered so that no leg is stretched further than in the blend,
+// or than nearly straight.
+double lowering_for(const Walker& walker, std::span<const Transform> joint_to_world,
+                    const std::array<FootPose, 2>& target);
+
+// A curve at or above `needs` (>= 0) with two derivatives: their maximum within `reach` frames on
+// either side, averaged over as many twice.
+std::vector<double> smooth_above(std::span<const double> needs, int reach);
+
+struct SolvedLegs {
+  double extension = 0;  // largest distance from hip to ankle, of the leg's length
+  double missed = 0;     // metres by which a foot does not reach its place
+};
+// Brings the feet of `pose` to `target`. `joint_to_world`: of the pose; changed with it.
+SolvedLegs solve_legs(const Walker& walker, const std::array<FootPose, 2>& target, double stretch,
+                      PoseVector& pose, std::span<Transform> joint_to_world);
 
 }  // namespace krok::gait

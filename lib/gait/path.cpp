@@ -56,7 +56,7 @@ Result<Path> Path::create(std::span<const PathPoint> points, double heading_wind
                    "times must rise");
     }
     latest = *point.time;
-    // Of a pause only the end counts: prints do not wait.
+    // Only the end of a pause counts: footprints do not wait.
     if (!path.timed_lengths_.empty() && path.timed_lengths_.back() >= path.length_) {
       path.times_.back() = latest;
       continue;
@@ -162,8 +162,8 @@ std::vector<PathPoint> way_to_goals(double x, double z, double heading, std::spa
 
 std::vector<PathPoint> way_of(const Clip& clip, int joint, double window) {
   const int count = clip.frame_count();
-  // Running sums of places; averaged twice, since once leaves a ripple of strides that are not as
-  // long as the window.
+  // Running sums of places; averaged twice, because one average leaves a ripple if strides are not
+  // as long as the window.
   std::vector<Vec2> places(static_cast<std::size_t>(count));
   for (int frame = 0; frame < count; ++frame) {
     const Vec3f position = clip.frame_positions(frame)[static_cast<std::size_t>(joint)];
@@ -180,7 +180,7 @@ std::vector<PathPoint> way_of(const Clip& clip, int joint, double window) {
           (sums[to + 1] - sums[from]) / static_cast<double>(2 * half + 1);
     }
   }
-  // Of standing about only the place counts.
+  // While a character stands about, only its place counts.
   std::vector<PathPoint> way;
   for (std::size_t i = 0; i < places.size(); ++i) {
     const bool last = i + 1 == places.size();

@@ -1,4 +1,4 @@
-#include "gait/plan_steps_internal.h"
+#include "gait/body_motion_internal.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/numbers.h"
-#include "gait/reach_internal.h"
+#include "gait/ground_prints_internal.h"
 #include "motion/ground_frame.h"
 
 namespace krok::gait {
@@ -24,7 +24,8 @@ constexpr double kTurnCost = 0.5;    // metres a radian
 constexpr int kBisections = 20;
 constexpr int kBlendTries = 6;
 
-// What is not asked for: the examples' own, those nearest in what is asked weighing most.
+// Parameters that are not asked for: those of the examples, weighted by how near these are in the
+// parameters that are.
 double usual_value(const parametric::Library& library, std::span<const double> asked,
                    std::span<const std::uint8_t> is_asked, const parametric::Bounds& bounds,
                    std::size_t dimension) {
@@ -106,7 +107,7 @@ Apart apart(const parametric::Library& library, std::span<const double> a,
   return result;
 }
 
-// How far a step is from the examples in what is no parameter of their library: from the nearest.
+// Distance of a step from the nearest example in what their library has no parameter for.
 Apart beyond(const StepLibrary& steps, const StepShape& shape) {
   const auto measures = [&](Quantity one, Quantity other) {
     return std::ranges::any_of(steps.library().parameters, [&](const parametric::Parameter& given) {
@@ -130,8 +131,8 @@ Apart beyond(const StepLibrary& steps, const StepShape& shape) {
   return nearest;
 }
 
-// Where the body faces above each print: the mean of the feet's headings, so that it does not
-// matter by how much they turn out.
+// Facing of the body above each print: the mean of the feet's headings, which does not depend on
+// how far they turn out.
 std::vector<double> facing_of(std::span<const Print> prints) {
   std::vector<double> result;
   for (std::size_t k = 0; k < prints.size(); ++k) {
@@ -231,7 +232,8 @@ Status Planner::choose(const GroundedPrint& to, double duration, int number,
     step.nearest = options_.extrapolate ? step.asked : std::move(off.nearest);
   }
   step.far = options_.extrapolate ? 0 : std::hypot(far.place, more.place);
-  // The first and the last step are blended with standing: what they ask is not made by examples.
+  // The first and the last step are blended with standing: examples need not reach their
+  // parameters.
   if (options_.extrapolate || number == 2 || number + 1 == count_) return {};
   if (far.place <= kFarOutside * walker_.leg(swing).length && far.turn <= kFarTurn) return {};
   return Error("walk-outside",
@@ -331,7 +333,7 @@ Status Planner::add_print(std::size_t number, Print print) {
   return {};
 }
 
-// Where the weights would go too far, a step nearer to the middle of the examples.
+// A step nearer to the middle of the examples where the weights would extrapolate too far.
 Status Planner::make_weights(PlannedStep& step) const {
   const GroundedPrint& to = walk_.grounded[static_cast<std::size_t>(step.stance) + 1];
   const parametric::Synthesiser& steps =

@@ -39,7 +39,7 @@ FootSize foot_size(const Clip& clip, const RoleMap& roles);
 Result<std::vector<GroundedPrint>> set_on_ground(std::span<const Print> prints,
                                                  const FootSize& size, const Terrain& ground);
 
-// A time in which a foot stands on a print.
+// An interval in which a foot stands on a print.
 struct PrintContact {
   int print = 0;              // index
   double start = 0, end = 0;  // seconds from the first frame to the last in which it does

@@ -18,8 +18,8 @@ double heading_at(const parametric::Example& example, const parametric::FootShap
   return parametric::print_at(foot, example.motion, time).heading;
 }
 
-// Where the walks that steps were cut from tell it, theirs; else half of what the feet of the
-// median step turn against each other.
+// The toe-out of the walks that the steps were cut from, if it is known; otherwise half the angle
+// between the feet in the median step.
 double usual_toe_out(const parametric::Library& library) {
   const double left = library.foot(FootSide::left).toe_out;
   const double right = library.foot(FootSide::right).toe_out;

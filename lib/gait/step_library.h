@@ -15,8 +15,8 @@
 
 namespace krok::gait {
 
-// What a library has steps for, told by its keytimes: the middle of a walk, the first step out of
-// standing, the last one into it, or standing itself.
+// Which steps a library has, by its keytimes: the middle of a walk, the first step out of standing,
+// the last one into it, or standing itself.
 enum class StepKind : unsigned char { walk, start, stop, stand };
 
 // The swing foot's print at the end of a step in the frame of the stance foot's: metres along the

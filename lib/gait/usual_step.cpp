@@ -19,8 +19,8 @@ constexpr double kToesPerBall = 1.45;  // from heel to toes, of heel to ball
 constexpr double kUnknownSole = 0.16;  // metres from heel to ball, where the ball is not known
 constexpr double kMoreLength = 0.03;   // metres beyond the longest example
 
-// The mean of the steps on level ground that go straight on, as far as there are any: of steps that
-// all turn to one side, toes would seem to point there.
+// The mean of the steps that go straight on over level ground, if there are any: in steps that all
+// turn to one side, toes would seem to point to that side.
 FoundStep mean_of_steps(const StepLibrary& steps) {
   std::array<FoundStep, 3> sums;  // level and straight, level, all
   std::array<int, 3> counts{};
@@ -37,7 +37,7 @@ FoundStep mean_of_steps(const StepLibrary& steps) {
   std::size_t i = 0;
   while (i < 2 && counts[i] == 0) ++i;
   const double count = counts[i];
-  // Where all turn, what their toes tell is the turn.
+  // If all steps turn, their toes show the turn.
   const double turn = i == 0 ? sums[i].turn / count : 2 * steps.toe_out();
   return {sums[i].along / count, sums[i].across / count, 0, turn};
 }

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kSpacing = 0.01;       // seconds, of derivatives at the ends of a swing
 constexpr double kLoweringReach = 0.2;  // seconds over which the pelvis is lowered
-// Steps on either side of a block: what is lowered depends on 0.4 s of them, and they on others.
+// Steps that are computed on either side of a block: lowering the pelvis depends on 0.4 s of them,
+// and they depend on their neighbours.
 constexpr std::size_t kLookedAt = 3, kAround = kLookedAt + 2;
 constexpr double kStaysFlat = 3;  // of the pitch at which a foot is flat
 constexpr double kMiddle = 0.4;   // of the single support: the foot is flat
@@ -22,9 +23,9 @@ struct PitchAt {
   double time = 0, pitch = 0;
 };
 
-// When a foot that rolls comes to lie flat: `series` goes from the strike to the middle of the
-// stance, or back from the off to it. A foot that is never as flat as all that (captures) is flat
-// when it is nearly so.
+// When a rolling foot becomes flat: `series` goes from the strike to the middle of the stance, or
+// back from toe-off to it. A foot that never becomes quite flat, as in captures, counts as flat
+// when it nearly is.
 double time_of_flat(std::span<const PitchAt> series) {
   struct Limit {
     double pitch, part;  // part of the series within which it is to be
@@ -36,7 +37,7 @@ double time_of_flat(std::span<const PitchAt> series) {
     for (std::size_t i = 0; i < series.size(); ++i) {
       if (std::abs(series[i].pitch) >= flat) continue;
       if (std::abs(series[i].time - from) > limit.part * std::abs(to - from)) break;
-      // A foot that passes through flat on its way is not flat.
+      // A foot that is flat only in passing does not count.
       if (std::ranges::any_of(series.subspan(i), [&](const PitchAt& later) {
             return std::abs(later.pitch) > kStaysFlat * flat;
           })) {
@@ -146,7 +147,8 @@ void WalkBlock::begin_stance(std::size_t print) {
   changed_stance(print) = stance;
 }
 
-// When its heel comes up and its toes leave the ground, in the next step, which has been sampled.
+// When the foot's heel comes up and its toes leave the ground, in the next step, which has been
+// sampled.
 void WalkBlock::finish_stance(std::size_t print) {
   const std::vector<BodyStep>& steps = parts_.body.steps();
   if (print >= steps.size()) return;  // the walk ends on it
@@ -269,7 +271,7 @@ void WalkBlock::make(Clip& clip, std::span<MadeStep> steps) {
   const std::size_t last = parts_.body.steps().size();
   MadeStep unused;
   for (std::size_t step = low_; step < high_; ++step) sampled(step) = sample(step);
-  // Of the steps at the ends of the block, which are left out, not all is known.
+  // The steps at the ends of the block are not completely known and are left out.
   for (std::size_t print = low_ == 0 ? 0 : low_ + 1; print < high_ + 2; ++print) {
     const bool is_known = print < high_ + 1 || high_ == last;
     if (is_known) begin_stance(print);
@@ -283,6 +285,32 @@ void WalkBlock::make(Clip& clip, std::span<MadeStep> steps) {
     place_feet(step, step >= first_ && step < end_ ? steps[step] : unused);
   }
   for (std::size_t step = first_; step < end_; ++step) emit(step, clip, steps[step]);
+}
+
+MotionKeys keys_of(const WalkParts& parts, std::span<const Stance> stances, double duration,
+                   std::span<GroundedPrint> prints) {
+  MotionKeys keys;
+  for (std::size_t print = 0; print < stances.size(); ++print) {
+    const Stance& stance = stances[print];
+    const Leg& leg = parts.leg_of(print);
+    GroundedPrint& grounded = prints[print];
+    grounded.strike = stance.strike;
+    grounded.off = std::min(stance.off, duration);
+    const Transform flat = flat_foot(leg, grounded);
+    const std::string side = name_of(grounded.side);
+    if (print >= 2) keys.keytimes.push_back({stance.strike, side + "_strike"});
+    if (stance.off < duration) keys.keytimes.push_back({stance.off, side + "_off"});
+    keys.contacts.push_back(
+        {leg.foot, stance.flat_from, std::min(stance.flat_to, duration), flat.position});
+    if (leg.toes < 0) continue;
+    const Transform toes = parts.walker.skeleton->reference_local(leg.toes);
+    keys.contacts.push_back({leg.toes, stance.flat_from, grounded.off, flat * toes.position});
+  }
+  std::ranges::stable_sort(keys.contacts, [](const Contact& a, const Contact& b) {
+    return a.start != b.start ? a.start < b.start : a.joint < b.joint;
+  });
+  std::ranges::stable_sort(keys.keytimes, {}, &Keytime::time);
+  return keys;
 }
 
 }  // namespace krok::gait

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "gait/legs_internal.h"
+#include "gait/foot_paths_internal.h"
 
-// The frames of a part of a walk. Each part is made by itself, from the steps around it too, so
-// that the walk is the same however it is divided. Used by walk().
+// The frames of a part of a walk. Each part is computed by itself, from its own and neighbouring
+// steps, so that the walk does not depend on how it is divided. Used by walk().
 
 namespace krok::gait {
 
@@ -26,7 +26,7 @@ struct WalkParts {
   const Leg& leg_of(std::size_t print) const { return walker.leg(side_of(print)); }
 };
 
-// What is found out about a step while its frames are made.
+// Measures of a step, taken while its frames are made.
 struct MadeStep {
   double clearance = 0, lowered = 0, extension = 0, missed = 0;
 };

@@ -6,13 +6,44 @@
 #include <vector>
 
 #include "core/index.h"
-#include "gait/legs_internal.h"
-#include "gait/mean_step_internal.h"
+#include "gait/foot_paths_internal.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "pose/sample_pose.h"
 
 namespace krok::gait {
+
+Transform joint_of(const PoseVector& pose, int joint) {
+  Transform result;
+  result.position = position_of(pose, joint);
+  result.orientation.coeffs() = rotation_of(pose, joint).normalized();
+  return result;
+}
+
+Transform joint_to_world(const Skeleton& skeleton, const PoseVector& pose, int joint) {
+  Transform result;
+  for (int j = joint; j >= 0; j = skeleton.parents[at(j)]) result = joint_of(pose, j) * result;
+  return result;
+}
+
+PoseVector mean_pose(const parametric::PackedExamples& packed, double generic) {
+  std::vector<PoseBlock> blocks(at(packed.reference.blocks_per_pose()));
+  std::vector<Transform> local(at(packed.reference.joints));
+  sample_pose(packed.reference, generic, blocks);
+  unpack_pose(blocks, local);
+  PoseVector pose(kPoseValues * packed.reference.joints);
+  for (int j = 0; j < packed.reference.joints; ++j) {
+    position_of(pose, j) = local[at(j)].position;
+    rotation_of(pose, j) = local[at(j)].orientation.coeffs();
+  }
+  return pose;
+}
+
+double middle_of_swing(const parametric::PackedExamples& packed,
+                       const parametric::Library& library) {
+  const auto off = std::ranges::find(library.keytimes, "swing_off") - library.keytimes.begin();
+  return 0.6 * packed.generic[static_cast<std::size_t>(off)] + 0.4 * packed.generic.back();
+}
 
 namespace {
 
@@ -40,16 +71,14 @@ double toe_length(const Skeleton& skeleton, int foot, const FootGeometry& sole) 
   double farthest = 0;
   const Transform to_foot = skeleton.reference[at(foot)].inverse();
   for (int j = foot + 1; j < skeleton.joint_count(); ++j) {
-    int above = j;
-    while (above > foot) above = skeleton.parents[at(above)];
-    if (above != foot) continue;
+    if (!is_below(skeleton, j, foot)) continue;
     const Vec3 point = to_foot * skeleton.reference[at(j)].position;
     farthest = std::max(farthest, (sole.sole.conjugate() * (point - sole.ball)).z());
   }
   return farthest > 0.1 * sole.length ? farthest : kToeShare * sole.length;
 }
 
-// What a leg does in the middle of the stance of the mean step: the foot is flat.
+// Takes the geometry of the flat foot from the middle of the stance in the mean step.
 void learn_flat_foot(const StepLibrary& steps, FootSide side, Walker& walker) {
   const parametric::Synthesiser& stance = steps.steps(other(side));
   const PoseVector pose =
@@ -94,8 +123,9 @@ double off_of_swing(const parametric::Synthesiser& step) {
   return step.packed().generic[static_cast<std::size_t>(off)];
 }
 
-// Joints that are within a centimetre of their place in the reference pose in all examples. There
-// they are put: captures' floats, and mirror images of unequal sides, change bones' lengths.
+// Joints that stay within a centimetre of their place in the reference pose in all examples. They
+// are fixed there, because rounding in captures and mirror images of unequal sides change bone
+// lengths.
 std::vector<FixedJoint> fixed_joints(const StepLibrary& steps) {
   constexpr double kMoves = 0.01;  // metres
   const parametric::PackedExamples& packed = steps.steps(FootSide::left).packed();
@@ -234,21 +264,12 @@ void Walker::to_world(const PoseVector& pose, std::span<Transform> joint_to_worl
 }
 
 Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
-  using enum Role;
   const StepLibrary& steps = main_library(libraries);
   Walker walker;
   walker.skeleton = &steps.steps(FootSide::left).packed().skeleton;
-  constexpr Role kLegs[2][4] = {{left_upper_leg, left_lower_leg, left_foot, left_toes},
-                                {right_upper_leg, right_lower_leg, right_foot, right_toes}};
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     Leg& leg = walker.legs[index_of(side)];
-    const auto& roles = kLegs[index_of(side)];
-    leg.upper = steps.roles().joint(roles[0]);
-    leg.lower = steps.roles().joint(roles[1]);
-    leg.foot = steps.roles().joint(roles[2]);
-    for (const int toes : steps.roles().joints(roles[3])) {
-      if (leg.toes < 0) leg.toes = toes;
-    }
+    static_cast<LegJoints&>(leg) = leg_joints(steps.roles(), side);
     if (leg.upper < 0 || leg.lower < 0 || leg.foot != steps.library().foot(side).joint) {
       return Error("walk-legs", "the skeleton has no known legs of thigh, shank and foot",
                    "assign their joints with --map");

@@ -1,16 +1,51 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <span>
 #include <vector>
 
-#include "gait/pose_vector_internal.h"
+#include "contacts/legs.h"
 #include "gait/step_library.h"
 #include "math/transform.h"
+#include "parametric/packed_examples.h"
+#include "scene/skeleton.h"
 
-// The body that walks: what is the same in all its steps. Used by walk().
+// A pose is one vector: joint_to_parent of each joint of the libraries' packed skeleton (rooted at
+// the hips), position x, y, z and quaternion x, y, z, w; the root's is joint_to_world. Corrections
+// are added to it, quaternions too, and normalised afterwards, so that sums of curves with two
+// continuous derivatives have them as well.
 
 namespace krok::gait {
+
+using PoseVector = Eigen::VectorXd;
+inline constexpr Eigen::Index kPoseValues = 7;  // a joint
+
+inline auto position_of(const PoseVector& pose, int joint) {
+  return pose.segment<3>(kPoseValues * joint);
+}
+inline auto position_of(PoseVector& pose, int joint) {
+  return pose.segment<3>(kPoseValues * joint);
+}
+inline auto rotation_of(const PoseVector& pose, int joint) {
+  return pose.segment<4>(kPoseValues * joint + 3);
+}
+inline auto rotation_of(PoseVector& pose, int joint) {
+  return pose.segment<4>(kPoseValues * joint + 3);
+}
+Transform joint_of(const PoseVector& pose, int joint);  // rotation normalised
+
+Transform joint_to_world(const Skeleton& skeleton, const PoseVector& pose, int joint);
+
+// The mean of a library's examples: what its steps have in common.
+
+PoseVector mean_pose(const parametric::PackedExamples& packed, double generic);
+
+// The generic time at which the stance foot is flat.
+double middle_of_swing(const parametric::PackedExamples& packed,
+                       const parametric::Library& library);
+
+// The body that walks: what is the same in all its steps.
 
 constexpr std::size_t index_of(FootSide side) {
   return static_cast<std::size_t>(side);
@@ -29,9 +64,7 @@ struct FootGeometry {
   double tip = 0;                // metres from the ball to the tip of the toes
 };
 
-struct Leg {
-  int upper = -1, lower = -1, foot = -1;
-  int toes = -1;                   // the joint at the ball, or -1
+struct Leg : LegJoints {
   std::vector<int> path;           // joints from the thigh to the toes, or the foot
   Vec3 knee_axis = Vec3::UnitX();  // cross(thigh, shank), in the thigh's frame
   double length = 0;               // metres, thigh and shank
@@ -51,18 +84,18 @@ struct Walker {
   PoseVector stand;                    // the root relative to the point below the ankles, facing +Z
   std::vector<FixedJoint> bones;       // all but the root and what moves in captures
   double sole_width = 0.08;            // metres
-  // Where in the time from the other foot's strike to this one's off, as captures tell it, its ball
-  // leaves the ground: the toes go on for a while.
+  // When the ball leaves the ground, as a share of the time from the other foot's strike to this
+  // foot's toe-off, from captures: the toes stay on the ground longer.
   double ball_off = 1;
-  double usual_off = 0.1;  // seconds from the one to the other, in the mean step
+  double usual_off = 0.1;  // seconds from that strike to toe-off, in the mean step
 
   const Leg& leg(FootSide side) const { return legs[index_of(side)]; }
   // joint_to_world of all joints.
   void to_world(const PoseVector& pose, std::span<Transform> joint_to_world) const;
 };
 
-// Code walk-legs if the skeleton has no legs of thigh, shank and foot.
-// The standing pose is that of a library of stands, starts or stops, as far as there is one.
+// Code walk-legs if the skeleton has no legs of thigh, shank and foot. The standing pose is from a
+// library of stands, starts or stops if there is one.
 Result<Walker> make_walker(std::span<const StepLibrary> libraries);
 
 }  // namespace krok::gait

@@ -1,14 +1,88 @@
+#include "ik/least_squares_internal.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/index.h"
-#include "ik/least_squares_internal.h"
-#include "ik/random_internal.h"
+#include "ik/tree_internal.h"
 #include "math/quaternion.h"
 
 namespace krok::ik {
 
+void NormalEquations::reset(int rows) {
+  rows_ = static_cast<std::size_t>(rows);
+  upper_.assign(rows_ * rows_, 0.0);
+  factor_.resize(rows_ * rows_);
+}
+
+void NormalEquations::add(double w, const double* column, int first, int last) {
+  const auto end = static_cast<std::size_t>(last);
+  for (auto i = static_cast<std::size_t>(first); i < end; ++i) {
+    const double scaled = w * column[i];
+    double* __restrict const row = upper_.data() + i * rows_;
+    for (std::size_t k = i; k < end; ++k) row[k] += scaled * column[k];
+  }
+}
+
+void NormalEquations::solve(double damping, const double* e, double* y) {
+  // U^T D U by rows, so that the inner loops run along memory; e is carried along.
+  const std::size_t n = rows_;
+  std::copy(upper_.begin(), upper_.end(), factor_.begin());
+  std::copy_n(e, n, y);
+  for (std::size_t k = 0; k < n; ++k) {
+    double* __restrict const pivot_row = factor_.data() + k * n;
+    pivot_row[k] += damping;
+    const double inverse = 1 / pivot_row[k];
+    for (std::size_t i = k + 1; i < n; ++i) {
+      if (pivot_row[i] == 0) continue;
+      const double part = pivot_row[i] * inverse;
+      double* __restrict const row = factor_.data() + i * n;
+      for (std::size_t c = i; c < n; ++c) row[c] -= part * pivot_row[c];
+      y[i] -= part * y[k];
+    }
+    pivot_row[k] = inverse;
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    const double* const row = factor_.data() + k * n;
+    double sum = y[k];
+    for (std::size_t c = k + 1; c < n; ++c) sum -= row[c] * y[c];
+    y[k] = sum * row[k];
+  }
+}
+
 namespace {
+
+// SplitMix64 (Steele, Lea and Flood 2014): the same numbers on every machine.
+class Random {
+ public:
+  Random(std::uint64_t seed, std::uint64_t stream)
+      : state_(seed * 0x9E3779B97F4A7C15u + stream * 0xD1B54A32D192ED03u) {}
+
+  // In [0, 1).
+  double unit() {
+    state_ += 0x9E3779B97F4A7C15u;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+  double between(double low, double high) { return low + (high - low) * unit(); }
+
+ private:
+  std::uint64_t state_;
+};
+
+// Turns a joint for another start: a hinge to anywhere in its range, others by up to a radian about
+// each axis, within their limits.
+void turn_at_random(ChainJoint& joint, Random& random) {
+  if (joint.is_hinge()) {
+    joint.set_twist(random.between(joint.limit->min_twist, joint.limit->max_twist));
+    return;
+  }
+  const Vec3 turn(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+  joint.set_local((joint.local * from_rotation_vector(turn)).normalized());
+}
 
 // Largest turn of a joint in one step, beyond which the derivatives mean nothing.
 constexpr double kLargestTurn = 1.0;

@@ -19,10 +19,6 @@ Eigen::VectorXd solve_minimum_norm(const Eigen::MatrixXd& a, const Eigen::Vector
 }
 
 Eigen::MatrixXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
-  return a.householderQr().solve(b);
-}
-
-Eigen::MatrixXd solve_least_squares_pivoting(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.colPivHouseholderQr().solve(b);
 }
 

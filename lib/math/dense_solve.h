@@ -18,10 +18,9 @@ Eigen::MatrixXd inverse_full_pivoting(const Eigen::MatrixXd& a);
 // The minimum-norm least-squares solution of a x = b, for any shape and rank.
 Eigen::VectorXd solve_minimum_norm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 
-// The least-squares solution of a x = b, column by column; `a` has full column rank.
+// The least-squares solution of a x = b, column by column, with column pivoting for nearly
+// dependent columns; `a` has full column rank.
 Eigen::MatrixXd solve_least_squares(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
-// Same with column pivoting, for nearly dependent columns.
-Eigen::MatrixXd solve_least_squares_pivoting(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
 // An orthonormal basis of the column space, [rows x columns]; rows >= columns.
 Eigen::MatrixXd orthonormal_columns(const Eigen::MatrixXd& a);

@@ -9,12 +9,12 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "math/quaternion.h"
+#include "math/window.h"
 #include "motion/cut.h"
 #include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/mirror.h"
 #include "parametric/find_steps_internal.h"
-#include "parametric/step_direction_internal.h"
 
 namespace krok::parametric {
 
@@ -244,11 +244,11 @@ class Cutter {
       values.push_back(lasts ? example.keytimes.back() - example.keytimes.front()
                              : example.parameters[d]);
     }
-    const double middle = median(values);
+    const double middle = upper_median(values);
     std::vector<double> apart;
     for (const double value : values) apart.push_back(std::abs(value - middle));
     const double floor = unit == "rad" ? kFarAngle : unit == "s" ? kFarTime : kFarLength;
-    const double far = std::max(floor, options_.outlier * kNormal * median(apart));
+    const double far = std::max(floor, options_.outlier * kNormal * upper_median(apart));
     // If there are many, they are variation of the data, not outliers.
     const auto beyond = std::ranges::count_if(apart, [&](double value) { return value > far; });
     if (beyond * kMaxOutliers > static_cast<std::ptrdiff_t>(apart.size())) return;
@@ -261,12 +261,6 @@ class Cutter {
                               readable(values[i] * scale, 3), unit == "rad" ? "degrees" : unit,
                               readable(middle * scale, 3), unit == "rad" ? "degrees" : unit);
     }
-  }
-
-  static double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
   }
 
   const RoleMap& roles_;

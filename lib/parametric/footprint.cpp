@@ -5,8 +5,11 @@
 #include <ranges>
 #include <vector>
 
+#include "contacts/legs.h"
 #include "math/euler.h"
-#include "math/median.h"
+#include "math/types.h"
+#include "math/window.h"
+#include "motion/ground_frame.h"
 
 namespace krok::parametric {
 
@@ -14,12 +17,6 @@ namespace {
 
 constexpr double kUpright = 1e-3;  // of the horizontal part of a unit vector
 constexpr double kClimb = 0.15;    // of the leg length, between the heights of contacts
-
-Quat orientation(const Clip& clip, int frame, int joint) {
-  return clip.frame_orientations(frame)[static_cast<std::size_t>(joint)]
-      .cast<double>()
-      .normalized();
-}
 
 // The up direction in the foot's frame, for frames with both heel and ball in contact.
 void add_flat_frames(const ClipContacts& given, FootSide side, int joint, std::vector<Vec3>& ups) {
@@ -37,7 +34,7 @@ void add_flat_frames(const ClipContacts& given, FootSide side, int joint, std::v
   }
   for (int f = 0; f < clip.frame_count(); ++f) {
     if (heel[static_cast<std::size_t>(f)] && front[static_cast<std::size_t>(f)]) {
-      ups.emplace_back(orientation(clip, f, joint).conjugate() * Vec3::UnitY());
+      ups.emplace_back(joint_at(clip, f, joint).orientation.conjugate() * Vec3::UnitY());
     }
   }
 }
@@ -124,6 +121,37 @@ Result<std::array<FootShape, 2>> find_foot_shapes(std::span<const ClipContacts> 
         forward.norm() > 1e-6 ? Vec3(forward.normalized()) : Vec3(upward.unitOrthogonal());
   }
   return shapes;
+}
+
+namespace {
+
+constexpr double kShortestWay = 0.2;  // metres, of two steps
+constexpr std::size_t kFewestPrints = 3;
+
+}  // namespace
+
+std::array<double, 2> toe_out_of(std::span<const std::vector<WalkPrint>> walks) {
+  std::array<std::vector<double>, 2> angles;
+  for (const auto& prints : walks) {
+    for (std::size_t i = 1; i + 1 < prints.size(); ++i) {
+      const WalkPrint &before = prints[i - 1], &here = prints[i], &after = prints[i + 1];
+      if (before.side == here.side || after.side == here.side) continue;
+      const Vec3 way = after.print.place - before.print.place;
+      if (std::hypot(way.x(), way.z()) < kShortestWay) continue;
+      const double angle = wrapped(here.print.heading - std::atan2(way.x(), way.z()));
+      // Not of steps to the side or backwards.
+      if (std::abs(angle) > kPi / 3) continue;
+      angles[static_cast<std::size_t>(here.side)].push_back(angle);
+    }
+  }
+  std::array<double, 2> result{};
+  for (std::size_t s = 0; s < 2; ++s) {
+    if (angles[s].size() < kFewestPrints) return {};
+    const auto middle = angles[s].begin() + static_cast<std::ptrdiff_t>(angles[s].size() / 2);
+    std::ranges::nth_element(angles[s], middle);
+    result[s] = *middle;
+  }
+  return result;
 }
 
 }  // namespace krok::parametric

@@ -6,8 +6,9 @@
 
 #include "contacts/contacts.h"
 #include "math/quaternion.h"
+#include "math/window.h"
 #include "motion/ground_frame.h"
-#include "plant/leg_pose_internal.h"
+#include "plant/foot_paths_internal.h"
 #include "plant/sole_follower_internal.h"
 
 namespace krok {
@@ -19,7 +20,7 @@ using plant::SoleFollower;
 
 constexpr double kGroundSmoothing = 0.25;  // seconds, of the height between the feet
 
-// Where the hips are led: over the source's, at `scale` of their height.
+// Moves the body so that the hips are over the source's, at `scale` of their height.
 void move_body(const Clip& source, int carrier, double scale, const std::vector<double>& between,
                Clip& clip) {
   for (int f = 0; f < clip.frame_count(); ++f) {
@@ -29,25 +30,7 @@ void move_body(const Clip& source, int carrier, double scale, const std::vector<
   }
 }
 
-// Averaged over a time on either side, three times: nearly a bell curve.
-std::vector<double> smoothed(std::vector<double> values, int reach) {
-  const int count = static_cast<int>(values.size());
-  for (int round = 0; round < 3; ++round) {
-    std::vector<double> next(values.size());
-    for (int i = 0; i < count; ++i) {
-      double sum = 0;
-      for (int k = -reach; k <= reach; ++k) {
-        sum += values[static_cast<std::size_t>(std::clamp(i + k, 0, count - 1))];
-      }
-      next[static_cast<std::size_t>(i)] = sum / (2 * reach + 1);
-    }
-    values = std::move(next);
-  }
-  return values;
-}
-
-// The height of the ground between the feet: the mean of where they stand and, in between, of where
-// they are on their way to.
+// Height of the ground between the feet: the mean over both feet, interpolated between stances.
 std::vector<double> ground_between(const std::vector<SoleFollower>& feet, const Clip& source) {
   std::vector<double> heights(static_cast<std::size_t>(source.frame_count()), 0);
   for (const SoleFollower& foot : feet) {
@@ -56,8 +39,10 @@ std::vector<double> ground_between(const std::vector<SoleFollower>& feet, const 
           foot.standing_height(f) / static_cast<double>(feet.size());
     }
   }
-  return smoothed(std::move(heights),
-                  static_cast<int>(std::lround(kGroundSmoothing * source.rate)));
+  // Three times: nearly a bell curve.
+  const auto reach = static_cast<int>(std::lround(kGroundSmoothing * source.rate));
+  for (int round = 0; round < 3; ++round) heights = mean_within(heights, reach);
+  return heights;
 }
 
 }  // namespace

@@ -11,12 +11,12 @@
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
 
-// Feet of another actor on the ground that a motion was made for.
+// Puts the feet of a retargeted actor on the ground of the source motion.
 
 namespace krok {
 
-// The ground as feet need it. Both take a point, metres, world, and mean the surface below it or
-// just above it.
+// The ground under feet. Both functions take a point (metres, world) and refer to the surface below
+// it or just above it.
 struct GroundBelow {
   std::function<std::optional<double>(const Vec3&)> height;  // metres; empty where there is none
   UpOfGround up;
@@ -40,12 +40,10 @@ struct FollowedFeet {
 //
 // - The body is moved so that the hips are over the source's, at `scale` of their height over the
 //   ground between the feet.
-// - Each sole lies as the source's does: turned alike, and where that one stands so that the
-// middles
-//   of both lie together, or back or ahead of that where a longer foot would stand against a step
-//   or over an edge. A sole that rolls over its
-//   heel or ball rolls about its own.
-// - In swing the foot leads from the one place to the next as the source's does.
+// - Each sole is oriented as the source's sole. In a stance the middles of both lie together, or
+//   back or ahead of that where a longer foot would stand against a step or over an edge. A sole
+//   that rolls over its heel or ball rolls about its own.
+// - In swing the foot moves from one place to the next as the source's foot does.
 // - Legs are solved by solve_two_bone(), the pelvis is lowered, smoothly, where they are too short.
 //
 // `contacts` tell when the source's feet stand; without them find_contacts() does. Codes:

@@ -1,20 +1,47 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "contacts/contacts.h"
 #include "plant/legs_internal.h"
+#include "plant/plant_feet.h"
 #include "plant/smooth_curve_internal.h"
-#include "plant/stays_internal.h"
 
-// Where fixed points bring each foot. Used by plant_feet().
+// Which points are fixed in which frames, and where.
 
 namespace krok::plant {
 
-// The bend of a knee, radians, below which a leg is not stretched further than captured: there the
-// knee turns far for a little way of the ankle.
+// One leg's points over the frames, as captured, and the stays that fix them.
+struct Footing {
+  std::vector<FootPart> parts;  // [points]
+  std::vector<double> jitter;   // [points], deviation of the height while it stands, metres
+  std::vector<std::vector<Vec3>> tracks;  // [points][frames], metres, world
+  std::vector<FixedStay> stays;           // by point, then frame
+  std::vector<std::vector<int>> stay_at;  // [points][frames], index into stays or -1
+
+  std::size_t index_of(FootPart part) const;  // of parts
+};
+
+// The stays in whole frames, without frames in which a point is far from its place. Points that are
+// joints take their stays from `contacts` where given. `before` has the stays of the clip before
+// jitter was removed, with the captured variation of heights; empty in the first round.
+std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
+                               const std::vector<Stay>& found,
+                               const std::vector<PointTrack>& tracks,
+                               const std::optional<std::span<const Contact>>& contacts,
+                               const std::vector<Footing>& before = {});
+
+// The diagonal of the box that positions of a stay span, metres.
+double drift_of(std::span<const Vec3> track, int first, int last);
+
+// Where fixed points bring each foot.
+
+// Flexion of a knee, radians, below which a leg is not stretched further than captured: there a
+// small move of the ankle turns the knee far.
 inline constexpr double kNearlyStraight = 20 * kRadiansPerDegree;
 
-// What is done to one foot, [frames]; world space.
+// The correction of one foot, [frames]; world space.
 struct FootPath {
   std::vector<Vec3> turn;   // rotation vectors, to be put on the foot from the left
   std::vector<Vec3> shift;  // metres, of the ankle
@@ -23,7 +50,7 @@ struct FootPath {
 FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
                    const Footing& footing);
 
-// The same shift before it is drawn through the frames in which nothing stands.
+// The same shift before it is interpolated over frames in which nothing stands.
 KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& leg,
                         const Footing& footing);
 
@@ -32,5 +59,17 @@ KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& le
 inline Vec3 turn_of_toes(const Vec3& turn) {
   return {0, turn.y(), 0};
 }
+
+// Legs from where the pelvis and the feet are.
+
+// Metres by which the pelvis is lowered, >= 0, [frames], so that legs that are nearly straight are
+// not stretched further.
+std::vector<double> lowering(const Clip& clip, const PlantedBody& body,
+                             const std::vector<FootPath>& paths);
+
+// Applies the corrections to the clip. Returns the number of frames in which a leg does not reach
+// its place.
+int apply(const PlantedBody& body, const std::vector<FootPath>& paths,
+          const std::vector<double>& lowered, Clip& clip);
 
 }  // namespace krok::plant

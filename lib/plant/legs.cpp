@@ -7,11 +7,6 @@ namespace krok::plant {
 
 namespace {
 
-bool is_below(const Skeleton& skeleton, int joint, int ancestor) {
-  while (joint >= 0 && joint != ancestor) joint = skeleton.parents[static_cast<std::size_t>(joint)];
-  return joint >= 0;
-}
-
 // The hips, or what is above them and all legs.
 int pelvis_of(const Skeleton& skeleton, const RoleMap& roles, const std::vector<Leg>& legs) {
   int pelvis = carrying_joint(roles);
@@ -23,7 +18,7 @@ int pelvis_of(const Skeleton& skeleton, const RoleMap& roles, const std::vector<
   return pelvis;
 }
 
-// The knee's hinge as the motion shows it; where it never bends across the hips.
+// The hinge axis of the knee from the motion; the line across the hips if the knee never bends.
 Vec3 knee_axis_of(const Clip& clip, const Leg& leg, const std::vector<Leg>& legs) {
   constexpr double kBends = 0.02;  // the mean sine
   Vec3 bend = Vec3::Zero(), across = Vec3::Zero();
@@ -45,22 +40,14 @@ Vec3 knee_axis_of(const Clip& clip, const Leg& leg, const std::vector<Leg>& legs
 
 }  // namespace
 
-const SolePoint* Leg::point(FootPart part) const {
-  const auto found = std::ranges::find(points, part, &SolePoint::part);
-  return found == points.end() ? nullptr : &*found;
-}
-
 Result<PlantedBody> find_body(const Clip& clip, const RoleMap& roles) {
   const Skeleton& skeleton = clip.skeleton;
   const Feet feet = find_feet(clip, roles);
   PlantedBody body;
   body.leg_length = feet.leg_length;
   for (const FootSide side : {FootSide::left, FootSide::right}) {
-    const bool left = side == FootSide::left;
-    Leg leg;
-    leg.side = side;
-    leg.upper = roles.joint(left ? Role::left_upper_leg : Role::right_upper_leg);
-    leg.lower = roles.joint(left ? Role::left_lower_leg : Role::right_lower_leg);
+    Leg leg{leg_joints(roles, side), side};
+    leg.toes = -1;
     leg.points = feet.points[static_cast<std::size_t>(side)];
     if (leg.upper < 0 || leg.lower < 0 || leg.points.empty()) continue;
     leg.foot = leg.points.front().joint;  // of the heel

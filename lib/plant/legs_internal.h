@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "contacts/sole_points.h"
+#include "contacts/legs.h"
 #include "core/result.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
@@ -12,18 +12,16 @@
 
 namespace krok::plant {
 
-// What carries a joint along.
+// The part of the body that a joint moves with.
 enum class Body : std::uint8_t { none, pelvis, upper, lower, foot, toes };
 
-struct Leg {
+struct Leg : LegJoints {
   FootSide side = FootSide::left;
-  int upper = -1, lower = -1, foot = -1;
-  int toes = -1;                  // the joint at the ball, or -1
-  std::vector<SolePoint> points;  // heel before ball before tip
+  std::vector<SolePoint> points = {};  // heel before ball before tip
   Vec3 knee_axis =
       Vec3::Zero();  // the usual direction of cross(thigh, shank), in the thigh's frame
 
-  const SolePoint* point(FootPart part) const;
+  const SolePoint* point(FootPart part) const { return point_of(points, part); }
 };
 
 struct PlantedBody {
@@ -36,11 +34,5 @@ struct PlantedBody {
 
 // Code contacts-feet where no leg has thigh, shank and foot.
 Result<PlantedBody> find_body(const Clip& clip, const RoleMap& roles);
-
-inline Transform joint_at(const Clip& clip, int frame, int joint) {
-  return {
-      clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>(),
-      clip.frame_orientations(frame)[static_cast<std::size_t>(joint)].cast<double>().normalized()};
-}
 
 }  // namespace krok::plant

@@ -1,33 +1,128 @@
 #include "plant/plant_feet.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "contacts/contacts.h"
 #include "contacts/gait_keytimes.h"
 #include "contacts/gait_metrics.h"
 #include "plant/foot_paths_internal.h"
-#include "plant/leg_pose_internal.h"
 #include "plant/legs_internal.h"
-#include "plant/stays_internal.h"
-#include "plant/steady_internal.h"
+#include "plant/smooth_curve_internal.h"
+
+namespace krok::plant {
+
+namespace {
+
+constexpr double kSharedCutoff = 4;  // Hz, above which movement may be jitter
+// Ratio of the variance of jitter to that from frame to frame: most is slower than white noise.
+constexpr double kSlower = 30;
+
+// A curve without its slow part.
+KnownCurve fast_part(const KnownCurve& curve, double rate) {
+  const std::vector<Vec3> slow = smooth_curve(curve, {.rate = rate, .cutoff = kSharedCutoff});
+  KnownCurve fast(curve.values.size());
+  for (std::size_t f = 0; f < slow.size(); ++f) {
+    if (curve.is_exact(f)) fast.set(f, curve.values[f] - slow[f]);
+  }
+  return fast;
+}
+
+// The correction that removes shared jitter; `jitter` is the standard deviation of the pelvis'
+// jitter. Each standing foot measures it with an error of its own, and so does the pelvis, whose
+// error is its real movement. Their covariance is the variance of the shared jitter, and what they
+// vary by beyond that is error. The estimate is the mean weighted by inverse variances, zero
+// included with the variance of the jitter (Wiener filter).
+std::vector<Vec3> shared_jitter(const KnownCurve& hips, const std::vector<KnownCurve>& feet,
+                                double jitter) {
+  const std::size_t frames = hips.values.size();
+  std::vector<Vec3> result(frames, Vec3::Zero());
+  double both = 0, of_feet = 0, of_hips = 0;
+  int count = 0;
+  for (const KnownCurve& foot : feet) {
+    for (std::size_t f = 0; f < frames; ++f) {
+      if (!foot.is_exact(f)) continue;
+      both += foot.values[f].dot(hips.values[f]);
+      of_feet += foot.values[f].squaredNorm();
+      of_hips += hips.values[f].squaredNorm();
+      ++count;
+    }
+  }
+  // Landings move feet and pelvis alike, too, but without jitter from frame to frame.
+  both = std::min(both, 3 * kSlower * jitter * jitter * count);
+  if (count < 3 || !(both > 0)) return result;
+  constexpr double kLeast = 1e-3;  // of the jitter's variance
+  const double foot_weight = both / std::max(of_feet - both, kLeast * both);
+  const double hips_weight = both / std::max(of_hips - both, kLeast * both);
+  for (std::size_t f = 0; f < frames; ++f) {
+    Vec3 sum = hips_weight * hips.values[f];
+    double weight = 1 + hips_weight;
+    for (const KnownCurve& foot : feet) {
+      if (!foot.is_exact(f)) continue;
+      sum += foot_weight * foot.values[f];
+      weight += foot_weight;
+    }
+    result[f] = sum / weight;
+  }
+  return result;
+}
+
+// Negative, to be compared with the shifts that bring feet back.
+KnownCurve pelvis_track(const PlantedBody& body, const Clip& clip) {
+  KnownCurve hips(static_cast<std::size_t>(clip.frame_count()));
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    hips.set(static_cast<std::size_t>(f), -joint_at(clip, f, body.pelvis).position);
+  }
+  return hips;
+}
+
+// The deviation of the pelvis' jitter from frame to frame, metres.
+double pelvis_jitter(const PlantedBody& body, const Clip& clip) {
+  return jitter_of(pelvis_track(body, clip));
+}
+
+// Removes the jitter that feet and pelvis share from the pelvis and all joints below it. `shifts`,
+// one for each leg, bring the feet to their places; `jitter` is that of the captured pelvis.
+// Returns the root mean square of the removed jitter, metres.
+double steady(const PlantedBody& body, const std::vector<KnownCurve>& shifts, double jitter,
+              Clip& clip) {
+  const KnownCurve hips = pelvis_track(body, clip);
+  std::vector<KnownCurve> feet;
+  for (const KnownCurve& shift : shifts) feet.push_back(fast_part(shift, clip.rate));
+  const std::vector<Vec3> still = shared_jitter(fast_part(hips, clip.rate), feet, jitter);
+  double squares = 0;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const Vec3& shift = still[static_cast<std::size_t>(f)];
+    squares += shift.squaredNorm();
+    for (std::size_t j = 0; j < body.bodies.size(); ++j) {
+      if (body.bodies[j] == Body::none) continue;
+      Vec3f& position = clip.frame_positions(f)[j];
+      position = (position.cast<double>() + shift).cast<float>();
+    }
+  }
+  return std::sqrt(squares / clip.frame_count());
+}
+
+}  // namespace
+
+}  // namespace krok::plant
 
 namespace krok {
 
 namespace {
 
-// Of the leg: what jitter of the whole body is so large that contacts are found better without it.
+// Jitter of the whole body, in leg lengths, from which contacts are found again after its removal.
 constexpr double kShakes = 0.003;
 
-// Of the leg: what heels and balls may move by while they stand for the clip to be left as it is.
+// Drift of standing heels and balls, in leg lengths, up to which a clip is left as it is.
 constexpr double kStands = 0.0004;
 
-// Feet that stand still show longer stays than feet that slide: times that these are looked at.
+// Rounds of contact detection: feet that stand still show longer stays than feet that slide.
 constexpr int kRounds = 3;
 
-// Stances without a contact that are worth a warning: their number, and their part of all.
+// Stances without a contact from which there is a warning: their number, and their share.
 constexpr int kFewMissed = 2;
 constexpr double kPartMissed = 0.2;
 
@@ -39,7 +134,7 @@ void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing
       std::vector<Vec3> after;
       after.reserve(static_cast<std::size_t>(planted.clip.frame_count()));
       for (int f = 0; f < planted.clip.frame_count(); ++f) {
-        after.push_back(plant::joint_at(planted.clip, f, point.joint) * point.offset);
+        after.push_back(joint_at(planted.clip, f, point.joint) * point.offset);
       }
       for (FixedStay stay : footings[i].stays) {
         if (stay.point.part != point.part) continue;
@@ -89,7 +184,7 @@ Diagnostics missed_stances(const Clip& clip, const RoleMap& roles, const FoundCo
       "--contacts")};
 }
 
-// Everything but the search for contacts, given once.
+// Plants feet by given contacts.
 class Planter {
  public:
   Planter(const Clip& clip, const RoleMap& roles, const plant::PlantedBody& body,
@@ -131,7 +226,7 @@ class Planter {
     return planted;
   }
 
-  // What heels and balls move by in stays found on planted feet, metres.
+  // Drift of heels and balls in stays found on planted feet, metres.
   double drift_in(const Clip& planted, const FoundContacts& found) const {
     double drift = 0;
     for (const plant::Footing& footing : stays_in(planted, found, {}, {})) {

@@ -49,11 +49,9 @@ struct PlantedFeet {
 //   knees do not take over what feet shake by. While the tip alone stands, the foot nearly turns
 //   about the tip. Toes keep lying flat.
 // - Between stays the correction is the curve of least curvature under a little tension, drawn to
-// zero
-//   where stays are far apart.
+//   zero where stays are far apart.
 // - Jitter that feet and pelvis share is taken out of the whole body: a leg between a fixed foot
-// and a
-//   pelvis that jitters would shake.
+//   and a pelvis that jitters would shake.
 // - A leg that is nearly straight is not stretched further than captured: the heel comes up further
 //   while ball or tip stand (15 degrees at most), and then the pelvis is lowered, smoothly.
 // - Legs are solved by solve_two_bone(). Bend that is added is about the knee's usual axis.

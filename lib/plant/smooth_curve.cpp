@@ -66,22 +66,6 @@ double fade_out(double u) {
   return 1 - u * u * u * (10 - 15 * u + 6 * u * u);
 }
 
-std::vector<double> running_minimum(std::span<const double> values, int reach) {
-  std::vector<double> result(values.size());
-  std::deque<std::size_t> rising;  // of the window, those with nothing lower behind them
-  const std::size_t n = values.size(), r = static_cast<std::size_t>(reach);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (; next < std::min(n, i + r + 1); ++next) {
-      while (!rising.empty() && values[rising.back()] >= values[next]) rising.pop_back();
-      rising.push_back(next);
-    }
-    while (rising.front() + r < i) rising.pop_front();
-    result[i] = values[rising.front()];
-  }
-  return result;
-}
-
 // The mean over `reach` frames on either side; ends stand for what is beyond.
 std::vector<double> running_mean(std::span<const double> values, int reach) {
   const int n = static_cast<int>(values.size());
@@ -190,10 +174,10 @@ std::vector<Vec3> curve_through(const KnownCurve& curve, const CurveOptions& opt
   return result;
 }
 
-std::vector<double> smooth_below(std::span<const double> bounds, int reach) {
+std::vector<double> smooth_above(std::span<const double> needs, int reach) {
   // Three means of a third of the width each make a smooth one of no more than the width.
   const int part = std::max(1, reach / 3);
-  std::vector<double> curve = running_minimum(bounds, 3 * part);
+  std::vector<double> curve = max_within(needs, 3 * part);
   for (int i = 0; i < 3; ++i) curve = running_mean(curve, part);
   return curve;
 }

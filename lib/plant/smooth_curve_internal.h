@@ -6,7 +6,7 @@
 
 #include "math/types.h"
 
-// Curves of least curvature through what is known of them. Used by plant_feet().
+// Curves of least curvature through known values. Used by plant_feet().
 
 namespace krok::plant {
 
@@ -16,7 +16,7 @@ enum class Known : std::uint8_t {
   exactly
 };
 
-// A curve over the frames that is known in some.
+// A curve over the frames with known values in some of them.
 struct KnownCurve {
   std::vector<Vec3> values;  // [frames]
   std::vector<Known> known;  // [frames]
@@ -30,13 +30,12 @@ struct KnownCurve {
   bool is_exact(std::size_t frame) const { return known[frame] == Known::exactly; }
 };
 
-// The deviation of the jitter of values known exactly from frame to frame, taken for white noise,
-// over all axes: the root mean square of one axis.
+// Standard deviation of the jitter of exactly known values from frame to frame, taken for white
+// noise: the root mean square over the axes.
 double jitter_of(const KnownCurve& curve);
 double height_jitter_of(const KnownCurve& curve);  // of y alone
 
-// Hertz: the cutoff at which jitter of `deviation` is left with a speed of `speed` at most, within
-// 4 and 20 Hz.
+// The cutoff, 4 to 20 Hz, that leaves jitter of this standard deviation a speed of `speed` at most.
 double cutoff_against(double deviation, double speed, double rate);
 
 struct CurveOptions {
@@ -53,12 +52,12 @@ struct CurveOptions {
 // Whittaker 1923, Eilers 2003; with tension, Schweikert 1966).
 std::vector<Vec3> smooth_curve(const KnownCurve& curve, const CurveOptions& options);
 
-// The values that are known exactly; elsewhere the smooth curve, and next to them what these differ
-// from it by, faded out within `join` seconds.
+// The values that are known exactly; elsewhere the smooth curve, plus the difference of such values
+// next to it, faded out within `join` seconds.
 std::vector<Vec3> curve_through(const KnownCurve& curve, const CurveOptions& options);
 
-// A curve below or at `bounds` (<= 0) in each frame, two derivatives continuous: their minimum
+// A curve at or above `needs` (>= 0) in each frame, two derivatives continuous: their maximum
 // within `reach` frames on either side, averaged over as many.
-std::vector<double> smooth_below(std::span<const double> bounds, int reach);
+std::vector<double> smooth_above(std::span<const double> needs, int reach);
 
 }  // namespace krok::plant

@@ -22,15 +22,6 @@ constexpr double kOverEdge = 0.03;   // metres: what is so much lower does not c
 constexpr int kTries = 10;           // places before and behind the middle
 constexpr double kShortSole = 0.02;  // metres: shorter soles have no direction
 
-Vec3 point_at(const Clip& clip, int frame, int foot, const Vec3& point) {
-  return joint_at(clip, frame, foot) * point;
-}
-
-const SolePoint* part_of(const std::vector<SolePoint>& points, FootPart part) {
-  const auto found = std::ranges::find(points, part, &SolePoint::part);
-  return found == points.end() ? nullptr : &*found;
-}
-
 // The mean over `frames` of a point of the sole in the frame of the foot.
 Vec3 in_foot(const Clip& clip, const std::vector<int>& frames, int foot, const SolePoint& point) {
   if (point.joint == foot) return point.offset;
@@ -67,7 +58,7 @@ void SoleFollower::find_standings(std::span<const Contact> contacts, const SoleP
     Standing standing;
     standing.first = first;
     standing.last = last;
-    // A foot without a joint at the ball stands on both as long as it does.
+    // Without a joint at the ball, heel and ball stand as long as the foot does.
     if (of_heel) standing.heel = {first, last};
     if (of_ball) standing.ball = {first, last};
     standings_.push_back(standing);
@@ -108,8 +99,8 @@ std::vector<int> flat_frames(const std::vector<Standing>& standings) {
 
 SoleShape shape_of(const Clip& clip, const std::vector<SolePoint>& points, const Clip& source,
                    int source_foot, const std::vector<int>& flat, const GroundBelow& ground) {
-  const SolePoint& heel = *part_of(points, FootPart::heel);
-  const SolePoint& ball = *part_of(points, FootPart::ball);
+  const SolePoint& heel = *point_of(points, FootPart::heel);
+  const SolePoint& ball = *point_of(points, FootPart::ball);
   SoleShape shape;
   const int foot = shape.foot = heel.joint;
   shape.heel = heel.offset;
@@ -122,7 +113,7 @@ SoleShape shape_of(const Clip& clip, const std::vector<SolePoint>& points, const
   shape.up = up.normalized();
   const Vec3 ahead = shape.ball - shape.heel;
   shape.forward = (ahead - shape.up * shape.up.dot(ahead)).normalized();
-  const SolePoint* tip = part_of(points, FootPart::tip);
+  const SolePoint* tip = point_of(points, FootPart::tip);
   shape.tip = tip == nullptr ? kUsualTip * shape.length()
                              : (in_foot(clip, flat, foot, *tip) - shape.heel).dot(shape.forward);
   return shape;
@@ -150,8 +141,8 @@ Result<SoleFollower> SoleFollower::create(const Clip& source, const RoleMap& sou
   follower.source_ = &source;
   const Feet feet = find_feet(source, source_roles, ground.up);
   const auto& points = feet.points[static_cast<std::size_t>(side)];
-  const SolePoint* heel = part_of(points, FootPart::heel);
-  const SolePoint* ball = part_of(points, FootPart::ball);
+  const SolePoint* heel = point_of(points, FootPart::heel);
+  const SolePoint* ball = point_of(points, FootPart::ball);
   if (heel == nullptr || ball == nullptr) return no_sole("the motion", side);
   follower.find_standings(contacts, *heel, ball);
   if (follower.standings_.empty()) {
@@ -180,8 +171,7 @@ Status SoleFollower::lead_foot(const Clip& clip, const Leg& leg, const GroundBel
   return {};
 }
 
-// How the own sole lies in a place of the source's: the middles together, heel and ball on the
-// ground.
+// Places the sole for a stance of the source: middles together, heel and ball on the ground.
 void SoleFollower::place(Standing& standing, const GroundBelow& ground) const {
   const Transform foot = joint_at(*source_, middle_of(standing), theirs_.foot);
   const Vec3 forward = foot.orientation * theirs_.forward;
@@ -189,7 +179,7 @@ void SoleFollower::place(Standing& standing, const GroundBelow& ground) const {
   standing.up = foot.orientation * theirs_.up;
   const double longer = own_.length() - theirs_.length();
   const Vec3 sole_at_ball = ball - theirs_.ball_height() * standing.up;
-  // Back or ahead, where the longer foot would stand against a step or over an edge.
+  // Moved back or ahead where a longer foot would stand against a step or over an edge.
   double best = 0, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k <= 2 * kTries; ++k) {
     const int tried = (k + 1) / 2;
@@ -305,11 +295,11 @@ void SoleFollower::measure(const Clip& clip, const GroundBelow& ground, Followed
   const auto check = [&](const std::array<int, 2>& time, const Vec3& moves, const Vec3& lies) {
     Eigen::AlignedBox3d box;
     for (int f = time[0]; f <= time[1]; ++f) {
-      box.extend(point_at(clip, f, own_.foot, moves));
+      box.extend(joint_at(clip, f, own_.foot) * moves);
       const bool flat = std::ranges::any_of(standings_, [&](const Standing& standing) {
         return holds(standing.heel, f) && holds(standing.ball, f);
       });
-      const Vec3 sole = point_at(clip, f, own_.foot, lies);
+      const Vec3 sole = joint_at(clip, f, own_.foot) * lies;
       const auto height = ground.height(sole);
       // An end over an edge or a hole is carried by the other.
       if (flat && height && *height > sole.y() - kOverEdge) {
@@ -324,7 +314,7 @@ void SoleFollower::measure(const Clip& clip, const GroundBelow& ground, Followed
   }
   for (int f = 0; f < clip.frame_count(); ++f) {
     for (const Vec3& point : {own_.heel, own_.ball}) {
-      const Vec3 at = point_at(clip, f, own_.foot, point);
+      const Vec3 at = joint_at(clip, f, own_.foot) * point;
       const auto height = ground.height(at);
       if (height) into.sunk = std::max(into.sunk, *height - at.y());
     }

@@ -8,7 +8,7 @@
 #include "plant/foot_paths_internal.h"
 #include "plant/legs_internal.h"
 
-// One foot that follows another's. Used by follow_feet().
+// A foot that follows the foot of another actor. Used by follow_feet().
 
 namespace krok::plant {
 
@@ -25,7 +25,7 @@ struct SoleShape {
   Quat axes() const;  // sole_to_foot: x to the left, y up, z ahead
 };
 
-// A time in which a foot stands, in frames, both included.
+// A stance, in frames, both included.
 struct Standing {
   int first = 0, last = 0;
   std::array<int, 2> heel = {0, -1}, ball = {0, -1};  // empty where last < first
@@ -44,21 +44,21 @@ class SoleFollower {
   static Result<SoleFollower> create(const Clip& source, const RoleMap& source_roles, FootSide side,
                                      const GroundBelow& ground, std::span<const Contact> contacts);
 
-  // The foot that follows, in a clip that has been moved over the source. Code contacts-feet.
+  // Sets the foot that follows, in a clip that has been moved over the source. Code contacts-feet.
   Status lead_foot(const Clip& clip, const Leg& leg, const GroundBelow& ground);
 
-  // What brings that foot to its places.
+  // The correction that brings that foot to its places.
   FootPath path(const Clip& clip) const;
 
-  // Of the ground where the foot stands; in between on the way from one to the next.
+  // Height of the ground in a stance, interpolated between stances.
   double standing_height(int frame) const;
 
   void add_contacts(const Clip& clip, std::vector<Contact>& contacts) const;
   void measure(const Clip& clip, const GroundBelow& ground, FollowedFeet& into) const;
 
  private:
-  // From 0, the heel, to 1, the ball: the point of the sole that leads, and how far it is to be
-  // from the source's.
+  // The point of the sole that is placed, from 0 (heel) to 1 (ball), and its offset from the
+  // source's.
   struct Lead {
     double along = 0;
     Vec3 off = Vec3::Zero();
@@ -70,7 +70,7 @@ class SoleFollower {
   void find_standings(std::span<const Contact> contacts, const SolePoint& heel,
                       const SolePoint* ball);
   void place(Standing& standing, const GroundBelow& ground) const;
-  // How badly the own sole lies with its heel there: 0 is well.
+  // How badly the sole lies with its heel there; 0 is good.
   double trouble_at(const Vec3& heel, const Vec3& forward, const GroundBelow& ground) const;
 
   const Clip* source_ = nullptr;

@@ -2,9 +2,9 @@
 #include <array>
 #include <cmath>
 
-#include "math/median.h"
+#include "math/window.h"
+#include "plant/foot_paths_internal.h"
 #include "plant/smooth_curve_internal.h"
-#include "plant/stays_internal.h"
 
 namespace krok::plant {
 
@@ -17,13 +17,6 @@ constexpr double kJitter = 0.002;      // metres, less does not matter to a plac
 constexpr double kUneven = 1.5;        // deviations
 constexpr int kDistanceRounds = 200;
 constexpr double kExact = 1e-8;  // metres
-
-double median(std::vector<double> values) {
-  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), half, values.end());
-  if (values.size() % 2 == 1) return *half;
-  return 0.5 * (*half + *std::max_element(values.begin(), half));
-}
 
 Vec3 median_place(const std::vector<Vec3>& track, int first, int last) {
   return krok::median_place(std::span(track).subspan(static_cast<std::size_t>(first),
@@ -42,12 +35,12 @@ double trimmed_height(const std::vector<Vec3>& track, int first, int last) {
   return sum / static_cast<double>(heights.size() - 2 * cut);
 }
 
-// Variances of n Gaussian values' median, of that mean and of the difference of both, of theirs /
-// n.
+// Variances of the median of n Gaussian values, of that mean and of their difference, in units of
+// the values' variance / n.
 constexpr double kOfMedian = 0.5 * kPi, kOfTrimmed = 1.06, kOfDifference = 0.45;
 
-// Places of heels and balls that stand together, brought to the distance that they have in the
-// foot; heights stay, where they allow it.
+// Moves the places of a heel and a ball that stand together to their distance in the foot; heights
+// stay as far as that allows.
 struct Pair {
   int heel = 0, ball = 0;  // indices into the stays
   double distance = 0;     // metres
@@ -106,9 +99,9 @@ struct Plane {
   }
 };
 
-// Each height between itself and the plane, weighted by the variance of its error and of what the
-// ground really is off the plane by (shrinkage, James and Stein 1961). The latter is nothing unless
-// it is significant: beyond two deviations of what error alone gives.
+// Moves each height towards the plane, weighted by the variances of its error and of the ground's
+// real deviation from the plane (shrinkage, James and Stein 1961). The latter is 0 unless it is
+// significant: beyond two deviations of what error alone gives.
 std::vector<double> drawn_together(const std::vector<PlacedHeight>& heights) {
   double spread = 0;
   std::vector<double> drawn;
@@ -144,7 +137,7 @@ class StayFixer {
     }
   }
 
-  // `found`: not given by anyone who may have looked.
+  // `found`: detected, not given by a person who may have checked it.
   void add(std::size_t point, double start, double end, bool found) {
     const int last_frame = clip_.frame_count() - 1;
     const std::vector<Vec3>& track = footing.tracks[point];
@@ -154,7 +147,7 @@ class StayFixer {
     stay.last = std::min(last_frame, static_cast<int>(std::floor(end * clip_.rate + 1e-3)));
     if (stay.first > stay.last) return;
     stay.place = median_place(track, stay.first, stay.last);
-    // Beside the clip's ends, too few frames tell when a point that was found to stand leaves.
+    // Near the ends of the clip there are too few frames to detect when a standing point leaves.
     const int beside = static_cast<int>(kBesideEnds * clip_.rate);
     const bool inexact = found && (stay.first <= beside || stay.last >= last_frame - beside);
     const double rise =
@@ -259,8 +252,8 @@ void keep_distances(const Leg& leg, Footing& footing) {
   }
 }
 
-// The heights of one part's stays, of both feet, drawn to the plane that fits them best as far as
-// jitter alone explains what they are off it by.
+// Draws the heights of one part's stays, of both feet, to the plane that fits them best, as far as
+// jitter alone explains their distance from it.
 void draw_heights_together(FootPart part, std::vector<Footing>& footings) {
   std::vector<FixedStay*> own;
   std::vector<double> errors, trimmed;  // variances of one frame's height / n; metres

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "pose/between_internal.h"
+#include "pose/pose_kernels_internal.h"
 
 namespace krok {
 

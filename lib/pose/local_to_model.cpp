@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "pose/model_kernel_internal.h"
+#include "pose/pose_kernels_internal.h"
 
 namespace krok {
 

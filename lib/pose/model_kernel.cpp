@@ -1,4 +1,4 @@
-#include "pose/model_kernel_internal.h"
+#include "pose/pose_kernels_internal.h"
 
 // As in pose_kernels.cpp: targets without FMA use the scalar reference.
 #include <hwy/detect_targets.h>

@@ -5,7 +5,7 @@
 
 #include "core/rows.h"
 #include "math/quaternion.h"
-#include "pose/between_internal.h"
+#include "pose/pose_kernels_internal.h"
 #include "scene/frame_moment.h"
 
 namespace krok {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "pose/local_to_model.h"
 #include "pose/packed_pose.h"
 
 // Shared by the scalar references and the SIMD kernels: plain pointers and numbers. No inline
@@ -44,5 +45,26 @@ struct Kernels {
 // The scalar reference, and the best kernels for this machine.
 Kernels scalar_kernels();
 Kernels best_kernels();
+
+// Shared by the scalar reference and the SIMD kernel of local_to_model(); see
+// pose_kernels_internal.h.
+
+struct ModelJob {
+  const int* parents;
+  std::size_t joints;
+  const PoseBlock* poses;
+  std::size_t count;  // number of poses
+  PoseBlock* scratch;
+  // Outputs, [count x joints]: either the first two or the last.
+  float* positions;     // x, y, z
+  float* orientations;  // x, y, z, w
+  JointMatrix* matrices;
+};
+
+void local_to_model_scalar(const ModelJob& job);
+void local_to_model_simd(const ModelJob& job);
+
+// The two frames around a time, clamped to the clip, and the interpolation factor between them.
+Between between_frames(const PackedClip& clip, double time, float weight);
 
 }  // namespace krok::pose_detail

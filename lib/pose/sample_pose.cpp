@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "pose/between_internal.h"
+#include "pose/pose_kernels_internal.h"
 
 namespace krok {
 

@@ -1,14 +1,41 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
 #include "core/index.h"
 #include "core/result.h"
+#include "ik/limits.h"
 #include "ragdoll/joint.h"
 #include "ragdoll/world.h"
 
 namespace krok::ragdoll {
+
+// Calls side(number, axis, beyond) for each side of a cone that limits: the axis in the child's
+// frame, unit, about which turning leads out of the range, and how far it is out, in radians (to
+// the first order; below 0 within).
+template <typename Side>
+void each_cone_side(const ik::JointLimit& limit, const Quat& turn, const Side& side) {
+  const ik::LimitAngles angles = ik::measure(limit, turn);
+  const ik::LimitGradients slopes = ik::gradients(limit, turn);
+  const double twist = slopes.twist.norm();
+  if (limit.max_twist - limit.min_twist < 2 * kPi && twist > 1e-6) {
+    const Vec3 axis = slopes.twist / twist;
+    side(0, axis, (angles.twist - limit.max_twist) / twist);
+    side(1, Vec3(-axis), (limit.min_twist - angles.twist) / twist);
+  }
+  double ratio = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double swing = angles.swing[k];
+    const double half = swing < 0 ? -limit.min_swing[k] : limit.max_swing[k];
+    ratio = std::hypot(ratio, swing / std::max(half, 1e-6));
+  }
+  const double swing = slopes.swing.norm();
+  // The slopes are those of the square of the ratio.
+  if (swing > 1e-6) side(2, Vec3(slopes.swing / swing), 2 * ratio * (ratio - 1) / swing);
+}
 
 // Spatial vectors (Featherstone, "Rigid Body Dynamics Algorithms", 2008) about the world's origin:
 // twists are (spin, velocity of the point at the origin), wrenches (torque about it, force). In one
@@ -25,19 +52,19 @@ inline Vec6 spatial(const Vec3& upper, const Vec3& lower) {
 }
 
 // Bodies that joints tie to trees, in reduced coordinates: a joint has only the movements that it
-// allows, so that it can not come apart. A step finds the new speeds by Gauss's principle of least
+// allows, so that it cannot come apart. A step finds the new speeds by Gauss's principle of least
 // constraint: of all that the joints allow, those nearest to what the bodies would do free, by
 // their inertias. The recursion is that of the articulated-body algorithm, with momenta in place of
-// forces; it needs no terms of Coriolis, as bodies carry their momenta from pose to pose, and takes
-// dampers and motors into the joints' inertias, which makes them stable for any gain.
+// forces; it needs no terms of Coriolis, as bodies carry their momenta from pose to pose, and
+// includes dampers and motors in the joints' inertias, which makes them stable for any gain.
 //
 // Bullet 3.24 has trees in reduced coordinates, too (btMultiBody). On the same falls, beside this
-// in the benchmark, it is slower, sinks centimetres into the ground, since it takes penetrations
-// back through speeds, and trembles at rest; its spherical limits are symmetrical. Its joints
-// between free bodies came apart by a millimetre at 3840 steps a second.
+// in the benchmark, it is slower, sinks centimetres into the ground, because it corrects
+// penetrations through velocities, and jitters at rest; its spherical limits are symmetrical. Its
+// joints between free bodies came apart by a millimetre at 3840 steps a second.
 class Articulation {
  public:
-  // `joints` without rings, each body a child of at most one that is no distance.
+  // `joints` must form trees: each body is the child of at most one joint that is not a distance.
   Status build(std::span<const Body> bodies, std::span<const BodyState> states,
                std::span<const Joint> joints);
 
@@ -49,11 +76,11 @@ class Articulation {
   const Joint& joint(int joint) const { return joints_[at(joint)]; }
   double mass(int body) const { return masses_[at(body)]; }
 
-  // Moves by others' command; its speeds are what state() has. It is the root of its tree, or what
-  // it hangs from is kinematic, too.
+  // Moves as prescribed from outside, with the speeds of state(). It is the root of its tree, or
+  // its parent is kinematic, too.
   void set_kinematic(int body, bool kinematic);
   bool is_kinematic(int body) const { return links_[at(link_of_[at(body)])].kinematic; }
-  // Whether no impulse moves one against the other; -1: the surroundings.
+  // Whether no impulse can move one relative to the other; -1: the surroundings.
   bool is_fixed(int a, int b) const {
     return (a < 0 || is_kinematic(a)) && (b < 0 || is_kinematic(b));
   }
@@ -76,7 +103,8 @@ class Articulation {
   double hinge_angle(int joint) const;  // of a revolute joint, nearest to the middle of its range
   double slide(int joint, int axis) const;
 
-  // Of the bodies' poses: metres between anchors that should coincide, radians beyond hard limits.
+  // Errors of the bodies' poses: metres between anchors that should coincide, radians beyond hard
+  // limits.
   double gap(int joint) const;
   double excess(int joint) const;
 
@@ -84,7 +112,7 @@ class Articulation {
   void accelerate(double step, const Vec3& gravity);
   const std::vector<Vec6>& twists() const { return twists_; }  // of bodies
 
-  // After accelerate(): what twists the impulse 1 (each of 6) on one body gives another.
+  // After accelerate(): the twists that each of 6 unit impulses on one body gives another.
   void find_responses();
   const Mat6& response(int of, int to) const {
     return responses_[at(link_of_[at(of)]) * links_.size() + at(link_of_[at(to)])];

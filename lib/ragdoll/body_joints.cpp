@@ -87,7 +87,7 @@ void JointMaker::spherical(Joint& joint, const Body& body, const Body& above, do
                pose_[at(above.joint)].orientation.conjugate() * pose_[at(body.joint)].orientation);
 }
 
-// In the joint's frame. Where the limb is bent enough to tell, the axis it is bent about; else the
+// In the joint's frame: the axis about which the limb is bent if it is bent enough, otherwise the
 // anatomical one.
 Vec3 JointMaker::bend_axis(int joint) const {
   const Vec3 anatomical = limits_[at(joint)].swing_axis;

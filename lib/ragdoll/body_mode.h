@@ -4,7 +4,7 @@
 
 namespace krok::ragdoll {
 
-// How a body moves while the motion plays on.
+// How a body moves during the simulation.
 enum class BodyMode : unsigned char {
   simulated,  // by gravity, by contacts and with what it hangs from
   animated,   // as the motion has it, whatever it touches, and so does the body above it

@@ -23,10 +23,10 @@ double depth_in_ground(const Body& body, std::span<const Transform> pose,
 double depth_in_ground(const std::vector<Body>& bodies, std::span<const Transform> pose,
                        const GroundHeight& ground);
 
-// Lifts what is in the ground out of it, from the frame `begin` on: the root upwards, other bodies
-// by turns about their joints, each smoothed over time (a Gaussian of `smoothing` seconds), so that
-// nothing jerks. What is there in the first frames of `begin` fades in. A motion with
-// nothing deeper than 8 mm stays as it is. `rate` is frames per second.
+// Lifts bodies out of the ground from frame `begin` on: moves the root up and turns other bodies
+// about their joints, smoothed over time (a Gaussian of `smoothing` seconds) against jerks. The
+// correction fades in over the first frames from `begin`. A motion with nothing deeper than 8 mm
+// stays as it is. `rate` is frames per second.
 void clear_ground(const Skeleton& skeleton, const std::vector<Body>& bodies,
                   const GroundHeight& ground, int begin, double rate, double smoothing,
                   LocalMotion& motion);

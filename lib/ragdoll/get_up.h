@@ -9,7 +9,7 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 
-// From lying still into a motion of getting up.
+// Getting up: from lying still into a captured motion.
 
 namespace krok::ragdoll {
 
@@ -41,16 +41,17 @@ struct RisenClip {
   double depth = 0;  // metres: the deepest that a body is in the ground from `first_frame` on
 };
 
-// What of `motions` is nearest to the pose of `fall` at a frame. The motions have the skeleton's
-// joints. Codes: motion-skeleton, ragdoll-rise for a motion without frames or no motion.
+// Finds the motion of `motions` that is nearest to the pose of `fall` at a frame. The motions have
+// the skeleton's joints. Codes: motion-skeleton, ragdoll-rise for a motion without frames or no
+// motion.
 Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
                                             std::span<const Clip> motions, const RoleMap& roles,
                                             const std::vector<Body>& bodies, bool mirror);
 
 // Lets a character that lies still at `frame` of `fall` get up with the nearest of `motions`, which
-// begin lying and stand on y = 0. The motion is placed where its first pose is nearest; what then
-// differs is taken away joint by joint along a quintic in time (the smoothest way from rest to
-// rest, Flash and Hogan 1985), while the motion begins slowly, so that neither speeds nor
+// begin lying and stand on y = 0. The motion is placed where its first pose is nearest; the
+// remaining difference is removed joint by joint along a quintic in time (the smoothest way from
+// rest to rest, Flash and Hogan 1985), while the motion begins slowly, so that neither speeds nor
 // accelerations jump. How long that takes follows from how far it is and how fast the motion moves.
 // Bodies that come into the ground are lifted out of it (clear_ground()).
 //

@@ -125,7 +125,7 @@ bool EdgeFinder::is_edge(const Ends& ends, const std::vector<Side>& sides, Groun
   return true;
 }
 
-// Takes the pieces in line with an edge from one of its ends on.
+// Joins the collinear pieces that continue an edge at one of its ends.
 void EdgeFinder::extend(int piece, int end, GroundEdge& edge) {
   const int number = pieces_[at(piece)].number;
   const double sign = end == 0 ? -1 : 1;

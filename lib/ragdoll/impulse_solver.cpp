@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ragdoll/cone_internal.h"
+#include "ragdoll/articulation_internal.h"
 
 namespace krok::ragdoll {
 

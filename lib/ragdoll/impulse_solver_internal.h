@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -20,11 +21,11 @@ struct Contact {
 // Impulses at contacts and hard limits by the projected Gauss-Seidel method: each row asks for a
 // least relative speed. A row knows how the whole trees answer, not only its bodies.
 //
-// Contacts and limits count before they are reached, and let their gap close but not further. What
-// is already beyond comes back apart from the speeds: there are two sets of twists, those that move
-// the bodies on, and those that they keep.
-// Sweeps are in single precision, with twists and wrenches of eight numbers (two are 0), which fill
-// whole registers; from their impulses the twists are then found in double.
+// Contacts and limits act before they are reached: their gap may close, but not go below 0.
+// Existing penetration is corrected apart from the speeds: there are two sets of twists, those that
+// move the bodies on, and those that they keep. Sweeps are in single precision, with twists and
+// wrenches of eight numbers (two are 0), which fill whole registers; from their impulses the twists
+// are then found in double.
 using Vec8f = Eigen::Matrix<float, 8, 1>;
 using Mat8f = Eigen::Matrix<float, 8, 8>;
 
@@ -37,9 +38,9 @@ class ImpulseSolver {
   bool has_rows() const { return !rows_.empty(); }
   void solve(int iterations);
 
-  // Whether the bodies, moved on by moving(), miss what a row asked for by much, as rows are
-  // straight and turning is not. If so, those rows ask for what is missing where the bodies are
-  // now, to be solved again from where they were.
+  // Whether the bodies, moved on by moving(), miss what a row asked for by much, because rows are
+  // linear and rotation is not. If so, those rows are corrected by what is missing in the new
+  // poses, to be solved again from the old ones.
   bool missed();
   void solve_again(int iterations);
 
@@ -110,6 +111,27 @@ class ImpulseSolver {
   std::vector<Swept> swept_;
   std::vector<Vec8f> twists_, twists_before_, turns_;  // shape [touched]
   std::vector<float> directions_, before_;             // of impulses, shape [rows]
+};
+
+// Finds where bodies touch: by Bullet, but for an endless plane and faces of a mesh, whose
+// distances from a shape's corners or ends are exact and quick.
+class Collision {
+ public:
+  explicit Collision(const Surroundings& surroundings);
+  ~Collision();
+  Collision(const Collision&) = delete;
+  Collision& operator=(const Collision&) = delete;
+
+  void add(std::span<const Body> bodies, std::span<const BodyState> states,
+           std::span<const Joint> joints);
+
+  // Contacts of bodies in these states, and those that may touch within `step` seconds. Their
+  // memory of impulses is kept from call to call.
+  std::span<const Contact> find(std::span<const BodyState> states, double step);
+
+ private:
+  struct Inside;
+  std::unique_ptr<Inside> inside_;
 };
 
 }  // namespace krok::ragdoll

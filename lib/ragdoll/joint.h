@@ -7,7 +7,7 @@
 #include "ik/limits.h"
 #include "math/transform.h"
 
-// What ties two bodies, or a body to the world.
+// A joint between two bodies, or between a body and the world.
 
 namespace krok::ragdoll {
 

@@ -10,9 +10,39 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 
-// Leads a world's animated and powered bodies along a motion.
+// Motors that follow a motion, in strength like an adult's muscles.
 
 namespace krok::ragdoll {
+
+// A powered body of strength 1 follows with this frequency, radians/s: what is off by an angle
+// comes back, critically damped, to a tenth of it within 4 / kMotorFrequency seconds. With strength
+// s the frequency is s times that.
+inline constexpr double kMotorFrequency = 60;
+
+// The largest torque, N m for each kilogram of the whole body, of an adult at the joint of a role;
+// 0 for roles without one. Legs: the peak isometric torques of Anderson, Madigan and Nussbaum
+// ("Maximum voluntary joint torque as a function of joint angle and angular velocity", Journal of
+// Biomechanics 40, 2007), the stronger direction; arms: those of Holzbaur, Delp, Gold and Murray
+// ("Moment-generating capacity of upper limb muscles in healthy adults", Journal of Biomechanics
+// 40, 2007); both rounded, for 75 kg and 1.75 m. Trunk and neck are set to the hip's and to a third
+// of the shoulder's, as they carry about as much.
+double adult_torque(Role role);
+
+// Gives the joints of powered bodies their motors (Joint::motor ...), critically damped against the
+// inertia below the joint in `states`; that of a foot against shank and foot, as the shank swings
+// over it while it stands. A joint at a role without a torque gets three times what
+// carries its bodies held straight out. Joints of other bodies stay as they are.
+void add_motors(const std::vector<Body>& bodies, const RoleMap& roles,
+                std::span<const BodyState> states, std::vector<Joint>& joints);
+
+// The spring that holds a powered root body: critically damped against the whole body's mass and
+// inertia, with a frequency of 6 s / (1 - s) radians/s for strength s, which goes from free to as
+// animated (and stays at 0.99), and of twice that for turning, so that feet that drag do not tip
+// the body over. It gives at most 3 s / (1 - s) times the body's weight (of a torque: half a metre
+// of that). Without target and support.
+Hold make_hold(const std::vector<Body>& bodies, std::span<const BodyState> states);
+
+// Leads a world's animated and powered bodies along a motion.
 
 class MotionFollower {
  public:

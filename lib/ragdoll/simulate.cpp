@@ -88,8 +88,7 @@ std::vector<BodyState> FallMaker::start_states() const {
   return states;
 }
 
-// Speeds that nobody has are those between two frames that do not belong together, such as a
-// T-pose before a motion.
+// Impossible speeds are those between unrelated frames, such as a T-pose before a motion.
 void FallMaker::leave_out_jumps(std::vector<BodyState>& states) {
   double energy = 0, mass = 0;
   for (std::size_t b = 0; b < states.size(); ++b) {
@@ -180,7 +179,7 @@ Pose FallMaker::pose() const {
   return pose;
 }
 
-// What is animated is the motion's, bit for bit.
+// Animated bodies keep the motion, bit for bit.
 void FallMaker::copy_animated() {
   if (!fall_.follows) return;
   const int frame = std::min(next_frame_, motion_.frame_count() - 1);

@@ -6,15 +6,14 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "ragdoll/articulation_internal.h"
-#include "ragdoll/collision_internal.h"
 #include "ragdoll/impulse_solver_internal.h"
 
 namespace krok::ragdoll {
 
 namespace {
-// How often a step is aimed again, and then divided.
+// How often a step is corrected, and then divided.
 constexpr int kAgain = 1, kDivided = 6;
-// What spins farther in one part of a step would gain energy.
+// Rotation in one part of a step from which a spinning body would gain energy.
 constexpr double kPartTurn = 0.2;  // radians
 constexpr double kMaxParts = 32;   // of a step
 }  // namespace
@@ -46,7 +45,7 @@ void World::Inside::look() {
   }
 }
 
-// Steps in which something turns so fast that its limits miss are divided.
+// Divides steps in which something turns so fast that its limits are missed.
 void World::Inside::advance(double step, int divided) {
   bodies.accelerate(step, options.gravity);
   solver.begin(bodies, step);

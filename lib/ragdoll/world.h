@@ -70,16 +70,16 @@ class World {
   Status add(std::span<const Body> bodies, std::span<const BodyState> states,
              std::span<const Joint> joints);
 
-  // Moves on by kStep, in `substeps` equal parts, or more where something spins fast.
+  // Advances by kStep, in `substeps` equal parts, or more where something spins fast.
   void step();
 
   // An impulse (N s, world) at a body's centre of mass.
   void push(int body, const Vec3& impulse);
 
-  // Changes where a joint's motor turns to.
+  // Sets the target of a joint's motor.
   void set_motor(int joint, const Quat& target, const Vec3& target_speed);
 
-  // Where an animated body is after the next step. Without, it moves on as it does.
+  // The pose of an animated body after the next step; without a call it keeps its speed.
   void lead(int body, const Transform& to_world);
 
   // Where a joint that does not slide has its anchor in the parent's frame after the next step.

@@ -71,7 +71,7 @@ Result<std::unique_ptr<WeightSystem>> WeightSystem::start(WeightFunction functio
   for (std::size_t k = 0; k < n; ++k) system->wanted[k * n + k] = 1;
   if (base.empty()) {
     const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> planes =
-        solve_least_squares_pivoting(a, Eigen::MatrixXd::Identity(a.rows(), a.rows()));
+        solve_least_squares(a, Eigen::MatrixXd::Identity(a.rows(), a.rows()));
     system->plane.assign(planes.data(), planes.data() + planes.size());
     bring_sums(system->plane, n, 1, 0);
   }

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/result.h"
-#include "rbf/bordered_factors_internal.h"
 #include "rbf/centre_matrix_internal.h"
 #include "rbf/weight_function.h"
 

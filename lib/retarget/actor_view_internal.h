@@ -1,22 +1,50 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/index.h"
 #include "math/types.h"
+#include "retarget/joint_mapping.h"
 #include "retarget/pose_alignment.h"
+#include "roles/limbs.h"
 #include "roles/roles.h"
+#include "scene/clip.h"
 #include "scene/skeleton.h"
+
+// Skeleton measurements shared by the parts of retargeting.
 
 namespace krok::retarget {
 
-struct ArmRoles {
-  Role collar, upper, lower, hand, fingers;
-};
-struct LegRoles {
-  Role upper, lower, foot;
-};
+inline const Vec3 kUp = Vec3::UnitY();
+
+// The horizontal part.
+inline Vec3 flat(const Vec3& v) {
+  return {v.x(), 0, v.z()};
+}
+
+// 0 up to `from`, 1 beyond `to`, 3t^2 - 2t^3 between them.
+inline double smooth_step(double from, double to, double x) {
+  const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
+// Metres between two joints in the reference pose; 0 if either is -1.
+double length_of(const Skeleton& skeleton, int from, int to);
+
+// Mean length of thigh and shank of both legs, metres; bones without a role count as 0.
+double leg_length(const Skeleton& skeleton, const RoleMap& roles);
+
+// Total length of the bones that both skeletons have, target over source, for a mapping by names; 1
+// if they share none.
+double bone_ratio(const Skeleton& source, const Skeleton& target, const JointMapping& mapping);
+
+// Whether no finger of a hand ever rotates relative to the palm by more than half a degree from
+// `rest`, shape [joints]. False for a hand without fingers.
+bool fingers_never_move(const Clip& source, const RoleMap& roles, std::span<const Transform> rest,
+                        Role hand, Role fingers);
 
 // The directions of an actor's trunk, limbs and hands in its pose. The actor must outlive it.
 class ActorView {
@@ -63,5 +91,18 @@ class ActorView {
   const Actor& actor_;
   std::vector<std::vector<int>> children_;
 };
+
+// A T-pose of a humanoid whose reference pose does not stand (rigs whose bones all lie along one
+// axis), shape [joints], facing +Z: legs down, arms to the sides, soles on the ground. It belongs
+// to the skeleton and not to a motion of it: bones are turned by their directions, the turn about a
+// bone by the side on which knees and elbows bend in the whole motion. Spine, head, hands and feet
+// are turned as in the reference pose, or by the quarter turns from it that are nearest to the
+// motion's mean. Only bone lengths and the pitch of the feet on the ground are measured. Joints
+// whose roles are missing keep their place. Without `limbs` the body is only turned upright as a
+// whole. Where a motion begins with a T-pose, as some exporters have it, that is the stance.
+std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs);
+
+// Whether limbs are straight in the first frame, legs down and arms to the sides.
+bool begins_in_a_stance(const Clip& clip, const RoleMap& roles);
 
 }  // namespace krok::retarget

@@ -6,7 +6,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "retarget/build_stance_internal.h"
+#include "retarget/actor_view_internal.h"
 #include "retarget/pose_alignment.h"
 
 namespace krok::retarget {

@@ -8,7 +8,8 @@
 #include "core/index.h"
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
-#include "retarget/actor_measure_internal.h"
+#include "math/window.h"
+#include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {
 
@@ -49,12 +50,8 @@ int softening_reach(double rate) {
 
 std::vector<double> softened(const std::vector<double>& values, int reach) {
   const int count = static_cast<int>(values.size());
-  std::vector<double> widened(values.size()), result(values.size());
-  for (int i = 0; i < count; ++i) {
-    const auto first = values.begin() + std::max(0, i - reach);
-    const auto last = values.begin() + std::min(count, i + reach + 1);
-    widened[at(i)] = *std::max_element(first, last);
-  }
+  const std::vector<double> widened = max_within(values, reach);
+  std::vector<double> result(values.size());
   // Raised-cosine weights.
   std::vector<double> weights;
   double all = 0;
@@ -121,9 +118,7 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
                                                  std::span<const Quat> turns, double scale,
                                                  const Floor& source_floor,
                                                  const Floor& target_floor, bool is_left) {
-  const Role upper = is_left ? Role::left_upper_leg : Role::right_upper_leg;
-  const Role lower = is_left ? Role::left_lower_leg : Role::right_lower_leg;
-  const Role foot = is_left ? Role::left_foot : Role::right_foot;
+  const auto& [upper, lower, foot, toes] = kLegRoles[is_left ? 0 : 1];
   LegPlacement leg;
   leg.scale_ = scale;
   leg.source_floor_ = source_floor;

@@ -7,7 +7,6 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "retarget/actor_measure_internal.h"
 #include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {
@@ -49,15 +48,6 @@ Quat swing(const Vec3& from, const Vec3& to, const Vec3& axis) {
   return shortest_arc(half * from, to) * half;
 }
 
-constexpr std::array kArms = {
-    ArmRoles{Role::left_collar, Role::left_upper_arm, Role::left_lower_arm, Role::left_hand,
-             Role::left_fingers},
-    ArmRoles{Role::right_collar, Role::right_upper_arm, Role::right_lower_arm, Role::right_hand,
-             Role::right_fingers}};
-constexpr std::array kLegs = {
-    LegRoles{Role::left_upper_leg, Role::left_lower_leg, Role::left_foot},
-    LegRoles{Role::right_upper_leg, Role::right_lower_leg, Role::right_foot}};
-
 class Aligner {
  public:
   Aligner(const Actor& source, const Actor& target, const JointMapping& mapping)
@@ -76,8 +66,8 @@ class Aligner {
     }
     for (const Role role : {Role::chest, Role::head}) set(target_.joint(role), chest_);
     for (const int neck : target_.roles().joints(Role::neck)) set(neck, chest_);
-    for (const ArmRoles& arm : kArms) align_arm(arm);
-    for (const LegRoles& leg : kLegs) align_leg(leg);
+    for (const ArmRoles& arm : kArmRoles) align_arm(arm);
+    for (const LegRoles& leg : kLegRoles) align_leg(leg);
     hand_down();
     return std::move(turns_);
   }

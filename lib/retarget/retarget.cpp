@@ -9,7 +9,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "retarget/actor_measure_internal.h"
+#include "retarget/actor_view_internal.h"
 #include "retarget/foot_placement.h"
 #include "retarget/frame_transfer_internal.h"
 #include "retarget/joint_mapping.h"

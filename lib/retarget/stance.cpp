@@ -6,15 +6,11 @@
 #include <array>
 
 #include "retarget/actor_view_internal.h"
-#include "retarget/build_stance_internal.h"
+#include "roles/limbs.h"
 
 namespace krok::retarget {
 
 namespace {
-
-constexpr std::array kBothLegs = {
-    LegRoles{Role::left_upper_leg, Role::left_lower_leg, Role::left_foot},
-    LegRoles{Role::right_upper_leg, Role::right_lower_leg, Role::right_foot}};
 
 class Posture {
  public:
@@ -35,7 +31,7 @@ class Posture {
   // The cosine of the largest angle of trunk, thighs and shanks with a direction.
   double least_along(const Vec3& up) const {
     double least = trunk().dot(up);
-    for (const LegRoles& leg : kBothLegs) {
+    for (const LegRoles& leg : kLegRoles) {
       least = std::min(
           {least, -bone(leg.upper, leg.lower).dot(up), -bone(leg.lower, leg.foot).dot(up)});
     }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "retarget/build_stance_internal.h"
+#include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {
 

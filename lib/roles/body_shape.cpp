@@ -1,4 +1,4 @@
-#include "roles/body_shape.h"
+#include "roles/role_finder_internal.h"
 
 #include <algorithm>
 #include <array>

@@ -6,9 +6,8 @@
 #include <array>
 
 #include "core/index.h"
-#include "roles/body_shape.h"
 #include "roles/joint_names.h"
-#include "roles/role_finder.h"
+#include "roles/role_finder_internal.h"
 #include "roles/roles.h"
 
 namespace krok {

@@ -5,30 +5,13 @@
 #include <utility>
 
 #include "core/index.h"
-#include "roles/body_shape.h"
 #include "roles/joint_names.h"
-#include "roles/limb_tips_internal.h"
-#include "roles/named_joints_internal.h"
-#include "roles/role_finder.h"
+#include "roles/limbs.h"
+#include "roles/role_finder_internal.h"
 
 namespace krok {
 
 namespace {
-
-struct ArmRoles {
-  Role collar, upper, lower, hand, fingers;
-};
-struct LegRoles {
-  Role upper, lower, foot, toes;
-};
-constexpr ArmRoles kLeftArm = {Role::left_collar, Role::left_upper_arm, Role::left_lower_arm,
-                               Role::left_hand, Role::left_fingers};
-constexpr ArmRoles kRightArm = {Role::right_collar, Role::right_upper_arm, Role::right_lower_arm,
-                                Role::right_hand, Role::right_fingers};
-constexpr LegRoles kLeftLeg = {Role::left_upper_leg, Role::left_lower_leg, Role::left_foot,
-                               Role::left_toes};
-constexpr LegRoles kRightLeg = {Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
-                                Role::right_toes};
 
 // Matches names with the hierarchy: finds the ends of the limbs by name; joints that several limbs
 // descend from are the trunk, joints between trunk and end are the limb.
@@ -104,7 +87,7 @@ class RoleFinder {
   void assign_arm(Side side) {
     const int hand = tips_.hands[side == Side::left ? 0 : 1];
     if (hand < 0) return;
-    const ArmRoles& roles = side == Side::left ? kLeftArm : kRightArm;
+    const ArmRoles& roles = kArmRoles[side == Side::left ? 0 : 1];
     const std::vector<int> chain = limb_above(hand);
     const int count = static_cast<int>(chain.size());
     int lower = position(chain, Part::lower_arm);
@@ -159,7 +142,7 @@ class RoleFinder {
   void assign_leg(Side side) {
     const int foot = tips_.feet[side == Side::left ? 0 : 1];
     if (foot < 0) return;
-    const LegRoles& roles = side == Side::left ? kLeftLeg : kRightLeg;
+    const LegRoles& roles = kLegRoles[side == Side::left ? 0 : 1];
     std::vector<int> chain = limb_above(foot);
     if (chain.size() == 1) add_thigh(foot, chain);
     const int count = static_cast<int>(chain.size());

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "skin/dual_quaternion.h"
 #include "skin/palette.h"
+#include "skin/skin.h"
 
 // Shared by the scalar references and the SIMD kernels. No inline functions here: the kernels are
 // compiled for several instruction sets, and the linker keeps one copy of an inline function,
@@ -89,6 +91,34 @@ class Tail {
   float weights_[kBlock * kMaxInfluences];
   float positions_[kBlock * 3], normals_[kBlock * 3], tangents_[kBlock * 4];
   float out_positions_[kBlock * 3], out_normals_[kBlock * 3], out_tangents_[kBlock * 4];
+};
+
+// The data of SkinBinding and SkinPose.
+
+struct Pair {
+  std::uint16_t first, joint;
+};
+
+struct Binding {
+  SkinMethod method = SkinMethod::linear;
+  std::size_t vertex_count = 0;
+  std::vector<Transform> joint_to_world;      // in the reference pose
+  std::vector<Transform> reference_to_joint;  // inverses of joint_to_world
+  std::vector<Block> blocks;
+  std::vector<std::uint16_t> joints;
+  std::vector<std::uint32_t> pair_indices;  // dual quaternions only
+  std::vector<float> weights;
+  std::vector<Pair> pairs;
+
+  Influences influences() const;
+};
+
+struct Posed {
+  const Binding* binding = nullptr;
+  bool is_rigid = true;
+  std::vector<SkinMatrix> palette;           // [joints]; for dual quaternions the deformations
+  std::vector<DualQuaternion> motions;       // [joints]; dual quaternions only
+  std::vector<DualQuaternion> pair_motions;  // [pairs]
 };
 
 }  // namespace krok::skin_detail

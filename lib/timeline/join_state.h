@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "timeline/actor_pose.h"
+#include "timeline/base_motion.h"
 
 // Values with velocities and accelerations where two motions join, and the curves that blend from
 // one to the other.

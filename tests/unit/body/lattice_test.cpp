@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "body/human_shape.h"
 #include "body/lattice.h"
 #include "body/polygonise.h"
+#include "body/shapes.h"
 #include "support/human_skeleton.h"
 #include "unit/body/mesh_checks.h"
 

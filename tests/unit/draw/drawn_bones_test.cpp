@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "draw/drawn_bones_internal.h"
+#include "draw/pack_motion_internal.h"
 #include "support/human_skeleton.h"
 #include "support/test_scenes.h"
 

@@ -1,7 +1,7 @@
 // If these fail, where a foot stands is led astray by single frames, or depends on the direction in
 // which the world's axes lie.
 
-#include "math/median.h"
+#include "math/window.h"
 
 #include <gtest/gtest.h>
 

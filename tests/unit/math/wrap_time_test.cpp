@@ -1,5 +1,5 @@
 // If these fail, loops stumble at their seam or play the wrong way.
-#include "math/wrap_time.h"
+#include "tracks/sample_keys.h"
 
 #include <gtest/gtest.h>
 

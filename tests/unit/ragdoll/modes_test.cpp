@@ -7,7 +7,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "ragdoll/motors.h"
+#include "ragdoll/motion_follower.h"
 #include "ragdoll/world.h"
 
 namespace krok::ragdoll::modes_test {

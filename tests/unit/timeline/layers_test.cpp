@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "math/quaternion.h"
-#include "timeline/mask.h"
+#include "timeline/layer_player.h"
 #include "unit/timeline/mixed_walks.h"
 
 namespace krok::timeline {

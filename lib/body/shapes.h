@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+
+#include "body/human_actor.h"
+#include "body/implicit.h"
+#include "scene/skeleton.h"
+
+namespace krok::body {
+
+// A human body around a skeleton that stands upright on its feet, facing +Z with its left at +X
+// (see human_pose.h). `pose` is joint_to_world, [joints].
+//
+// Proportions: segment lengths and heights over stature after Drillis and Contini (1966) as given
+// by Winter; breadths, depths and girths over stature rounded from the means of ANSUR II (Gordon et
+// al. 2014, men 1.756 m, women 1.629 m), between the two and slightly leaner. Girths become
+// ellipses of that circumference.
+Shape human_shape(const Skeleton& skeleton, const HumanActor& actor,
+                  std::span<const Transform> pose);
+
+// A body around any skeleton. Every bone is a tube whose cross-section (squared radius) is
+// proportional to the total length of all descendant bones, as in the branches of a tree, so a
+// spine is thicker than the legs and limbs taper to their tips. A chain of bones is one tube
+// through its joints; other bones are blended on where they branch off. Zero-length bones are
+// skipped, and those that stand for no part of a body: to IK targets, props, eyes and other parts
+// of a face, by name, and from a root on the ground to the body above it. A skeleton of zero extent
+// becomes a ball of radius `lone_radius` metres.
+Shape general_shape(const Skeleton& skeleton, std::span<const Transform> pose,
+                    double lone_radius = 0.1);
+
+}  // namespace krok::body

@@ -1,0 +1,90 @@
+#include "math/window.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace krok {
+
+namespace {
+
+constexpr int kRounds = 100;
+constexpr double kConverged = 1e-9, kTogether = 1e-6;  // metres
+
+}  // namespace
+
+double median(std::vector<double> values) {
+  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), half, values.end());
+  if (values.size() % 2 == 1) return *half;
+  return 0.5 * (*half + *std::max_element(values.begin(), half));
+}
+
+double upper_median(std::vector<double> values) {
+  const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), half, values.end());
+  return *half;
+}
+
+std::vector<double> max_within(std::span<const double> values, int reach) {
+  std::vector<double> result(values.size());
+  std::deque<std::size_t> falling;  // of the window, those with nothing higher behind them
+  const std::size_t n = values.size(), r = static_cast<std::size_t>(reach);
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (; next < std::min(n, i + r + 1); ++next) {
+      while (!falling.empty() && values[falling.back()] <= values[next]) falling.pop_back();
+      falling.push_back(next);
+    }
+    while (falling.front() + r < i) falling.pop_front();
+    result[i] = values[falling.front()];
+  }
+  return result;
+}
+
+std::vector<double> mean_within(std::span<const double> values, int reach) {
+  const int n = static_cast<int>(values.size());
+  std::vector<double> result(values.size());
+  for (int i = 0; i < n; ++i) {
+    double sum = 0;
+    for (int k = i - reach; k <= i + reach; ++k) {
+      sum += values[static_cast<std::size_t>(std::clamp(k, 0, n - 1))];
+    }
+    result[static_cast<std::size_t>(i)] = sum / (2 * reach + 1);
+  }
+  return result;
+}
+
+Vec3 median_point(std::span<const Vec3> points) {
+  Vec3 center = Vec3::Zero();
+  if (points.empty()) return center;
+  for (const Vec3& point : points) center += point;
+  center /= static_cast<double>(points.size());
+  for (int round = 0; round < kRounds; ++round) {
+    Vec3 sum = Vec3::Zero();
+    double weights = 0;
+    for (const Vec3& point : points) {
+      const double weight = 1 / std::sqrt((point - center).squaredNorm() + kTogether * kTogether);
+      sum += weight * (point - center);
+      weights += weight;
+    }
+    const Vec3 step = sum / weights;
+    center += step;
+    if (step.norm() < kConverged) break;
+  }
+  return center;
+}
+
+Vec3 median_place(std::span<const Vec3> points) {
+  if (points.empty()) return Vec3::Zero();
+  std::vector<Vec3> level(points.begin(), points.end());
+  std::vector<double> heights;
+  for (Vec3& point : level) heights.push_back(std::exchange(point.y(), 0));
+  Vec3 place = median_point(level);
+  place.y() = median(std::move(heights));
+  return place;
+}
+
+}  // namespace krok
