@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "core/index.h"
+#include "ragdoll/faces_internal.h"
 #include "ragdoll/ground_edges_internal.h"
 
 namespace krok::ragdoll {

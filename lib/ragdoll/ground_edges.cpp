@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/index.h"
+#include "ragdoll/faces_internal.h"
 #include "ragdoll/ground_edges_internal.h"
 
 namespace krok::ragdoll {
