@@ -80,9 +80,8 @@ TEST_P(Tools, WrongUsageEndsWithTwo) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Tools, testing::ValuesIn(built_tools()), [](const auto& test_case) {
-  return test_case.param.substr(5);
-});
+INSTANTIATE_TEST_SUITE_P(All, Tools, testing::ValuesIn(built_tools()),
+                         [](const auto& test_case) { return test_case.param.substr(5); });
 
 class Behaviour : public CliTest {
  protected:

@@ -172,7 +172,8 @@ TEST(GoalMotion, ReachesAJointThatTheTrunkMoves) {
   const auto made = apply_goals(clip, {&goal, 1}, {}, options);
   ASSERT_TRUE(made.ok());
   for (int f = 0; f < 60; ++f) {
-    EXPECT_LT((place(made->clip, f, "LeftHand") - place(made->clip, f, "RightForeArm")).norm(), 3e-6);
+    EXPECT_LT((place(made->clip, f, "LeftHand") - place(made->clip, f, "RightForeArm")).norm(),
+              3e-6);
   }
 }
 
