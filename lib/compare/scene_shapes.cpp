@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "compare/material_difference.h"
+#include "compare/mesh_difference.h"
 #include "compare/scene_comparison_internal.h"
 
 namespace krok::compare {

@@ -11,6 +11,7 @@
 #include "compare/measure.h"
 #include "compare/mesh_difference.h"
 #include "compare/surface_fit_internal.h"
+#include "core/numbers.h"
 #include "core/parallel.h"
 
 namespace krok::compare {

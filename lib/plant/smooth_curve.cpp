@@ -3,6 +3,7 @@
 #include <deque>
 #include <numbers>
 
+#include "math/window.h"
 #include "plant/smooth_curve_internal.h"
 
 namespace krok::plant {

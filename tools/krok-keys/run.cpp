@@ -1,4 +1,5 @@
 #include "tools/krok-keys/run.h"
+#include "tools/cli/usage.h"
 
 #include <fmt/format.h>
 

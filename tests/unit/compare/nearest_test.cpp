@@ -10,6 +10,7 @@
 #include <numeric>
 #include <random>
 
+#include "compare/mesh_difference.h"
 #include "compare/nearest_triangle_internal.h"
 #include "compare/scene_difference.h"
 #include "unit/compare/compare_scenes.h"

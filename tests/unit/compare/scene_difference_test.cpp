@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compare/mesh_difference.h"
 #include "unit/compare/compare_scenes.h"
 
 namespace krok::compare {
