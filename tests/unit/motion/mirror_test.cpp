@@ -339,8 +339,9 @@ TEST(Mirror, ToesAlmostInLineDoNotTwistTheirFoot) {
     Skeleton& skeleton = clip.skeleton;
     for (const char* name : {"LeftFoot", "RightFoot"}) {
       const int foot = skeleton.find(name);
-      Transform& own = skeleton.reference[static_cast<std::size_t>(foot)];
+      Transform own = skeleton.reference[static_cast<std::size_t>(foot)];
       own.orientation = (own.orientation * from_rotation_vector(0.05 * some())).normalized();
+      skeleton.reference[static_cast<std::size_t>(foot)] = own;
       for (int child = 0; child < 2; ++child) {
         const Vec3 toe =
             (1 + uneven * random()) * (0.06 + 0.05 * child) * Vec3(0, -0.3, 1) + off * 0.1 * some();
