@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "compare/mesh_difference.h"
 #include "compare/scene_comparison_internal.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
