@@ -93,14 +93,19 @@ struct SceneDifference {
 // is a note, a difference by Matching::name. Codes: compare-value if a scene has values that are
 // not finite, compare-too-long for more than a million moments.
 //
+// The pose without animation is compared where both have animations and joints: another one is a
+// difference of structure.
+//
 // With Matching::nearest, all meshes of a scene are one surface if they cannot be matched by name.
 // Nearest points are found at the first time compared; after that each moves with its triangle. If
 // several surfaces touch there, or come within the tolerance (or four times the median distance, in
 // a mesh that is coarser overall), the one that stays closest is used, of those the one with the
 // closest normal, the same side and material, and the closest tangents and texture coordinates. A
-// mesh without triangles is a point cloud. Vertices that lie on the back of the other's triangles,
-// or on another material, are reported with their count. Morph targets and weights themselves are
-// not compared, only their effect.
+// mesh without triangles is a point cloud. Of parts that touch, a vertex is held against the one on
+// its own joints. Triangles are sampled inside, too, in both directions: what has no counterpart
+// there, a hole, is a difference of structure. Vertices that lie on the back of the other's
+// triangles, or on another material, are reported with their count. Morph targets and weights
+// themselves are not compared, only their effect.
 Result<SceneDifference> difference(const Scene& first, const Scene& second,
                                    const SceneOptions& options, int jobs, Progress& progress);
 

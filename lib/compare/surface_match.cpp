@@ -29,7 +29,7 @@ constexpr double kOfMedian = 4;            // distances at which a point is as g
 constexpr double kMaxNear = 1e-3;          // of the size, the same
 constexpr double kWider = 4;               // times that far, where the right one is not found
 constexpr std::size_t kSamples = 100'000;  // of a surface, for holes
-constexpr int kMostParts = 64;             // of a triangle's edge, the same
+constexpr int kMaxDivisions = 64;          // of a triangle's edge, the same
 constexpr std::size_t kFewOf = 50;         // one vertex of that many may lie at a sharp edge
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
@@ -271,11 +271,14 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   }
 }
 
-// Reports triangles whose corners lie on the other surface and whose insides do not: holes.
+// Reports triangles whose corners lie on the other surface, which is of the meshes `others`, and
+// whose insides do not: holes. A cloud of points has no insides.
 void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& matches,
-                const Surfaces& surfaces, int jobs) {
-  const auto has_no_faces = [](const SceneMesh& mesh) { return mesh.triangles.empty(); };
-  if (std::ranges::any_of(surfaces.other.meshes, has_no_faces)) return;
+                const Surfaces& surfaces, const std::vector<int>& others, int jobs) {
+  const auto is_cloud = [&](int mesh) {
+    return surfaces.other.meshes[static_cast<std::size_t>(mesh)].triangles.empty();
+  };
+  if (std::ranges::all_of(others, is_cloud)) return;
   double all_area = 0;
   struct Sampled {
     const SurfaceMatch* match = nullptr;
@@ -309,7 +312,7 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
       }
       // The middles of parts of about the same size.
       const int parts = std::clamp(
-          static_cast<int>(std::ceil(std::sqrt(one.area / all_area * kSamples))), 1, kMostParts);
+          static_cast<int>(std::ceil(std::sqrt(one.area / all_area * kSamples))), 1, kMaxDivisions);
       const auto sample = [&](double u, double v) {
         const Vec3 place = u * points[one.corners[0]] + v * points[one.corners[1]] +
                            (1 - u - v) * points[one.corners[2]];
@@ -350,8 +353,8 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
 }
 
 // Matches the meshes of a group of one scene with the other's, whose facets are in the tree.
-void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bool in_second,
-                 Surfaces surfaces, int jobs) {
+void match_group(SceneComparison& comparison, const std::vector<int>& meshes,
+                 const std::vector<int>& others, bool in_second, Surfaces surfaces, int jobs) {
   const Reach reach =
       reach_of(surfaces.own, meshes, surfaces.tree, comparison.options.tolerance.length);
   surfaces.near = reach.near;
@@ -369,7 +372,7 @@ void match_group(SceneComparison& comparison, const std::vector<int>& meshes, bo
     compare_surface(comparison, surfaces, match);
     matches.push_back(std::move(match));
   }
-  find_holes(comparison, matches, surfaces, jobs);
+  find_holes(comparison, matches, surfaces, others, jobs);
   std::ranges::move(matches, std::back_inserter(comparison.surfaces));
 }
 
@@ -409,8 +412,8 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
     if (!first_tree || !second_tree) {
       return Error("compare-search", "Embree is not available on this machine");
     }
-    match_group(comparison, group.first, false, {a, b, *second_tree}, jobs);
-    match_group(comparison, group.second, true, {b, a, *first_tree}, jobs);
+    match_group(comparison, group.first, group.second, false, {a, b, *second_tree}, jobs);
+    match_group(comparison, group.second, group.first, true, {b, a, *first_tree}, jobs);
   }
   report_tangents_left_out(comparison);
   return {};
