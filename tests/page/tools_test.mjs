@@ -428,7 +428,7 @@ async function clipsAreChosen() {
 async function namesAndValuesStayInView() {
   const names = ['knock_down', 'knock_back', 'slide'].map((middle) => `capture_session_2026_hero_${middle}_front_01.bvh`);
   for (const name of names) copyFileSync(WALK, made(name));
-  run('krok-view', ...names.map(made), '--keys', 'find', '-o', made('session.html'));
+  run('krok-view', ...names.map(made), '--contacts', 'find', '-o', made('session.html'));
   const page = await open('session.html', { viewport: { width: 1280, height: 720 } });
   const shown = await page.locator('#items .name').evaluateAll((buttons) => buttons.map(({ firstChild }) => {
     const cut = [...firstChild.children].some((part) => part.scrollWidth > part.clientWidth);

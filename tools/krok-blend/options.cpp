@@ -29,7 +29,7 @@ void declare(CommandOptions& command, Options& options) {
   command.add("--rate", options.rate, rate(), "Frames per second (default: the first motion's)");
   command.group("Space");
   command.add(
-      "--align HOW", options.align,
+      "--match-root HOW", options.align,
       choice<AlignChoice>({{"auto", AlignChoice::automatic},
                            {"root", AlignChoice::root},
                            {"stance", AlignChoice::stance},

@@ -47,7 +47,7 @@ struct Options {
   // glTF.
   std::string into;
   std::string name = "camera";
-  std::optional<int> clip;
+  std::string clip;
 
   // Whether an option such as "--aspect" was given; set by declare().
   std::function<bool(const char* option)> given;

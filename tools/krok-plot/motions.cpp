@@ -52,7 +52,7 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
   auto beside = read_keys_beside(motion, clip, context);
   if (!beside) {
     if (beside.error().hint.empty()) {
-      beside.error().hint = "it was found next to the motion; --keys none ignores it";
+      beside.error().hint = "it was found next to the motion; --contacts none ignores it";
     }
     return beside.error();
   }
@@ -87,8 +87,8 @@ Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Moti
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
                              ToolContext& context) {
   if (options.keys != "auto" && options.keys != "none" && inputs.size() > 1) {
-    return Error("usage", "--keys takes one file, but there are several motions",
-                 "--keys auto uses the file next to each motion");
+    return Error("usage", "--contacts takes one file, but there are several motions",
+                 "--contacts auto uses the file next to each motion");
   }
   const auto find_roles_of = io::open_role_map(options.map, context);
   if (!find_roles_of) return find_roles_of.error();

@@ -107,7 +107,7 @@ render::Sheet contact_sheet(const ShownActors& all, const std::vector<ImageSide>
 }
 
 // The view direction of a strip: from the side, moving left to right, if the character travels;
-// otherwise from its front. An explicit --sides takes precedence.
+// otherwise from its front. An explicit --view takes precedence.
 ImageSide strip_side(const Shown& shown, const std::vector<ImageSide>& sides,
                      const SheetOptions& options) {
   ImageSide side = sides[0];

@@ -32,6 +32,11 @@ ValueKind<Unit> length_unit() {
           {}};
 }
 
+ValueKind<std::string> contacts_file(const std::string& forms) {
+  return {
+      "contacts", forms, [](const std::string& text) -> Result<std::string> { return text; }, {}};
+}
+
 CommandOption add_orientation_option(CommandOptions& command, OrientationEncoding& encoding) {
   return command
       .add("--orientation HOW", encoding,
@@ -49,18 +54,18 @@ CommandOption add_map_option(CommandOptions& command, std::string& path) {
 CommandOption add_contacts_option(CommandOptions& command, std::string& contacts) {
   contacts = "auto";
   return command
-      .add_option("--contacts IN.json|auto|find", contacts,
-                  "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to "
-                  "the motion if it exists")
+      .add("--contacts", contacts, contacts_file("IN.json|auto|find"),
+           "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to the "
+           "motion if it exists")
       .default_str(contacts);
 }
 
 CommandOption add_keys_option(CommandOptions& command, KeysChoice& which) {
   return command.add(
-      "--keys WHICH", which,
-      choice<KeysChoice>({{"auto", KeysChoice::automatic},
-                          {"sidecar", KeysChoice::sidecar},
-                          {"none", KeysChoice::none}}),
+      "--contacts WHICH", which,
+      contacts_choice<KeysChoice>({{"auto", KeysChoice::automatic},
+                                   {"sidecar", KeysChoice::sidecar},
+                                   {"none", KeysChoice::none}}),
       "Keytimes: auto (from NAME.keys.json beside a motion, otherwise detected as by krok-keys), "
       "sidecar (only from that file), none (start and end only)",
       "auto");

@@ -22,11 +22,29 @@ CommandOption add_orientation_option(CommandOptions& command, OrientationEncodin
 // --map: a role map for joints whose names do not identify them.
 CommandOption add_map_option(CommandOptions& command, std::string& path);
 
+// Values of --contacts: a file, or one of the words of `forms`, such as "IN.json|auto|none".
+ValueKind<std::string> contacts_file(const std::string& forms);
+// The same for words alone.
+template <typename T>
+ValueKind<T> contacts_choice(std::vector<std::pair<std::string, T>> words) {
+  ValueKind<T> kind = choice(std::move(words));
+  kind.name = "contacts";
+  return kind;
+}
+
+// The up axis of files that have one of two.
+template <typename T>
+ValueKind<T> up_axis(std::vector<std::pair<std::string, T>> words) {
+  ValueKind<T> kind = choice(std::move(words));
+  kind.name = "axis";
+  return kind;
+}
+
 // --contacts: when the feet stand. A file, "find", or "auto": the sidecar beside the motion if
 // there is one.
 CommandOption add_contacts_option(CommandOptions& command, std::string& contacts);
 
-// --keys: where a tool that combines motions gets their contacts and keytimes.
+// --contacts, for a tool that combines motions: where it gets their contacts and keytimes.
 CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice);
 
 // --ground: a file, or a made ground, whose text must be right: codes of terrain::from_spec().
