@@ -62,8 +62,8 @@ void declare(CommandOptions& command, Options& options) {
   declare_refinement(command, options);
   command.group("Output");
   command.add("--plot OUT_DIR", options.plots, output({}),
-                     "Write charts (SVG) to this folder: error by inserted points, weights, "
-                     "examples and inserted points, measured by requested parameters");
+              "Write charts (SVG) to this folder: error by inserted points, weights, "
+              "examples and inserted points, measured by requested parameters");
 }
 
 }  // namespace
