@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "core/file.h"
-#include "tools/krok-diff/run.h"
 #include "tools/krok-diff/tolerance_options.h"
 
 namespace krok::cli::diff {

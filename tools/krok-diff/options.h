@@ -31,4 +31,7 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Compares two files or two folders, prints and reports the differences.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::diff

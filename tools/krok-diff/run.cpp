@@ -1,4 +1,4 @@
-#include "tools/krok-diff/run.h"
+#include "tools/krok-diff/options.h"
 
 #include "core/file.h"
 #include "tools/krok-diff/compare_files.h"

@@ -50,4 +50,9 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads the motion, its goals and limits; writes the motion with the goals brought about. Goals
+// that are missed are warnings (ik-missed). Codes: those of the readers, of formats/goals,
+// formats/limits and lib/ik; ik-joint for a joint of an option that the motion has not.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::ik

@@ -1,4 +1,4 @@
-#include "tools/krok-ik/run.h"
+#include "tools/krok-ik/options.h"
 
 #include <fmt/format.h>
 

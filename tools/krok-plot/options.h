@@ -70,4 +70,7 @@ Status check_inputs(const Options& options);
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads motions or tables and writes one chart of them.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::plot

@@ -1,4 +1,4 @@
-#include "tools/krok-ragdoll/run.h"
+#include "tools/krok-ragdoll/options.h"
 
 #include <fmt/format.h>
 

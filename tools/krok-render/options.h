@@ -35,4 +35,7 @@ Result<Format> format_of(const Options& options, const std::string& output);
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Renders and writes the film. Returns an exit code.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::film

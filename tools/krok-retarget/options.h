@@ -36,4 +36,8 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads the motion and the target, and writes the motion on the target's skeleton. Codes: those of
+// the readers, of formats/role_map and of lib/retarget.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::retarget

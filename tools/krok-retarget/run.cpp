@@ -1,5 +1,4 @@
-#include "tools/krok-retarget/run.h"
-#include "tools/cli/usage.h"
+#include "tools/krok-retarget/options.h"
 
 #include <fmt/format.h>
 

@@ -29,4 +29,7 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads the files and writes one viewer page.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::view

@@ -1,4 +1,4 @@
-#include "tools/krok-view/run.h"
+#include "tools/krok-view/options.h"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include "formats/io/open_terrain.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-view/files.h"
+#include "tools/krok-view/glb_difference.h"
 #include "tools/shared/shown_ground.h"
 #include "tools/shared/walk_page.h"
 
@@ -115,6 +116,11 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   draw::ViewerPage page = page_of(*files, options, layout);
   if (Status status = add_walk(options, context, page); !status) return status.error();
+  if (options.difference && files->motions.size() < 2) {
+    auto difference = difference_of(files->glbs[0], files->glbs[1], context);
+    if (!difference) return difference.error();
+    page.files[1].difference = *std::move(difference);
+  }
   auto html = draw::write_viewer_page(page);
   if (!html) return html.error();
   const Status status =

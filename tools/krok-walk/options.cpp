@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/krok-walk/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::walk {

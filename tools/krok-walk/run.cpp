@@ -1,4 +1,4 @@
-#include "tools/krok-walk/run.h"
+#include "tools/krok-walk/options.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +35,6 @@
 #include "terrain/terrain.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-walk/options.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/walk_page.h"
 
