@@ -11,6 +11,9 @@
 
 namespace krok::cli::diff {
 
+// Whether a summary of that name is HTML.
+bool is_page(const std::string& summary);
+
 struct Options {
   std::string first, second;  // paths
   compare::Matching matching = compare::Matching::automatic;
@@ -19,12 +22,12 @@ struct Options {
   std::vector<double>
       joints;  // those of joints: metres and maybe radians; into `tolerance` by run()
   SheetOptions sheet;
-  std::string plot;     // path; empty for none
-  std::string heatmap;  // path; empty for none
-  std::string summary;  // path of a page, .html or .md; empty for none
+  std::string plot;                    // path; empty for none
+  std::string heatmap;                 // path; empty for none
+  std::vector<std::string> summaries;  // paths of pages: .html, .xml, else Markdown
   FolderOptions folders;
 
-  // Whether the summary shows pictures and charts.
+  // Whether a summary shows pictures and charts.
   bool has_page() const;
 };
 
