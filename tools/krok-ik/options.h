@@ -8,6 +8,7 @@
 #include "formats/container/packed_orientation.h"
 #include "ik/goal_motion.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::ik {
 
@@ -30,7 +31,7 @@ struct Options {
   std::string goals;                     // a goal file, or empty
   std::vector<PointGoal> points, looks;  // of --reach and --look-at
   double fade = 0;                       // seconds
-  std::string ground;                    // what heights of goals are over; empty: the origin
+  GroundChoice ground;                   // what heights of goals are over; empty: the origin
   bool plant = false;
   std::string contacts;
   std::string limits;                 // a file, auto, or empty

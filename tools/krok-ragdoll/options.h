@@ -9,6 +9,7 @@
 #include "math/types.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/follow.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::ragdoll {
 
@@ -30,7 +31,7 @@ struct Options {
   std::vector<PushAt> pushes;
   std::string push_table;
   std::vector<std::string> rises;
-  std::string ground;
+  GroundChoice ground;
   std::string limits = "auto";
   FollowOptions follow;
   double friction = 0, restitution = 0;

@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 #include "tools/shared/image.h"
 #include "tools/shared/moving_actor.h"
 
@@ -25,7 +26,8 @@ struct Options {
   ImageOptions image;  // its sides and elevation
   bool still = false;
   std::string camera;
-  std::string ground, prints;
+  GroundChoice ground;
+  std::string prints;
   ActorOptions actors;
 };
 

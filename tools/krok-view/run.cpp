@@ -7,7 +7,6 @@
 
 #include "core/numbers.h"
 #include "draw/viewer_page.h"
-#include "formats/io/open_terrain.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-view/files.h"
 #include "tools/krok-view/glb_difference.h"
@@ -81,7 +80,7 @@ Status check_layout(const Options& options, const Files& files) {
 Status add_walk(const Options& options, ToolContext& context, draw::ViewerPage& page) {
   std::unique_ptr<Terrain> ground;
   if (!options.ground.empty()) {
-    auto opened = io::open_terrain(options.ground, {}, context);
+    auto opened = options.ground.open(context);
     if (!opened) return opened.error();
     ground = *std::move(opened);
   }

@@ -17,7 +17,6 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
-#include "formats/io/open_terrain.h"
 #include "formats/keys/keys.h"
 #include "formats/path/path_format.h"
 #include "formats/prints/prints.h"
@@ -347,7 +346,7 @@ void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prin
 Result<int> run(const Options& options, ToolContext& context) {
   const auto libraries = open_libraries(options, context);
   if (!libraries) return libraries.error();
-  const auto ground = io::open_terrain(options.ground, options.placement, context);
+  const auto ground = options.ground.open(context);
   if (!ground) return ground.error();
   const auto prints = choose_prints(options, *libraries, **ground, context);
   if (!prints) return prints.error();
