@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -160,6 +161,19 @@ class CameraPutter {
     return accessors.size() - 1;
   }
 
+  // The animation that is wanted; the number of them if there is none.
+  std::size_t find_animation(const OrderedJson& animations) const {
+    const std::string& wanted = options_.animation;
+    if (wanted.empty()) return 0;
+    std::size_t named = 0;
+    while (named < animations.size() && text_in(animations[named], "name") != wanted) ++named;
+    std::size_t number = 0;
+    const char* const end = wanted.data() + wanted.size();
+    const auto read = std::from_chars(wanted.data(), end, number);
+    const bool is_number = read.ec == std::errc() && read.ptr == end;
+    return named == animations.size() && is_number ? std::min(number, named) : named;
+  }
+
   Status put_motion(int node, Diagnostics& diagnostics) {
     const auto times = key_times(track_.frame_count(), track_.rate);
     if (!times) return times.error();
@@ -169,18 +183,17 @@ class CameraPutter {
                             {"channels", OrderedJson::array()},
                             {"samplers", OrderedJson::array()}});
     }
-    const int chosen = options_.animation.value_or(0);
-    const auto wanted = static_cast<std::size_t>(chosen);
-    if (chosen < 0 || wanted >= animations.size()) {
+    const std::size_t wanted = find_animation(animations);
+    if (wanted >= animations.size()) {
       return Error("gltf-animation", fmt::format("animation {} does not exist; the file has {}",
-                                                 chosen, animations.size()));
+                                                 shown(options_.animation), animations.size()));
     }
-    if (!options_.animation && animations.size() > 1) {
+    if (options_.animation.empty() && animations.size() > 1) {
       diagnostics.push_back(make_warning(
           "gltf-animations",
           fmt::format("the file has {} animations; the camera is added to the first, {}",
                       animations.size(), shown(text_in(animations[0], "name"))),
-          "choose another by number with --clip"));
+          "choose another with --clip NAME or NUMBER"));
     }
     // Successive rotations in one hemisphere, so that viewers interpolate along the shorter arc.
     std::vector<Quatf> rotations = track_.orientations;

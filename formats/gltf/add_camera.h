@@ -16,8 +16,8 @@ struct CameraOptions {
   std::string name = "camera";   // of camera and node; the node's gets a suffix if it is taken
   std::optional<double> aspect;  // width / height, > 0; if not set, viewers use their window's
   double near_plane = 0.05;      // metres, > 0; the far plane is at infinity
-  // Index of the animation that gets the camera's keys; the first if not set.
-  std::optional<int> animation;
+  // Name of the animation that gets the camera's keys, or its number from 0; empty: the first.
+  std::string animation;
 };
 
 struct WithCamera {

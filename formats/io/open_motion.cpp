@@ -44,7 +44,7 @@ Result<Clip> read_scene_motion(const Format& format, const InputFile& file, Inpu
   if (!actor) return actor.error();
   if (actor->motions.empty()) {
     return Error("motion-missing", "the file has no animation",
-                 "krok-import --character writes its skeleton and mesh")
+                 "krok-import --save-character writes its skeleton and mesh")
         .in_file(file.path());
   }
   Actor::Motion& motion = actor->motions.front();

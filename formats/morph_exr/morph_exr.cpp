@@ -66,8 +66,9 @@ Imf::FrameBuffer rows_in(std::vector<Vec3f>& texels, std::size_t width, std::siz
 }
 
 Error not_morphs(std::string message) {
-  return Error("exr-morphs", std::move(message),
-               "krok-import --morphs writes such files; formats/morph_exr/SPEC.md describes them");
+  return Error(
+      "exr-morphs", std::move(message),
+      "krok-import --save-morphs writes such files; formats/morph_exr/SPEC.md describes them");
 }
 
 int int_attribute(const Imf::Header& header, const char* name) {

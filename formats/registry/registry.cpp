@@ -264,7 +264,8 @@ std::string advice(Kind found, Kind wanted) {
   if (is_of(found, Group::capture) || is_of(found, Group::scene))
     return "import it with krok-import";
   if (is_of(found, Group::gltf)) {
-    return "krok-import converts it: --character NAME.character writes its mesh and skeleton, -o "
+    return "krok-import converts it: --save-character NAME.character writes its mesh and skeleton, "
+           "-o "
            "NAME.anim an animation";
   }
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";

@@ -168,7 +168,7 @@ Result<Correspondence> match_keytimes(std::span<const KeyedMotion> motions) {
     }
     if (motion.keys == nullptr || motion.keys->keytimes.empty()) {
       return Error("blend-keys", fmt::format("{} has no keytimes", motion.name),
-                   "detect or set them with krok-keys, or use --warp dtw or --keys none");
+                   "detect or set them with krok-keys, or use --warp dtw or --contacts none");
     }
   }
   const bool all_alike = std::ranges::all_of(
@@ -191,7 +191,7 @@ Result<Correspondence> match_keytimes(std::span<const KeyedMotion> motions) {
       if (motion.keys->keytimes.size() > 6) sequences += " ...";
     }
     return Error("blend-keys", "fewer than two keytimes are common to all motions" + sequences,
-                 "give them the same names with krok-keys --set, or use --warp dtw");
+                 "give them the same names with krok-keys --keytime, or use --warp dtw");
   }
   Correspondence result;
   for (const int k : common.front()) {

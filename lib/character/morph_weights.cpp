@@ -14,7 +14,7 @@ Result<MorphWeights> make_weights(const SceneActor& actor, const nodes::Evaluato
     return Error("scene-too-long",
                  fmt::format("{} frames of {} morph weights exceed the limit of 100 million",
                              sampling.frames, targets),
-                 "use --resample N for a lower frame rate");
+                 "use --rate N for a lower frame rate");
   }
   MorphWeights weights;
   weights.rate = sampling.rate;

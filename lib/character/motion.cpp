@@ -107,7 +107,7 @@ Result<Clip> make_clip(const nodes::Evaluator& evaluator, const Rig& rig,
     return Error("scene-too-long",
                  fmt::format("{} frames of {} joints exceed the limit of 100 million transforms",
                              sampling.frames, rig.joints.count()),
-                 "use --resample N for a lower frame rate");
+                 "use --rate N for a lower frame rate");
   }
   Clip clip;
   clip.skeleton = std::move(*skeleton);

@@ -150,7 +150,7 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   if (options.source_rate) {
     if (!found.on_keys) {
       return Error("scene-rate", "--fps takes the keys as frames, but they are unevenly spaced",
-                   "use --resample N to set the frame rate of the result");
+                   "use --rate N to set the frame rate of the result");
     }
     stretch = *options.source_rate / found.rate;
     sampling.rate = *options.source_rate;
@@ -158,7 +158,7 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   } else if (!options.rate) {
     tell(diagnostics, Severity::note, "scene-rate",
          fmt::format("{} fps: {}", readable(found.rate), found.reason),
-         "use --resample N for another rate");
+         "use --rate N for another rate");
   }
   if (options.rate) sampling.rate = *options.rate;
   sampling.step = stretch / sampling.rate;

@@ -114,11 +114,12 @@ Result<Synthesis> Synthesiser::weights(std::span<const double> parameters,
   const auto worst = std::ranges::max_element(synthesis.weights, {}, from_middle);
   const auto& name =
       library_->examples[static_cast<std::size_t>(worst - synthesis.weights.begin())].name;
-  return Error("parametric-extrapolation",
-               fmt::format("{} needs a weight of {} for {}; {} to {} are safe",
-                           in_words(*library_, parameters), readable(*worst, 3), shown(name),
-                           kMinWeight, kMaxWeight),
-               "add examples near these parameters, or smooth the weights with krok-fit --smooth");
+  return Error(
+      "parametric-extrapolation",
+      fmt::format("{} needs a weight of {} for {}; {} to {} are safe",
+                  in_words(*library_, parameters), readable(*worst, 3), shown(name), kMinWeight,
+                  kMaxWeight),
+      "add examples near these parameters, or smooth the weights with krok-fit --smoothing");
 }
 
 Status Synthesiser::correct(std::span<const double> parameters, const SynthesisOptions& options,

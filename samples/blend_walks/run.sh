@@ -36,19 +36,19 @@ for walk in slow quick; do
 done
 
 say "2. Blend with equal weights: time-aligned, with planted feet, and without alignment"
-"$bin/krok-blend" -q --warp pchip --align root -o warped.anim -- slow.anim:0.5 quick.anim:0.5
+"$bin/krok-blend" -q --warp pchip --match-root root -o warped.anim -- slow.anim:0.5 quick.anim:0.5
 "$bin/krok-blend" -q --warp pchip -o stance.anim -- slow.anim:0.5 quick.anim:0.5
 # Both trimmed to the shorter walk.
 for walk in slow quick; do "$bin/krok-edit" -q --to 3.6s -o ${walk}_clock.anim -- $walk.anim; done
-"$bin/krok-blend" -q --keys none -o clock.anim -- slow_clock.anim:0.5 quick_clock.anim:0.5
+"$bin/krok-blend" -q --contacts none -o clock.anim -- slow_clock.anim:0.5 quick_clock.anim:0.5
 
 say "3. Foot skate"
 {
   echo "| blend | foot skate |"
   echo "|---|---|"
-  echo "| in step (\`--align root\`) | $(slide warped.anim) mm/s |"
+  echo "| in step (\`--match-root root\`) | $(slide warped.anim) mm/s |"
   echo "| in step, planted feet (default) | $(slide stance.anim) mm/s |"
-  echo "| by the clock (\`--keys none\`) | $(slide clock.anim) mm/s |"
+  echo "| by the clock (\`--contacts none\`) | $(slide clock.anim) mm/s |"
 } | tee slide.md
 
 say "4. Gait events, in seconds"
@@ -67,8 +67,8 @@ echo "weight,blend,slide [mm/s]" >sweep.csv
 sheet=()
 for weight in "${weights[@]}"; do
   rest=$(other "$weight")
-  "$bin/krok-blend" -q --align root -o "weight_$weight.anim" -- "slow.anim:$rest" "quick.anim:$weight"
-  "$bin/krok-blend" -q --keys none -o clocked.anim \
+  "$bin/krok-blend" -q --match-root root -o "weight_$weight.anim" -- "slow.anim:$rest" "quick.anim:$weight"
+  "$bin/krok-blend" -q --contacts none -o clocked.anim \
     -- "slow_clock.anim:$rest" "quick_clock.anim:$weight"
   echo "$weight,in step,$(slide "weight_$weight.anim")" >>sweep.csv
   echo "$weight,by the clock,$(slide clocked.anim)" >>sweep.csv
@@ -77,7 +77,7 @@ done
 rm -f clocked.anim clocked.keys.json
 "$bin/krok-plot" -q --x weight --by blend --style both -o slide.svg \
   --title "Sliding feet over the weight of the quick walk" -- sweep.csv
-"$bin/krok-plot" -q --sheet sweep.png --sides left --moments 6 --size 110 -- "${sheet[@]}"
+"$bin/krok-plot" -q --sheet sweep.png --view left --moments 6 --actor-size 110 -- "${sheet[@]}"
 echo "  slide.svg   foot skate over the weight"
 echo "  sweep.png   the blends from weight 0 (top) to weight 1 (bottom)"
 

@@ -32,7 +32,7 @@ say "2. Skin with each method"
 for method in "${methods[@]}"; do
   "$bin/krok-skin" -q --as baked --method "$method" --every 45 -o "$method.glb" -- forearm.model twist.anim
 done
-"$bin/krok-plot" -q --sheet twist.png --sides front --moments 0s,0.75s,1.5s,2.25s,3s --size 150 \
+"$bin/krok-plot" -q --sheet twist.png --view front --moments 0s,0.75s,1.5s,2.25s,3s --actor-size 150 \
   -- "${methods[@]/%/.glb}"
 echo "  twist.png   twisted by 0, 45, 90, 135 and 180 degrees"
 

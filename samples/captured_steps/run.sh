@@ -51,14 +51,14 @@ JSON
 say "2. A library of steps forward, and one of steps backward where there are any"
 describe forward auto
 describe backward backward
-"$bin/krok-fit" forward.json -o forward.steps --keep-going --json=forward_fit.json --plots charts ||
+"$bin/krok-fit" forward.json -o forward.steps --keep-going --json=forward_fit.json --plot charts ||
   [ $? -eq 3 ] # some captures were left out
 "$bin/krok-fit" backward.json -o backward.steps --keep-going --json=backward_fit.json ||
   [ -e backward.steps ] || echo "  no library of steps backward"
 
 say "3. Walks of these steps"
-"$bin/krok-walk" forward.steps --to 0,4m -o walk.anim
-[ ! -e backward.steps ] || "$bin/krok-walk" backward.steps --to 0,-3m -o walk_back.anim
+"$bin/krok-walk" forward.steps --goal 0,4m -o walk.anim
+[ ! -e backward.steps ] || "$bin/krok-walk" backward.steps --goal 0,-3m -o walk_back.anim
 
 say "4. Images"
 "$bin/krok-plot" -q --strip walk.png walk.anim

@@ -37,13 +37,13 @@ stairs=stairs:rise=-17cm,run=30cm,count=12,begin=20cm
 "$bin/krok-ragdoll" down.bvh --at 5.3s --push Spine2=10Ns,0,140Ns --duration 8s --ground $stairs \
   --get-up front.anim --get-up back.anim --get-up side.anim -o stairs_up.anim --json=stairs.json
 "$bin/krok-edit" -q stairs_up.anim --append on.anim --blend 0s --match-height -o stairs.anim
-"$bin/krok-plot" -q stairs.anim --ground $stairs --whole-ground --strip stairs.png --sides left \
-  --moments 5.3s,5.9s,6.4s,7s,9s,11s,13s,15s,17s --size 200
+"$bin/krok-plot" -q stairs.anim --ground $stairs --whole-ground --strip stairs.png --view left \
+  --moments 5.3s,5.9s,6.4s,7s,9s,11s,13s,15s,17s --actor-size 200
 
 say "6. A skinned walker, images and a page"
 "$bin/krok-body" -q fall.anim -o walker.model
 "$bin/krok-skin" -q walker.model fall.anim -o fall.glb --as rig
-"$bin/krok-plot" -q fall.anim --sheet fall.png --moments 16 --sides right --size 200
+"$bin/krok-plot" -q fall.anim --sheet fall.png --moments 16 --view right --actor-size 200
 "$bin/krok-view" -q fall.anim -o fall.html
 
 say "7. Hard and soft ranges of motion"

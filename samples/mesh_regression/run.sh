@@ -48,7 +48,7 @@ if differs changed; then fail "the change was not detected"; fi
 
 say "4. Inspect the difference"
 "$bin/krok-diff" -q golden/turn.glb out/turn.glb --tolerance 0.1mm --angle 0.5deg \
-  --heatmap turn_heat.glb --plot turn.svg --sheet turn.png --sides left --moments 4 --size 150 || true
+  --heatmap turn_heat.glb --plot turn.svg --sheet turn.png --view left --moments 4 --actor-size 150 || true
 echo "  turn_heat.glb   heat map on the character at the largest difference"
 echo "  turn.svg        difference over time"
 echo "  turn.png        both at several moments"

@@ -27,8 +27,8 @@ cp -- "$story/goals.json" .
   --plot rail.svg --json=rail.report.json -v
 
 say "4. Images and a page"
-"$bin/krok-plot" -q rail.anim --sheet moments.png --sides front-right --size 200 \
+"$bin/krok-plot" -q rail.anim --sheet moments.png --view front-right --actor-size 200 \
   --moments 0.3s,0.8s,1.2s,1.7s,2.2s,2.8s
-"$bin/krok-plot" -q rail.anim --strip strip.png --moments 12 --sides right --size 200
+"$bin/krok-plot" -q rail.anim --strip strip.png --moments 12 --view right --actor-size 200
 "$bin/krok-view" -q sliding.bvh rail.anim --layout together --goals goals.json -o rail.html
 echo "  stance.svg, rail.svg, moments.png, strip.png, rail.html"

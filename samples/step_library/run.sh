@@ -32,11 +32,11 @@ echo "  $(ls walk_*.bvh turn_*.bvh wide_*.bvh | wc -l) captures"
 
 say "2. A library of their left steps by length and height, refined"
 "$bin/krok-fit" library.json -o unrefined.steps --refine 0
-"$bin/krok-fit" library.json -o walking.steps --plots charts --json=fit.json
+"$bin/krok-fit" library.json -o walking.steps --plot charts --json=fit.json
 
 say "3. Libraries with three parameters (turn) and four (width)"
-"$bin/krok-fit" library_turns.json -o turning.steps --plots charts_turns --json=fit_turns.json
-"$bin/krok-fit" library_widths.json -o any.steps --plots charts_widths --json=fit_widths.json
+"$bin/krok-fit" library_turns.json -o turning.steps --plot charts_turns --json=fit_turns.json
+"$bin/krok-fit" library_widths.json -o any.steps --plot charts_widths --json=fit_widths.json
 
 say "4. A library of steps that contradict each other, as captured ones do"
 seed=0
@@ -51,7 +51,7 @@ for length in 50 55 60 65 70 75 80; do
   done
 done
 "$bin/krok-fit" library_captured.json -o captured.steps --json=fit_captured.json
-"$bin/krok-fit" library_captured.json -o exact.steps --kernel cubic --smooth 0 --json=fit_exact.json
+"$bin/krok-fit" library_captured.json -o exact.steps --kernel cubic --smoothing 0 --json=fit_exact.json
 
 say "5. Synthesise steps"
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm -o step.anim
@@ -64,5 +64,5 @@ mkdir -p sheet
 "$bin/krok-synth" captured.steps --set length=62cm --set duration=0.6s --plant -o captured.anim
 
 say "6. Images"
-"$bin/krok-plot" -q --sheet=steps.png --sides left --moments 5 --size 150 sheet/step_*.anim
+"$bin/krok-plot" -q --sheet=steps.png --view left --moments 5 --actor-size 150 sheet/step_*.anim
 echo "  steps.png, charts/*.svg, charts_turns/*.svg, charts_widths/*.svg"

@@ -32,7 +32,7 @@ say "3. A body, and a camera that follows"
 "$bin/krok-view" -q walker.model story.anim story.cam -o story.html
 
 say "4. Images"
-"$bin/krok-plot" -q story.anim --strip story.png --moments 16 --sides left --size 200
-"$bin/krok-plot" -q story.anim --sheet moments.png --sides front-left --size 170 \
+"$bin/krok-plot" -q story.anim --strip story.png --moments 16 --view left --actor-size 200
+"$bin/krok-plot" -q story.anim --sheet moments.png --view front-left --actor-size 170 \
   --moments 1.2s,3.6s,6.5s,10.9s,15s,19.5s,21.3s,23.5s
 echo "  story.html, story.glb, story.png, moments.png"

@@ -39,12 +39,12 @@ awk 'BEGIN {
   }
 }' > hill.obj
 "$bin/krok-walk" walking.steps --path way.svg --ground hill.obj --save-prints prints.csv \
-  -o hill.anim --json=hill.json --view hill.html
+  -o hill.anim --json=hill.json --save-page hill.html
 
 say "3. Up stairs"
 stairs=stairs:rise=17cm,run=29cm,count=8
-"$bin/krok-walk" walking.steps --to 0m,5m --ground $stairs -o stairs.anim --json=stairs.json \
-  --save-prints stairs_prints.csv --view stairs.html
+"$bin/krok-walk" walking.steps --goal 0m,5m --ground $stairs -o stairs.anim --json=stairs.json \
+  --save-prints stairs_prints.csv --save-page stairs.html
 
 say "4. Across stepping stones, on footprints made by hand"
 cp -- "$story/stones.csv" .
@@ -63,7 +63,7 @@ awk -F, 'NR > 1 {
   }
 }' stones.csv > stones.obj
 "$bin/krok-walk" walking.steps --prints stones.csv --ground stones.obj -o stones.anim --json=stones.json \
-  --view stones.html
+  --save-page stones.html
 
 say "5. A skinned walker, and another actor on the same stairs"
 "$bin/krok-body" -q hill.anim -o walker.model
@@ -74,10 +74,10 @@ say "5. A skinned walker, and another actor on the same stairs"
 
 say "6. Images and charts"
 "$bin/krok-plot" -q hill.anim --ground hill.obj --prints prints.csv --strip hill.png --moments 18 \
-  --sides right --size 200 --show path,feet -o hill.svg
+  --view right --actor-size 200 --show path,feet -o hill.svg
 "$bin/krok-plot" -q child.anim --ground $stairs --prints stairs_prints.csv --sheet stairs.png \
-  --whole-ground --moments 3 --sides back-left --elevation 20deg --size 200
+  --whole-ground --moments 3 --view back-left --elevation 20deg --actor-size 200
 "$bin/krok-plot" -q stones.anim --ground stones.obj --prints stones.csv --sheet stones.png \
-  --whole-ground --moments 3 --sides front-left --elevation 20deg --size 200
+  --whole-ground --moments 3 --view front-left --elevation 20deg --actor-size 200
 echo "  hill.glb, hill.png, stairs.png, stones.png, hill.svg"
 say "Done. Open hill.html, stairs.html, stones.html and child.html in a browser."

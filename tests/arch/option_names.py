@@ -2,31 +2,18 @@
 
 Usage: option_names.py BIN_FOLDER
 
-Fails if a name takes values of two kinds, or one idea has two names, beyond those listed here, and if
-what is listed here is gone (so that the lists only shrink). Prints the number of names.
+Fails if a name takes values of two kinds, or if a name from before (tools/cli/renamed_options.h) is
+not refused with the new one as the hint. Prints the number of names.
 """
 
 import collections
 import pathlib
+import re
 import subprocess
 import sys
 
 binaries = pathlib.Path(sys.argv[1])
-
-# Ideas, by words of the help that no other option has, and the names that they still have.
-IDEAS = {
-    "frame rate of the result": {"--rate", "--fps", "--resample"},
-    "chart beside the result": {"--plot", "--plots"},
-    "side of the view": {"--sides", "--view", "--front"},
-    "contacts of feet": {"--contacts", "--keys", "--find"},
-    "actors at their own places": {"--layout", "--together"},
-    "how things are matched": {"--match", "--align", "--by-order"},
-}
-# Names that still take values of several kinds.
-KINDS = {
-    "--cam", "--clip", "--from", "--ground", "--joints", "--keys", "--margin", "--model", "--order",
-    "--set", "--size", "--smooth", "--table", "--to", "--until", "--up", "--view",
-}
+renamed = (pathlib.Path(__file__).parents[2] / "tools/cli/renamed_options.h").read_text()
 
 kinds = collections.defaultdict(lambda: collections.defaultdict(set))
 for program in sorted(binaries.glob("krok-*")):
@@ -39,18 +26,15 @@ for program in sorted(binaries.glob("krok-*")):
 
 failed = False
 for name, found in sorted(kinds.items()):
-    if len(found) > 1 and name not in KINDS:
+    if len(found) > 1:
         failed = True
         print(f"{name} takes values of several kinds: " +
               "; ".join(f"{kind} in {', '.join(sorted(tools))}" for kind, tools in sorted(found.items())))
-for name in sorted(KINDS):
-    if len(kinds.get(name, ())) < 2:
+rows = re.findall(r'\{"(krok-\w+)", "(--[\w-]+)", "((--[\w-]+)[^"]*)"\}', renamed)
+for tool, before, now, name in rows:
+    run = subprocess.run([binaries / tool, before], capture_output=True, text=True, check=False)
+    if run.returncode != 2 or now not in run.stderr or not any(tool in found for found in kinds[name].values()):
         failed = True
-        print(f"{name} has one kind now, or is gone: take it out of KINDS in {__file__}")
-for idea, names in IDEAS.items():
-    for name in sorted(names - kinds.keys()):
-        failed = True
-        print(f"{idea}: {name} is gone: take it out of IDEAS in {__file__}")
-print(f"{len(kinds)} names of options; {len(KINDS)} with several kinds of values; "
-      f"{sum(len(names) > 1 for names in IDEAS.values())} ideas with several names")
-sys.exit(failed)
+        print(f"{tool} {before}: expected exit 2 and the hint {now}, an option of it: {run.stderr}")
+print(f"{len(kinds)} names of options, each with one kind of values; {len(rows)} former names refused")
+sys.exit(failed or not rows)

@@ -39,7 +39,7 @@ TEST_F(AbsurdRates, AreRefusedByEveryTool) {
         {"krok-blend", "bad.anim:0.5", "walk.anim:0.5", "-o", "out.anim"},
         {"krok-export", "bad.anim", "-o", "out.bvh"},
         {"krok-export", "bad.anim", "-o", "out.glb"},
-        {"krok-edit", "bad.anim", "-o", "out.anim", "--speed", "2"},
+        {"krok-edit", "bad.anim", "-o", "out.anim", "--playback-speed", "2"},
         {"krok-info", "bad.anim", "--json"}};
     for (const auto& words : runs) {
       const ToolRun run = run_here(words[0], {words.begin() + 1, words.end()});

@@ -208,8 +208,8 @@ TEST_F(Behaviour, NumbersOfOptionsMustParseWhole) {
 TEST_F(Behaviour, NumbersAreDecimal) {
   ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("in.anim")}).exit_code, 0);
   const auto frames_at_speed = [&](const std::string& speed) {
-    const ToolRun run = run_tool(
-        "krok-edit", {path("in.anim"), "-o", path("out.anim"), "--speed", speed, "--json"});
+    const ToolRun run = run_tool("krok-edit", {path("in.anim"), "-o", path("out.anim"),
+                                               "--playback-speed", speed, "--json"});
     return run.exit_code == 0 ? Json::parse(run.out)["result"]["frames"].get<int>() : -1;
   };
   EXPECT_EQ(frames_at_speed("010"), frames_at_speed("10"));

@@ -38,7 +38,7 @@ TEST_F(Mistakes, UnknownJointsToo) {
               HasSubstr("did you mean 'Spine'?"));
   EXPECT_THAT(refused("krok-plot", {"in.bvh", "--show", "angle", "-o", "a.svg"}),
               HasSubstr("did you mean 'angles'?"));
-  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--sides", "fornt", "--sheet", "a.png"}),
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--view", "fornt", "--sheet", "a.png"}),
               HasSubstr("did you mean 'front'?"));
 }
 
@@ -54,9 +54,9 @@ TEST_F(Mistakes, WordsOfOtherProgramsLeadOn) {
               HasSubstr("did you mean 'Hips'?"));
   put("hero.glb", "glTF\2\0\0\0");
   EXPECT_THAT(refused("krok-body", {"hero.glb", "-o", "a.model"}),
-              HasSubstr("krok-import converts it: --character"));
+              HasSubstr("krok-import converts it: --save-character"));
   EXPECT_THAT(refused("krok-import", {"in.bvh", "-o", "hero.character"}),
-              HasSubstr("krok-import --character"));
+              HasSubstr("krok-import --save-character"));
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "--height", "180", "-o", "a.anim"}),
               HasSubstr("180cm"));
 }

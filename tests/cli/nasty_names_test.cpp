@@ -76,7 +76,7 @@ TEST_F(NastyNames, ReachNoFile) {
       {"krok-plot", "out.csv", "--y", "y", "-o", "table.svg"},
       {"krok-view", "nasty.anim", "--body", "none", "-o", "out.html"},
       {"krok-keys", "nasty.anim", "-o", "out.keys.json", "--plot", "keys.svg"},
-      {"krok-ik", "nasty.anim", "--learn-limits", "walk.anim", "--write-limits", "out.limits.json"},
+      {"krok-ik", "nasty.anim", "--learn-limits", "walk.anim", "--save-limits", "out.limits.json"},
       {"krok-import", "out.gltf", "-o", "back.anim", "--json=report.json"}};
   for (const auto& words : runs) {
     const ToolRun run = run_here(words[0], {words.begin() + 1, words.end()});

@@ -80,11 +80,11 @@ TEST_F(ReportAndFiles, NoFolderGetsIntoAResult) {
   ToolOptions options;
   options.folder = path("a");
   ASSERT_EQ(
-      run_tool("krok-import", {"../in.bvh", "-o", "out.anim", "--model", "out.model"}, options)
+      run_tool("krok-import", {"../in.bvh", "-o", "out.anim", "--save-model", "out.model"}, options)
           .exit_code,
       0);
-  ASSERT_EQ(run_tool("krok-import",
-                     {path("in.bvh"), "-o", path("b/out.anim"), "--model", path("b/other.model")})
+  ASSERT_EQ(run_tool("krok-import", {path("in.bvh"), "-o", path("b/out.anim"), "--save-model",
+                                     path("b/other.model")})
                 .exit_code,
             0);
   EXPECT_TRUE(get(path("a/out.anim")) == get(path("b/out.anim")));

@@ -19,12 +19,12 @@ void import_scene(std::span<const std::byte> input) {
   const std::string report = scratch("report.json"), weights = scratch("weights.csv");
   // Not every scene has all of them; what it has is written.
   const std::vector<std::vector<std::string>> outputs = {
-      {"-o", motion, "--model", model},
+      {"-o", motion, "--save-model", model},
       {"-o", motion},
-      {"--model", model},
-      {"--character", scratch("out.character"), "--model", model},
-      {"--morphs", scratch("out.exr"), "--morph-weights", weights},
-      {"--cam", scratch("out.cam")}};
+      {"--save-model", model},
+      {"--save-character", scratch("out.character"), "--save-model", model},
+      {"--save-morphs", scratch("out.exr"), "--morph-weights", weights},
+      {"--save-cam", scratch("out.cam")}};
   for (std::vector<std::string> arguments : outputs) {
     arguments.insert(arguments.end(), {scene, "--json=" + report});
     const bool read = run_tool(cli::import::make_spec, arguments);

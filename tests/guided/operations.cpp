@@ -133,7 +133,7 @@ std::vector<std::string> edit_options(Choices& choices, const std::string& input
         break;
       case 5:
         options.insert(options.end(), {"--filter=savgol", "--window=" + value(choices),
-                                       "--order=" + value(choices)});
+                                       "--filter-order=" + value(choices)});
         break;
       case 6:
         options.push_back("--from=" + value(choices, "s"));
@@ -148,10 +148,10 @@ std::vector<std::string> edit_options(Choices& choices, const std::string& input
         options.push_back("--mirror");
         break;
       case 10:
-        options.push_back("--speed=" + value(choices));
+        options.push_back("--playback-speed=" + value(choices));
         break;
       case 11:
-        options.push_back("--resample=" + value(choices));
+        options.push_back("--rate=" + value(choices));
         break;
       case 12:
         options.push_back("--append=" + input);
@@ -188,7 +188,7 @@ std::vector<std::string> edit_options(Choices& choices, const std::string& input
         options.push_back("--move=" + place(choices));
         break;
       default:
-        options.push_back(choices.one_in(2) ? "--ground" : "--plant");
+        options.push_back(choices.one_in(2) ? "--on-ground" : "--plant");
         break;
     }
   }
@@ -263,8 +263,8 @@ void blend(Choices& choices, const Motions& motions, Options options) {
                   fmt::format("{}:{}", motions.edited, choices.one_in(2) ? 1 - weight : weight),
                   "-o", out, "--save-warp=" + warp, "--modifier",
                   std::string("--warp=") + kWarps[choices.below(std::size(kWarps))],
-                  std::string("--align=") + kSpaces[choices.below(std::size(kSpaces))]});
-  if (choices.one_in(2)) options.push_back("--keys=none");
+                  std::string("--match-root=") + kSpaces[choices.below(std::size(kSpaces))]});
+  if (choices.one_in(2)) options.push_back("--contacts=none");
   maybe(choices, options, "--rate");
   if (!run_tool(cli::blend::make_spec, options)) return;
   judge_motion(out);
@@ -289,13 +289,13 @@ void ik(Choices& choices, const Motions& motions, Options options) {
   reach += "@" + value(choices, "s");
   options.insert(options.end(),
                  {motions.edited, "-o", out, reach,
-                  std::string("--method=") + kMethods[choices.below(std::size(kMethods))]});
+                  std::string("--solver=") + kMethods[choices.below(std::size(kMethods))]});
   if (choices.one_in(3)) options.push_back("--root-moves");
   if (choices.one_in(3)) options.push_back("--limits=auto");
   if (choices.one_in(3)) options.push_back("--plant");
   maybe(choices, options, "--fade", "s");
   maybe(choices, options, "--tolerance", "mm");
-  maybe(choices, options, "--margin", "deg");
+  maybe(choices, options, "--limit-margin", "deg");
   if (run_tool(cli::ik::make_spec, options)) judge_motion(out);
 }
 

@@ -103,8 +103,8 @@ async function footsteps(page, walk, prints) {
 
 await check(60, async () => {
   fitLibrary();
-  run('krok-walk', '-q', made('walking.steps'), '--to', '0m,3m', '--ground', STAIRS, '-o', made('stairs.anim'),
-    '--save-prints', made('prints.csv'), '--view', made('stairs.html'));
+  run('krok-walk', '-q', made('walking.steps'), '--goal', '0m,3m', '--ground', STAIRS, '-o', made('stairs.anim'),
+    '--save-prints', made('prints.csv'), '--save-page', made('stairs.html'));
   const stairs = await open('stairs.html');
   const tread = (z) => 0.1 * Math.min(6, Math.max(0, Math.floor((z - 1) / 0.29) + 1));
   const prints = await printsAreDrawn(stairs, 'stairs', tread);
@@ -122,8 +122,8 @@ await check(60, async () => {
   const apart = one.prints.list.map(({ heel }, i) => Math.hypot(...heel.map((x, k) => x - two.prints.list[i].heel[k])));
   expect(Math.max(...apart) < 2e-5, `krok-view shows prints ${Math.max(...apart)} m from those of krok-walk`);
 
-  run('krok-walk', '-q', made('walking.steps'), '--to', '0m,3m', '--ground', 'slope:-6deg', '-o', made('slope.anim'),
-    '--view', made('slope.html'));
+  run('krok-walk', '-q', made('walking.steps'), '--goal', '0m,3m', '--ground', 'slope:-6deg', '-o', made('slope.anim'),
+    '--save-page', made('slope.html'));
   const slope = await open('slope.html');
   await printsAreDrawn(slope, 'slope', (z) => -Math.tan((6 * Math.PI) / 180) * Math.max(0, z - 1));
 });

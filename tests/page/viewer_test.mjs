@@ -335,7 +335,7 @@ await check(80, async () => {
   await flown.keyboard.press('c');
   expect(await fly.getAttribute('aria-pressed') === 'false', 'c does not land again');
 
-  run('krok-view', made('walk.anim'), '--keys', 'find', '--body', 'none', '-o', made('keys.html'));
+  run('krok-view', made('walk.anim'), '--contacts', 'find', '--body', 'none', '-o', made('keys.html'));
   const keyed = await open('keys.html');
   const bars = await keyed.evaluate(() => {
     const canvas = document.getElementById('lanes');
@@ -351,7 +351,7 @@ await check(80, async () => {
   expect((await look(glb, 'glb')).colours > 500, 'the page of a GLB is blank');
 
   writeFileSync(made('flag.gltf'), squareWithPicture());
-  run('krok-import', made('flag.gltf'), '--character', made('flag.character'));
+  run('krok-import', made('flag.gltf'), '--save-character', made('flag.character'));
   run('krok-view', made('flag.character'), '-o', made('flag.html'));
   const flag = await open('flag.html');
   await look(flag, 'flag');

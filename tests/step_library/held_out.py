@@ -34,10 +34,10 @@ TINY = 1e-5        # spacing that keeps all examples but exact duplicates
 SIMPLE = ("planes", "nearest", "cubic")
 ALLOWED = 1.05
 WAYS = {  # options of krok-fit, and the spacing of the description (None: the default)
-    "planes": (("--kernel", "cubic", "--smooth", "1000000", "--refine", "0"), TINY),
-    **{kernel: (("--kernel", kernel, "--smooth", "0", "--refine", "0"), None)
+    "planes": (("--kernel", "cubic", "--smoothing", "1000000", "--refine", "0"), TINY),
+    **{kernel: (("--kernel", kernel, "--smoothing", "0", "--refine", "0"), None)
        for kernel in ("cubic", "linear", "gaussian", "bspline", "wendland")},
-    **{f"{kernel} {smoothing}": (("--kernel", kernel, "--smooth", smoothing, "--refine", "0"), None)
+    **{f"{kernel} {smoothing}": (("--kernel", kernel, "--smoothing", smoothing, "--refine", "0"), None)
        for kernel in ("cubic", "linear") for smoothing in ("0.01", "0.1", "1", "10")},
     "unrefined": (("--refine", "0"), None),
     "default": ((), None),

@@ -14,6 +14,7 @@
 #include "core/nearest_name.h"
 #include "core/text.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/renamed_options.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli {
@@ -358,6 +359,11 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     if (!is_long && !letter) continue;
     const std::string name = argument.substr(0, argument.find('='));
     if (app_.get_option_no_throw(name) != nullptr) continue;
+    for (const RenamedOption& option : kRenamedOptions) {
+      if (option.tool != tool_ || option.before != name) continue;
+      return usage(fmt::format("unknown option '{}'", name),
+                   fmt::format("its name is {} now", option.now));
+    }
     const std::string near = is_long ? nearest_name(name, names) : std::string();
     return Error("usage", fmt::format("unknown option '{}'", shown(name)),
                  near.empty() ? fmt::format("see {} --help", tool_)

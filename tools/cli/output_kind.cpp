@@ -22,7 +22,7 @@ std::string maker_of(Kind kind, Kind from) {
     case Kind::bvh:
       return "krok-export converts .anim files to BVH";
     case Kind::character:
-      return "krok-import --character writes one of a GLB or FBX file";
+      return "krok-import --save-character writes one of a GLB or FBX file";
     case Kind::model:
       return "krok-body creates a .model file for a .anim file";
     case Kind::anim:

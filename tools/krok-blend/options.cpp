@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "tools/krok-blend/run.h"
 #include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/shared_options.h"
 
@@ -29,7 +28,7 @@ void declare(CommandOptions& command, Options& options) {
   command.add("--rate", options.rate, rate(), "Frames per second (default: the first motion's)");
   command.group("Space");
   command.add(
-      "--align HOW", options.align,
+      "--match-root HOW", options.align,
       choice<AlignChoice>({{"auto", AlignChoice::automatic},
                            {"root", AlignChoice::root},
                            {"stance", AlignChoice::stance},

@@ -1,4 +1,4 @@
-#include "tools/krok-blend/run.h"
+#include "tools/krok-blend/options.h"
 
 #include <fmt/format.h>
 
@@ -81,7 +81,7 @@ Result<Correspondence> find_moments(const Options& options, const std::vector<Mo
     context.warn("blend-keys",
                  fmt::format("{} has no keytimes; the motions are matched from beginning to end",
                              motion.name),
-                 "--warp dtw aligns them by their poses; krok-keys --set sets keytimes");
+                 "--warp dtw aligns them by their poses; krok-keys --keytime sets keytimes");
     return ends();
   }
   std::vector<krok::blend::KeyedMotion> keyed;

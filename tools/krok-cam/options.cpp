@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-cam/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::cam {
@@ -61,13 +60,14 @@ void declare_subject(CommandOptions& command, Options& o) {
 void declare_place(CommandOptions& command, Options& o) {
   command.group("View direction");
   command.only_with(kFilms);
-  command.add("--view VIEW", o.view,
-              choice<View>({{"front", View::front},
-                            {"three-quarter", View::three_quarter},
-                            {"left", View::left},
-                            {"right", View::right},
-                            {"back", View::back},
-                            {"top", View::top}}),
+  ValueKind<View> view = choice<View>({{"front", View::front},
+                                       {"three-quarter", View::three_quarter},
+                                       {"left", View::left},
+                                       {"right", View::right},
+                                       {"back", View::back},
+                                       {"top", View::top}});
+  view.name = "view";
+  command.add("--view VIEW", o.view, view,
               "front, three-quarter (between the character's front and left), left, right, back or "
               "top; an orbit starts there",
               "three-quarter");
@@ -148,9 +148,9 @@ void declare_output(CommandOptions& command, Options& o) {
       .not_with("--format cam");
   command.add_option("--name NAME", o.name, "glTF: name of the camera").default_str("camera");
   command
-      .add("--clip", o.clip, whole(0, 1000000),
-           "--into a file with several animations: index of the one to add the camera to; default: "
-           "the first")
+      .add_option("--clip NAME", o.clip,
+                  "--into a file with several animations: name or number from 0 of the one to add "
+                  "the camera to; default: the first")
       .only_with("--into");
 }
 

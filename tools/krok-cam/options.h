@@ -47,7 +47,7 @@ struct Options {
   // glTF.
   std::string into;
   std::string name = "camera";
-  std::optional<int> clip;
+  std::string clip;
 
   // Whether an option such as "--aspect" was given; set by declare().
   std::function<bool(const char* option)> given;
@@ -69,5 +69,9 @@ std::string ending(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Makes or reads the camera and writes it. Codes cam-input, cam-format, cam-joint, and those of the
+// functions it calls.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::cam

@@ -1,4 +1,4 @@
-#include "tools/krok-cam/run.h"
+#include "tools/krok-cam/options.h"
 
 #include <fmt/format.h>
 
@@ -48,7 +48,7 @@ int find_animation(const nodes::Scene& scene, int camera, Diagnostics& found) {
     const std::string name = animation_name(scene, static_cast<std::size_t>(best.animation));
     found.push_back(make_warning("cam-animations",
                                  fmt::format("using {}, {}", shown(name), best.why),
-                                 "krok-import --cam selects another with --clip"));
+                                 "krok-import --save-cam selects another with --clip"));
   }
   return best.animation;
 }
@@ -275,7 +275,7 @@ Result<Shot> make_shot(const Options& options, ToolContext& context) {
                fmt::format("this is {}, expected keys, a camera, a scene with one, or a motion",
                            registry::describe_content(file->bytes())),
                registry::is_read_through_assimp(kind)
-                   ? "krok-import --cam shot.cam extracts a camera from such scenes"
+                   ? "krok-import --save-cam shot.cam extracts a camera from such scenes"
                    : "keys are JSON, see formats/camera_keys/SPEC.md")
       .in_file(file->path());
 }

@@ -68,7 +68,7 @@ void declare_tolerances(CommandOptions& command, Options& o) {
       "handedness is always a difference. Tangents that only one of two glTF files has are a "
       "difference if both have a normal texture, else they are only reported");
   command.add(
-      "--joints LENGTH[,ANGLE]", o.joints,
+      "--joint-tolerance LENGTH[,ANGLE]", o.joints,
       numbers({tolerance(length_with_unit()), tolerance(angle())}, 1),
       "The same for joints only, 1mm or 1mm,0.5deg (default: those of --tolerance and --angle)");
   command.add("--times", o.tolerance.time, tolerance(seconds({})),

@@ -5,7 +5,6 @@
 #include "core/numbers.h"
 #include "formats/io/formats.h"
 #include "tools/krok-edit/event_time.h"
-#include "tools/krok-edit/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::edit {
@@ -51,7 +50,7 @@ void declare_cleaning(CommandOptions& command, Options& o) {
            "9")
       .only_with("--filter savgol");
   command
-      .add("--order", o.order, whole(0, 1000000),
+      .add("--filter-order", o.order, whole(0, 1000000),
            "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: polynomial "
            "degree [3]")
       .only_with("--filter");
@@ -72,7 +71,7 @@ void declare_cleaning(CommandOptions& command, Options& o) {
 }
 
 void declare_cut(CommandOptions& command, Options& o) {
-  const ValueKind<CutTime> time = {"time or keytime", "TIME", parse_cut_time, {}};
+  const ValueKind<CutTime> time = {"time", "TIME", parse_cut_time, {}};
   command.group("2. Cut");
   command.add(
       "--from", o.from, time,
@@ -110,9 +109,9 @@ void declare_timing(CommandOptions& command, Options& o) {
   command.group("3. Mirror");
   command.add_flag("--mirror", o.mirror, "Mirror left and right at the plane x = 0");
   command.group("4. Timing");
-  command.add("--speed TIMES", o.speed, number(kPositive),
+  command.add("--playback-speed TIMES", o.speed, number(kPositive),
               "Playback speed factor; multiplied by the speed of a sequence", "1");
-  command.add("--resample", o.resample, rate(),
+  command.add("--rate", o.resample, rate(),
               "Frame rate of the result. Frames are interpolated: for a lower rate, --filter "
               "butterworth first removes what it cannot hold");
 }
@@ -188,7 +187,7 @@ void declare_place(CommandOptions& command, Options& o) {
   command.add("--turn", o.turn, angle(),
               "Turn left about the vertical axis through the start position");
   command.add("--move X,Y,Z", o.move, lengths<Vec3>(), "Translate along X, Y and Z: 1m,0,-20cm");
-  command.add_flag("--ground", o.ground, "Move the lowest foot position to y = 0");
+  command.add_flag("--on-ground", o.ground, "Move the lowest foot position to y = 0");
 }
 
 void declare(CommandOptions& command, Options& o) {

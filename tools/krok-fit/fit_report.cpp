@@ -271,10 +271,10 @@ void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolC
         fmt::format("steps with similar parameters differ: leave-one-out error is {} mm with "
                     "interpolation, {} mm with an affine fit",
                     readable(1e3 * means.weighted, 3), readable(1e3 * means.linear, 3)),
-        "--smooth auto averages them; examples are then not reproduced exactly");
+        "--smoothing auto averages them; examples are then not reproduced exactly");
   }
   context.log(
-      fmt::format("  smoothing {}: mean error of the examples' joints is {} mm; --smooth 0 "
+      fmt::format("  smoothing {}: mean error of the examples' joints is {} mm; --smoothing 0 "
                   "reproduces them exactly",
                   readable(smoothing), readable(1e3 * fitted.example_distance, 3)));
 }

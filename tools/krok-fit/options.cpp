@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "tools/cli/option_kinds.h"
-#include "tools/krok-fit/run.h"
 
 namespace krok::cli::fit {
 
@@ -24,7 +23,7 @@ void declare_weights(CommandOptions& command, Options& o) {
               "Radial basis function of the weights: cubic, linear, gaussian, bspline or wendland. "
               "auto: cubic, unless another one predicts clips that are left out clearly better",
               "auto");
-  command.add("--smooth auto|N", o.smooth, or_word("auto", number({0, 1e6})),
+  command.add("--smoothing auto|N", o.smooth, or_word("auto", number({0, 1e6})),
               "Smoothing. 0: examples are reproduced exactly. More: contradictory examples are "
               "averaged, from 0.001 (hardly) to 10 (almost affine). auto: 0, unless smoothing "
               "predicts clips that are left out clearly better; then the most that is not clearly "
@@ -36,7 +35,7 @@ void declare_refinement(CommandOptions& command, Options& o) {
   command.group("Fit");
   command.add("--refine", o.refine, whole(0, kMaxRefined),
               "Max number of points to insert, 0 for none (default: 40 per parameter)");
-  command.add("--until", o.until, length_with_unit(kPositive),
+  command.add("--max-error", o.until, length_with_unit(kPositive),
               "Max accepted error of length parameters (default: each parameter's tolerance in the "
               "description)");
   command.add("--holdout", o.held_out, whole(0, 100'000),
@@ -61,9 +60,9 @@ void declare(CommandOptions& command, Options& options) {
   declare_weights(command, options);
   declare_refinement(command, options);
   command.group("Output");
-  command.add_option("--plots DIR", options.plots,
-                     "Write charts (SVG) to this folder: error by inserted points, weights, "
-                     "examples and inserted points, measured by requested parameters");
+  command.add("--plot OUT_DIR", options.plots, output({}),
+              "Write charts (SVG) to this folder: error by inserted points, weights, "
+              "examples and inserted points, measured by requested parameters");
 }
 
 }  // namespace
@@ -78,7 +77,7 @@ ToolSpec make_spec() {
   spec.examples = {
       {"krok-fit walking.json -o walking.steps",
        "uses the examples in the description and refines until the tolerances are met"},
-      {"krok-fit walking.json -o walking.steps --refine 80 --until 0.5mm --plots charts",
+      {"krok-fit walking.json -o walking.steps --refine 80 --max-error 0.5mm --plot charts",
        "inserts up to 80 points until lengths are within 0.5 mm, and writes charts"},
       {"krok-fit walking.json --resume walking.steps --refine 160 -o better.steps",
        "continues the refinement of an earlier run"}};

@@ -7,7 +7,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-ik/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::ik {
@@ -112,16 +111,17 @@ void declare_limits(CommandOptions& command, Options& o) {
       .add_option("--learn-limits IN.anim", o.captures,
                   "Use the ranges that a motion of the same skeleton uses; repeatable")
       .one_each_time();
-  command.add("--margin", o.margin, angle(kNotNegative), "Margin added to learnt ranges", "0deg");
+  command.add("--limit-margin", o.margin, angle(kNotNegative), "Margin added to learnt ranges",
+              "0deg");
   command
-      .add("--write-limits OUT.limits.json", o.write_limits, output({".json"}),
+      .add("--save-limits OUT.limits.json", o.write_limits, output({".json"}),
            "Write the limits to a file; then neither goals nor -o are needed")
       .only_with({"--limits", "--learn-limits"});
 }
 
 void declare_solver(CommandOptions& command, Options& o) {
   command.group("Solver");
-  command.add("--method METHOD", o.solver.method,
+  command.add("--solver METHOD", o.solver.method,
               choice<krok::ik::Method>({{"least-squares", krok::ik::Method::least_squares},
                                         {"ccd", krok::ik::Method::ccd},
                                         {"two-bone", krok::ik::Method::two_bone}}),
@@ -178,7 +178,7 @@ ToolSpec make_spec() {
   spec.details = "Joints stay within their ranges of motion, and feet where they stand.";
   spec.inputs = "IN.anim";
   spec.writes = registry::Kind::anim;
-  spec.needs_output = false;  // --write-limits alone is enough
+  spec.needs_output = false;  // --save-limits alone is enough
   spec.examples = {
       {"krok-ik walk.anim --reach RightHand=-0.4m,1.1m,0.5m@1s..1.5s -o touch.anim",
        "the hand is at the place from 1 to 1.5 s and moves there and back in half a second each"},
@@ -188,7 +188,7 @@ ToolSpec make_spec() {
        "the head turns to a place, mostly by the neck"},
       {"krok-ik walk.anim --plant --goals goals.json -o reach.anim --plot reach.svg",
        "feet that stay where they stand, then goals; a chart of what is missed"},
-      {"krok-ik walk.anim --learn-limits run.anim --learn-limits dance.anim --write-limits "
+      {"krok-ik walk.anim --learn-limits run.anim --learn-limits dance.anim --save-limits "
        "actor.limits.json",
        "the ranges that an actor uses in captures, as a file for --limits"}};
   spec.batch = {io::motion_endings(), always(".anim")};

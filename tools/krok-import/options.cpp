@@ -4,7 +4,6 @@
 
 #include "formats/io/formats.h"
 #include "tools/cli/output_kind.h"
-#include "tools/krok-import/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::import {
@@ -32,7 +31,7 @@ void declare_inputs(CommandOptions& command, Options& options) {
                      "Skeleton of an Acclaim motion; default: the .asf file beside it whose name "
                      "starts the motion's name, or the only one");
   add_map_option(command, options.map);
-  command.add("--model OUT.model", options.model, output_of(registry::Kind::model),
+  command.add("--save-model OUT.model", options.model, output_of(registry::Kind::model),
               "Write the model: skeleton with reference pose, mesh and skin; for a capture "
               "the skeleton without vertices");
 }
@@ -40,24 +39,25 @@ void declare_inputs(CommandOptions& command, Options& options) {
 void declare_characters(CommandOptions& command, Options& options) {
   command.group("Characters");
   command
-      .add("--character OUT.character", options.character, output_of(registry::Kind::character),
+      .add("--save-character OUT.character", options.character,
+           output_of(registry::Kind::character),
            "Write the whole character: OUT.character and beside it OUT.model, OUT.material, "
-           "textures in OUT_textures/, morph targets in OUT_morphs.exr; replaces --model and "
-           "--morphs")
-      .not_with({"--model", "--morphs"});
+           "textures in OUT_textures/, morph targets in OUT_morphs.exr; replaces --save-model and "
+           "--save-morphs")
+      .not_with({"--save-model", "--save-morphs"});
   command.add_option("--clip NAME", options.clip,
                      "Animation to import: name, number from 0, or all; for all, {clip} in the "
                      "output's name is the animation's name [the first that moves at least half "
-                     "as many joints as any other; for --cam alone the camera]");
+                     "as many joints as any other; for --save-cam alone the camera]");
   command.add_option("--skin NAME", options.skin,
                      "Use the skeleton of this skin (name or number) if the file has several [the "
                      "one with the most joints]");
-  command.add_option("--cam OUT.cam", options.cam, "Write a camera of the file");
+  command.add_option("--save-cam OUT.cam", options.cam, "Write a camera of the file");
   command.add_option("--camera NAME", options.camera,
                      "Camera to write: name or number from 0 [the first]");
-  command.add_option(
-      "--morphs OUT.exr", options.morphs,
-      "Write the morph targets as a float texture (OpenEXR), for the vertices that --model writes");
+  command.add_option("--save-morphs OUT.exr", options.morphs,
+                     "Write the morph targets as a float texture (OpenEXR), for the vertices that "
+                     "--save-model writes");
   command.add_option("--morph-weights OUT.csv", options.weights,
                      "Write the morph target weights over time as a table");
 }
@@ -92,7 +92,7 @@ void declare_conventions(CommandOptions& command, Options& options) {
 void declare_timing(CommandOptions& command, Options& options) {
   command.group("Time");
   command.add("--fps", options.fps, rate(), "Frame rate of the file, overrides the file's value");
-  command.add("--resample", options.resample, rate(), "Resample the motion to N frames per second");
+  command.add("--rate", options.resample, rate(), "Resample the motion to N frames per second");
   command.add(
       "--skip-rest-frame WHEN", options.rest_frame,
       choice<RestFrame>(
@@ -128,7 +128,7 @@ Status check(const Options& options) {
     if (!rotation) return usage(rotation.error().message, rotation.error().hint);
   }
   if (options.character != "-") return {};
-  return usage("--character -: several files cannot go to standard output");
+  return usage("--save-character -: several files cannot go to standard output");
 }
 
 }  // namespace
@@ -158,18 +158,18 @@ ToolSpec make_spec() {
       "Captures: BVH, Acclaim. Characters: glTF (meshopt and Draco, too), FBX, COLLADA, SMD, MS3D, "
       "3DS, ASE, MD5.";
   spec.inputs = "IN";
-  spec.needs_output = false;  // --model or --cam alone is enough
+  spec.needs_output = false;  // --save-model or --save-cam alone is enough
   spec.examples = {
       {"krok-import walk.bvh -o walk.anim -v", "detects unit and axes and prints them"},
-      {"krok-import take7.bvh -o take7.anim --model actor.model --unit in --up z --forward -y",
+      {"krok-import take7.bvh -o take7.anim --save-model actor.model --unit in --up z --forward -y",
        "a capture in inches with +Z up, and its skeleton as a model"},
       {"krok-import 01_01.amc --skeleton 01.asf -o walk.anim",
        "an Acclaim motion with its skeleton, as in the CMU database"},
-      {"krok-import hero.glb --clip Walk -o walk.anim --model hero.model --cam shot.cam",
+      {"krok-import hero.glb --clip Walk -o walk.anim --save-model hero.model --save-cam shot.cam",
        "one animation of a character, its mesh and skin, and the camera"},
-      {"krok-import hero.glb --clip all -o 'hero_{clip}.anim' --morphs face.exr",
+      {"krok-import hero.glb --clip all -o 'hero_{clip}.anim' --save-morphs face.exr",
        "all animations, one file each, and the morph targets"},
-      {"krok-import hero.glb --character hero.character",
+      {"krok-import hero.glb --save-character hero.character",
        "the whole character: mesh, materials, textures and expressions"},
       {"krok-import broken.bvh -o broken.anim --repair --json",
        "repairs damaged frames and lists the repairs for a script"},

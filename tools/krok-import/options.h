@@ -16,13 +16,13 @@ struct Options {
   std::string input;
   std::string skeleton;                  // --skeleton, empty: search for it
   std::string map;                       // --map, empty: none
-  std::string model;                     // --model, empty: none
-  std::string character;                 // --character, empty: none
+  std::string model;                     // --save-model, empty: none
+  std::string character;                 // --save-character, empty: none
   std::string clip;                      // --clip, empty: see best_animation()
   std::string skin;                      // --skin, empty: the largest skeleton
-  std::string cam;                       // --cam, empty: none
+  std::string cam;                       // --save-cam, empty: none
   std::string camera;                    // --camera, empty: the first
-  std::string morphs;                    // --morphs, empty: none
+  std::string morphs;                    // --save-morphs, empty: none
   std::string weights;                   // --morph-weights, empty: none
   std::optional<Unit> unit;              // empty: found out
   std::optional<Direction> up, forward;  // empty: found out
@@ -45,5 +45,8 @@ io::CaptureReading read_options(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Reads the capture and writes the motion and, if requested, the model; both appear or neither.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::import

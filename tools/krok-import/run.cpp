@@ -1,4 +1,4 @@
-#include "tools/krok-import/run.h"
+#include "tools/krok-import/options.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,6 @@
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-import/facts.h"
-#include "tools/krok-import/options.h"
 #include "tools/krok-import/scene_importer.h"
 
 namespace krok::cli::import {
@@ -95,10 +94,10 @@ Status check_capture_options(const Options& options, const std::string& path) {
                  fmt::format("a capture has no {}: {} cannot be used", what, option))
         .in_file(path);
   };
-  if (!options.character.empty()) return missing("materials", "--character");
-  if (!options.cam.empty()) return missing("camera", "--cam");
+  if (!options.character.empty()) return missing("materials", "--save-character");
+  if (!options.cam.empty()) return missing("camera", "--save-cam");
   if (!options.camera.empty()) return missing("camera", "--camera");
-  if (!options.morphs.empty()) return missing("morph targets", "--morphs");
+  if (!options.morphs.empty()) return missing("morph targets", "--save-morphs");
   if (!options.weights.empty()) return missing("morph targets", "--morph-weights");
   if (!options.skin.empty()) return missing("skin", "--skin");
   if (!options.clip.empty()) return missing("animations to choose from", "--clip");
@@ -202,11 +201,12 @@ Result<int> run(const Options& given, ToolContext& context) {
   if (context.output.empty() && options.model.empty() && options.cam.empty() &&
       options.character.empty() && options.morphs.empty() && options.weights.empty()) {
     return Error("usage",
-                 "nothing to write: none of -o, --model, --character, --cam, --morphs is given",
+                 "nothing to write: none of -o, --save-model, --save-character, --save-cam, "
+                 "--save-morphs is given",
                  "write the motion with -o OUTPUT.anim");
   }
   if (!options.model.empty() && options.model == context.output) {
-    return Error("usage", "-o and --model name the same file");
+    return Error("usage", "-o and --save-model name the same file");
   }
   const auto input = context.open_long_input(options.input);
   if (!input) return input.error();

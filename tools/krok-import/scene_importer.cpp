@@ -48,7 +48,7 @@ Error SceneImporter::missing(const std::string& what, const std::string& option,
 
 Status SceneImporter::choose_camera() {
   if (cameras_.empty()) {
-    return missing("camera", "--cam", "in glTF, a camera must be used by a node of the scene");
+    return missing("camera", "--save-cam", "in glTF, a camera must be used by a node of the scene");
   }
   const auto chosen = krok::cli::choose_camera(scene_, cameras_, options_.camera, path_, context_);
   if (!chosen) return chosen.error();
@@ -67,7 +67,7 @@ Status SceneImporter::choose() {
            (wants_model() || wants_character() || wants_camera() || wants_morphs());
   if (wants_motion() && none && (options_.clip.empty() || options_.clip == "all")) {
     return missing("animation", "-o",
-                   "use --model without -o for the character, or --cam for a camera");
+                   "use --save-model without -o for the character, or --save-cam for a camera");
   }
   return {};
 }
@@ -97,7 +97,7 @@ Status SceneImporter::choose_animations() {
   warn("import-camera-clip",
        fmt::format("{} does not move the camera; {} does{}", shown(clips_[0].name), shown(name),
                    camera_clip_ ? " and is used for it, over the time of the motion" : ""),
-       camera_clip_ ? "--cam without -o writes it over its own time" : "");
+       camera_clip_ ? "--save-cam without -o writes it over its own time" : "");
   return {};
 }
 
@@ -146,9 +146,9 @@ void SceneImporter::report_what_else_is_there() {
   std::size_t targets = 0, meshes = 0;
   for (const nodes::Mesh& mesh : scene_.meshes) targets += mesh.target_count();
   if (!wants_model() && !wants_character()) meshes = scene_.meshes.size();
-  if (meshes > 0) more.push_back(meshes == 1 ? "a mesh (--model)" : "meshes (--model)");
-  if (!wants_camera()) has(cameras_.size(), "camera", "--cam");
-  if (!wants_morphs() && !wants_character()) has(targets, "morph target", "--morphs");
+  if (meshes > 0) more.push_back(meshes == 1 ? "a mesh (--save-model)" : "meshes (--save-model)");
+  if (!wants_camera()) has(cameras_.size(), "camera", "--save-cam");
+  if (!wants_morphs() && !wants_character()) has(targets, "morph target", "--save-morphs");
   if (more.empty()) return;
   warn("import-more", fmt::format("the file also has {}", fmt::join(more, ", ")), "",
        Severity::note);

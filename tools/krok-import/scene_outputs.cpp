@@ -39,9 +39,9 @@ namespace krok::cli::import {
 
 namespace {
 
-// Input of --character hero.character, which writes hero.model, hero.material with its images in
-// hero_textures/, hero_morphs.exr, and hero.character, which refers to them. Files without content
-// are not written.
+// Input of --save-character hero.character, which writes hero.model, hero.material with its images
+// in hero_textures/, hero_morphs.exr, and hero.character, which refers to them. Files without
+// content are not written.
 struct CharacterFiles {
   std::string path;  // of the .character file
   OrientationEncoding orientation = OrientationEncoding::xyz;
@@ -269,8 +269,8 @@ Status SceneImporter::add_actor() {
   context_.diagnose_in(path_, found);
   actor_ = std::move(*actor);
   if (wants_character() && actor_.model.triangles.empty()) {
-    return missing(scene_.meshes.empty() ? "mesh" : "mesh with triangles", "--character",
-                   "use --model for the skeleton alone");
+    return missing(scene_.meshes.empty() ? "mesh" : "mesh with triangles", "--save-character",
+                   "use --save-model for the skeleton alone");
   }
   if (Status status = add_model(); !status) return status;
   if (wants_character()) {
@@ -324,7 +324,7 @@ Status SceneImporter::add_whole_character() {
 
 Status SceneImporter::add_morphs() {
   MorphSet& morphs = actor_.morphs;
-  const char* option = options_.morphs.empty() ? "--morph-weights" : "--morphs";
+  const char* option = options_.morphs.empty() ? "--morph-weights" : "--save-morphs";
   if (morphs.names.empty()) return missing("morph target", option, "");
   result_["morph_targets"] = morphs.names;
   morphs.provenance = context_.provenance();
@@ -429,9 +429,9 @@ Status SceneImporter::add_camera(const ChosenClip& clip,
   context_.diagnose_in(path_, found);
   track->provenance = context_.provenance();
   track->provenance.conversions = place_.conversions;
-  const auto path = clip_path(options_.cam, "--cam", clip, clips_.size() > 1, ".cam");
+  const auto path = clip_path(options_.cam, "--save-cam", clip, clips_.size() > 1, ".cam");
   if (!path) return path.error();
-  if (Status status = check_output_kind(*path, "--cam", Kind::cam); !status) return status;
+  if (Status status = check_output_kind(*path, "--save-cam", Kind::cam); !status) return status;
   result_["camera"] = {
       {"name", scene_.nodes[static_cast<std::size_t>(camera_)].name},
       {"frames", track->frame_count()},

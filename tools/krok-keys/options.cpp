@@ -6,7 +6,6 @@
 
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-keys/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::keys {
@@ -65,8 +64,8 @@ void declare(CommandOptions& command, Options& o) {
       "steps (detect contacts and keytimes, keep manual edits), none (use the existing file), or "
       "auto: none if the file was edited by hand, otherwise steps",
       "auto");
-  command.add_option(
-      "--keys IN.json", o.keys,
+  command.add(
+      "--contacts", o.keys, contacts_file("IN.json"),
       "Initial keytime file (default: the one given by -o, or else the one beside the motion)");
   command
       .add_flag("--discard-edits", o.discard_edits,
@@ -76,13 +75,14 @@ void declare(CommandOptions& command, Options& o) {
               "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes");
   command.group("Manual edits");
   command
-      .add("--set", o.changes.set, keytime("=", true, "--set left_strike=1.25s"),
+      .add("--keytime", o.changes.set, keytime("=", true, "--keytime left_strike=1.25s"),
            "Move the keytime of that name within 0.15 s to this time, or add one; several "
            "separated by commas, or repeat the option. Times: 1.25s, 250ms, or 120f (frame)")
       .delimiter(',');
-  command.add_flag("--new", o.changes.new_names,
-                   "Allow --set to add a keytime of a name that is neither a gait event nor in the "
-                   "file, such as clap");
+  command.add_flag(
+      "--new", o.changes.new_names,
+      "Allow --keytime to add a keytime of a name that is neither a gait event nor in the "
+      "file, such as clap");
   command
       .add("--remove NAME[@TIME]", o.changes.remove,
            keytime("@", false, "--remove left_strike@1.25s"),
@@ -113,7 +113,7 @@ ToolSpec make_spec() {
       {"krok-keys walk.anim", "prints what is detected, or walk.keys.json if that was edited"},
       {"krok-keys walk.anim -o walk.keys.json --plot walk.svg",
        "writes the file beside the motion, and a plot of the feet for checking"},
-      {"krok-keys walk.anim -o walk.keys.json --set left_strike=1.25s,right_off=1.31s",
+      {"krok-keys walk.anim -o walk.keys.json --keytime left_strike=1.25s,right_off=1.31s",
        "moves two keytimes; they are kept when the file is rebuilt"},
       {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"}};
   spec.exit_no = "--find steps was given and no step was found";

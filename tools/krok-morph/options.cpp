@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "core/numbers.h"
-#include "tools/krok-morph/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::morph {
@@ -39,12 +38,12 @@ void declare_shapes(CommandOptions& command, Options& o) {
   command.group("Shapes");
   command.add("--unit", o.unit, length_unit(),
               "Length unit of OBJ files: m, cm, mm, in, ft or a length such as 5.64cm", "m");
-  command.add("--up AXIS", o.up, choice<Up>({{"y", Up::y}, {"z", Up::z}}),
+  command.add("--up AXIS", o.up, up_axis<Up>({{"y", Up::y}, {"z", Up::z}}),
               "Up axis of OBJ files: y (character faces +Z) or z (character faces -Y)", "y");
   command
-      .add_flag("--by-order", o.by_order,
-                "Match vertices by order only; by default shapes must also have the triangles of "
-                "the first")
+      .add("--match HOW", o.by_order, choice<bool>({{"triangles", false}, {"order", true}}),
+           "Match vertices by order; with triangles, shapes must also have those of the first",
+           "triangles")
       .only_with({kPack, kFrames});
   command
       .add_option("--name NAME", o.names,

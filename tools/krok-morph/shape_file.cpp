@@ -113,7 +113,7 @@ Status check_same_mesh(const ShapeFile& base, const ShapeFile& shape, const Opti
   const std::vector<Triangle> known = canonical(first.triangles);
   const std::vector<Triangle> found = canonical(other.triangles);
   if (known == found) return {};
-  const char* hint = "use --by-order to match vertices by order only";
+  const char* hint = "use --match order to match vertices by order only";
   for (std::size_t t = 0; t < other.triangles.size(); ++t) {
     if (std::ranges::binary_search(known, canonical(other.triangles[t]))) continue;
     return Error("morph-triangles",

@@ -21,9 +21,9 @@ struct ShapeFile {
   MorphSet morphs;           // of a glTF file; otherwise none
 };
 
-// Reads OBJ according to the options, glTF (all meshes of its character, as krok-import --model
-// does) and .model. Codes: morph-input (another kind of file), morph-empty (no triangles), and
-// those of the readers.
+// Reads OBJ according to the options, glTF (all meshes of its character, as krok-import
+// --save-model does) and .model. Codes: morph-input (another kind of file), morph-empty (no
+// triangles), and those of the readers.
 Result<ShapeFile> read_shape(const std::string& path, const Options& options, ToolContext& context,
                              bool with_morphs = false);
 

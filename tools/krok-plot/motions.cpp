@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
-#include "formats/io/open_terrain.h"
 #include "terrain/level.h"
 #include "tools/cli/file_name.h"
 #include "tools/shared/keys_sidecar.h"
@@ -52,7 +51,7 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
   auto beside = read_keys_beside(motion, clip, context);
   if (!beside) {
     if (beside.error().hint.empty()) {
-      beside.error().hint = "it was found next to the motion; --keys none ignores it";
+      beside.error().hint = "it was found next to the motion; --contacts none ignores it";
     }
     return beside.error();
   }
@@ -64,7 +63,7 @@ Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Moti
                                         ToolContext& context) {
   draw::ChartedGround charted;
   auto opened =
-      options.ground.empty() ? terrain::level() : io::open_terrain(options.ground, {}, context);
+      options.ground.empty() ? terrain::level() : options.ground.open(context);
   if (!opened) return opened.error();
   const std::shared_ptr<const Terrain> ground = *std::move(opened);
   if (!options.ground.empty()) {
@@ -87,8 +86,8 @@ Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Moti
 Result<Motions> read_motions(const std::vector<std::string>& inputs, const MotionOptions& options,
                              ToolContext& context) {
   if (options.keys != "auto" && options.keys != "none" && inputs.size() > 1) {
-    return Error("usage", "--keys takes one file, but there are several motions",
-                 "--keys auto uses the file next to each motion");
+    return Error("usage", "--contacts takes one file, but there are several motions",
+                 "--contacts auto uses the file next to each motion");
   }
   const auto find_roles_of = io::open_role_map(options.map, context);
   if (!find_roles_of) return find_roles_of.error();

@@ -11,7 +11,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-plot/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::plot {
@@ -97,9 +96,9 @@ void declare_motions(CommandOptions& command, MotionOptions& o) {
   command.add_flag("--difference", o.difference,
                    "Distances between the joints of two motions: the same as --show difference");
   command
-      .add_option("--keys IN.json|auto|none", o.keys,
-                  "Contacts and keytimes to draw: a file, none, or auto, which uses NAME.keys.json "
-                  "next to the motion if it exists")
+      .add("--contacts", o.keys, contacts_file("IN.json|auto|none"),
+           "Contacts and keytimes to draw: a file, none, or auto, which uses NAME.keys.json "
+           "next to the motion if it exists")
       .default_str("auto");
   add_map_option(command, o.map);
   add_prints_option(command, o.prints,
@@ -110,7 +109,7 @@ void declare_motions(CommandOptions& command, MotionOptions& o) {
 void declare_tables(CommandOptions& command, Options& o) {
   TableOptions& table = o.columns_of_table;
   command.group("Tables");
-  command.add_flag("--table", o.table,
+  command.add_flag("--as-table", o.table,
                    "The inputs are tables (CSV); implied for .csv and .tsv files. Units are read "
                    "from column names: time [s], time (s), time_s");
   command.add_option("--x COLUMN", table.x, "The x column; default: the time column, or the first");
@@ -171,14 +170,14 @@ Status check_inputs(const Options& o) {
   }
   const bool table = o.plots_tables();
   const auto of_others =
-      table ? std::vector{"--show", "--joint", "--euler",  "--from",   "--to",
-                          "--keys", "--map",   "--prints", "--ground", "--difference"}
+      table ? std::vector{"--show",     "--joint", "--euler",  "--from",   "--to",
+                          "--contacts", "--map",   "--prints", "--ground", "--difference"}
             : std::vector{"--x", "--y", "--by", "--where", "--log-x", "--style"};
   for (const char* option : of_others) {
     if (!o.given(option)) continue;
     return usage(fmt::format("{} is for {}, but the input is {}", option,
                              table ? "motions" : "tables", table ? "a table" : "a motion"),
-                 table ? "see krok-plot --help" : "--table reads the input as a table");
+                 table ? "see krok-plot --help" : "--as-table reads the input as a table");
   }
   if (table && o.sheet.wanted()) {
     return usage("--sheet and --strip show characters, but the input is a table");

@@ -107,7 +107,7 @@ render::Sheet contact_sheet(const ShownActors& all, const std::vector<ImageSide>
 }
 
 // The view direction of a strip: from the side, moving left to right, if the character travels;
-// otherwise from its front. An explicit --sides takes precedence.
+// otherwise from its front. An explicit --view takes precedence.
 ImageSide strip_side(const Shown& shown, const std::vector<ImageSide>& sides,
                      const SheetOptions& options) {
   ImageSide side = sides[0];
@@ -221,7 +221,7 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 
 }  // namespace
 
-void declare_sheet(CommandOptions& command, SheetOptions& options, std::string& ground) {
+void declare_sheet(CommandOptions& command, SheetOptions& options, GroundChoice& ground) {
   command.add("--sheet OUT.png", options.sheet, output({".png"}),
               "Contact sheet as PNG: characters at several times, in rows by file and side; "
               "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out where "

@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-render/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::film {
@@ -44,18 +43,18 @@ void declare_film(CommandOptions& command, Options& o) {
   command.add("--from", o.from, clip_time(),
               "Start: 1.5s, 250ms, or 120f for a frame; a bare number is seconds");
   command.add("--to", o.to, clip_time(), "End");
-  command.add("--fps", o.fps, rate(),
+  command.add("--rate", o.fps, rate(),
               "Frames per second of the film; default: the motion's rate or a whole part of it, up "
               "to 30, for gif up to 25");
   command.add("--size", o.size,
               ValueKind<std::pair<int, int>>{"pixels", "WIDTHxHEIGHT", parse_size, {}},
               "Size in pixels, even numbers [960x540; gif and webp 480x270]");
-  command.add_flag("--together", o.together,
-                   "Show all motions in one view, where they are; default: side by side");
+  command.add("--layout HOW", o.together, choice<bool>({{"apart", false}, {"together", true}}),
+              "apart: motions side by side; together: all in one view, where they are", "apart");
   command
       .add_flag("--difference", o.difference,
                 "Two motions and, beside them, the second coloured by its distance from the first")
-      .not_with("--together");
+      .not_with("--layout together");
   command.add_no_flag("--no-labels", o.labels, "Leave out names and times");
 }
 
@@ -118,7 +117,7 @@ ToolSpec make_spec() {
   spec.inputs = "IN...";
   spec.examples = {
       {"krok-render walk.anim -o walk.mp4", "a generated body, followed by the camera"},
-      {"krok-render hero.character walk.anim --sides front,left -o walk.gif",
+      {"krok-render hero.character walk.anim --view front,left -o walk.gif",
        "a character from two sides"},
       {"krok-render raw.anim clean.anim --difference -o clean.mp4",
        "both, and the second coloured by its distance from the first"},

@@ -130,7 +130,7 @@ Result<Shot> Shot::create(std::vector<MovingActor> actors, const Options& option
                  fmt::format("{} s at {} frames per second exceed the limit of {} frames",
                              readable(setting.end - setting.start, 4), readable(setting.rate),
                              grouped(kMaxFrames)),
-                 "choose a part with --from and --to, or a lower --fps");
+                 "choose a part with --from and --to, or a lower --rate");
   }
   shot.frame_count_ = static_cast<int>(frames);
   if (options.difference) {

@@ -7,7 +7,6 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/krok-skin/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::skin {
@@ -68,7 +67,7 @@ void declare_mesh(CommandOptions& command, Options& o) {
                   "Morph target weights over time: a table (CSV) or keys (JSON); from the start of "
                   "the motion")
       .not_with("--as motion");
-  command.add("--up AXIS", o.up, choice<pc2::Up>({{"y", pc2::Up::y}, {"z", pc2::Up::z}}),
+  command.add("--up AXIS", o.up, up_axis<pc2::Up>({{"y", pc2::Up::y}, {"z", pc2::Up::z}}),
               "Up axis of a point cache: y as in the written OBJ and glTF files, or z as in "
               "Blender and 3ds Max",
               "y");

@@ -74,7 +74,7 @@ class Loader {
                    fmt::format("the targets are for a mesh with {}, but the model has {}",
                                counted(morphs->vertex_count, "vertex", "vertices"),
                                subject_.model.vertex_count()),
-                   "write both from one file with krok-import --model --morphs")
+                   "write both from one file with krok-import --save-model --save-morphs")
           .in_file(options_.morphs);
     }
     subject_.morphs = std::move(*morphs);

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/krok-view/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::view {
@@ -34,10 +33,10 @@ void declare(CommandOptions& command, Options& options) {
       "Body for motions without a model: none, low (2,500 vertices), medium (10,000), "
       "high (40,000), or auto: medium, low for more than two actors. Motions of one skeleton "
       "share a body");
-  command.add("--keys WHICH", options.keys,
-              choice<KeysChoice>({{"auto", KeysChoice::automatic},
-                                  {"find", KeysChoice::find},
-                                  {"none", KeysChoice::none}}),
+  command.add("--contacts WHICH", options.keys,
+              contacts_choice<KeysChoice>({{"auto", KeysChoice::automatic},
+                                           {"find", KeysChoice::find},
+                                           {"none", KeysChoice::none}}),
               "Contacts and keytimes to mark on the timeline: auto (from the sidecar "
               "NAME.keys.json), find (detected as in krok-keys), none",
               "auto");

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/krok-walk/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::walk {
@@ -17,7 +16,7 @@ void declare_way(CommandOptions& command, Options& o) {
           "--path IN", o.path,
           "Path to follow: an SVG, a table (.csv) or .json (formats/path/SPEC.md), another motion, "
           "whose hips' path is taken, or a scene (.gltf, .glb) with an animated node")
-      .not_with({"--prints", "--to"});
+      .not_with({"--prints", "--goal"});
   command.add_option("--path-id ID", o.path_id,
                      "Element of the SVG (default: the first path), joint of the motion (the hips) "
                      "or node of the scene (the first that travels)");
@@ -27,16 +26,16 @@ void declare_way(CommandOptions& command, Options& o) {
       .add_option("--prints IN", o.prints,
                   "Footprints, .csv or .json (formats/prints/SPEC.md); the walker stands on the "
                   "first two")
-      .not_with("--to");
-  command.add("--to X,Z", o.goals, lengths<Vec2>(),
+      .not_with("--goal");
+  command.add("--goal X,Z", o.goals, lengths<Vec2>(),
               "Goal on the ground, as x (to the left of a walker who faces +Z) and z: 2m,6m; "
               "repeat the option for several in a row");
   command
-      .add("--from X,Z[,ANGLE]", o.from,
+      .add("--start X,Z[,ANGLE]", o.from,
            numbers_as<std::array<double, 3>>({length(), length(), angle()}, 2),
-           "Where --to begins, and which way the walker faces there, from +Z towards +X",
+           "Where --goal begins, and which way the walker faces there, from +Z towards +X",
            "0,0,0deg")
-      .only_with("--to");
+      .only_with("--goal");
   command.add("--save-prints OUT", o.save_prints, output({".csv", ".json"}),
               "Write the footprints that are walked, .csv or .json, to be edited and handed back "
               "with --prints");
@@ -49,11 +48,6 @@ void declare_ground(CommandOptions& command, Options& o) {
                         std::string(terrain::kSpecForms) +
                         "; stairs and slopes begin 1 m ahead along +Z",
                     "level");
-  command.add("--ground-size WIDTHxDEPTH", o.placement.size, lengths<std::array<double, 2>>('x'),
-              "Size of a height field along X and Z; otherwise from its sidecar "
-              "NAME.ground.json (formats/height_field/SPEC.md)");
-  command.add("--ground-range LOW,HIGH", o.placement.range, lengths<std::array<double, 2>>(),
-              "Heights of black and white of a height field, or of 0 and 1: 0,1.5m");
 }
 
 void declare_steps(CommandOptions& command, Options& o) {
@@ -97,7 +91,7 @@ void declare(CommandOptions& command, Options& o) {
   command.group("Output");
   command.add("--rate", o.rate, rate(), "Frames per second (default: the library's)");
   add_orientation_option(command, o.orientation);
-  command.add("--view OUT.html", o.view, output({".html", ".htm"}),
+  command.add("--save-page OUT.html", o.view, output({".html", ".htm"}),
               "Write a web page, too, that plays the walk on its ground with its footprints, as "
               "krok-view does");
 }
@@ -105,7 +99,7 @@ void declare(CommandOptions& command, Options& o) {
 Status check(const Options& o) {
   if (!o.path.empty() || !o.prints.empty() || !o.goals.empty()) return {};
   return usage("no path is given",
-               "give a path with --path, footprints with --prints, or goals with --to X,Z");
+               "give a path with --path, footprints with --prints, or goals with --goal X,Z");
 }
 
 }  // namespace
@@ -117,11 +111,12 @@ ToolSpec make_spec() {
   spec.inputs = "IN.steps...";
   spec.writes = registry::Kind::anim;
   spec.examples = {
-      {"krok-walk walking.steps --to 2m,6m -o walk.anim", "to a place on level ground"},
+      {"krok-walk walking.steps --goal 2m,6m -o walk.anim", "to a place on level ground"},
       {"krok-walk walking.steps --path way.svg --ground hills.exr --save-prints prints.csv "
        "-o walk.anim",
        "along a path drawn in an SVG, over a height field; keeps the footprints"},
-      {"krok-walk walking.steps --to 0m,5m --ground stairs:count=8 -o walk.anim --view walk.html",
+      {"krok-walk walking.steps --goal 0m,5m --ground stairs:count=8 -o walk.anim --save-page "
+       "walk.html",
        "up stairs, with a page to watch it"},
       {"krok-walk level.steps stairs.steps --prints prints.csv --ground "
        "stairs:rise=17cm,run=29cm -o walk.anim",

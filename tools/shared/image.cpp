@@ -98,7 +98,7 @@ std::vector<std::string> names_of_sides() {
   return names;
 }
 
-ValueKind<std::vector<ImageSide>> sides_kind() {
+ValueKind<std::vector<ImageSide>> view_kind() {
   const auto read = [](const std::string& text) -> Result<std::vector<ImageSide>> {
     std::vector<ImageSide> sides;
     for (const std::string_view word : parts(text)) {
@@ -112,7 +112,7 @@ ValueKind<std::vector<ImageSide>> sides_kind() {
     if (sides.size() > known_sides().size()) return usage("too many sides");
     return sides;
   };
-  return {"sides", "LIST", read, {}};
+  return {"view", "LIST", read, {}};
 }
 
 constexpr const char* kUsualSides = "front,left";
@@ -121,7 +121,7 @@ constexpr const char* kUsualSides = "front,left";
 
 CommandOption add_sides_option(CommandOptions& command, std::vector<ImageSide>& sides,
                                const std::string& each, const std::string& preset) {
-  return command.add("--sides", sides, sides_kind(),
+  return command.add("--view", sides, view_kind(),
                      fmt::format("View directions, one {} each: front, left, back, right, "
                                  "front-left, ..., top",
                                  each),
@@ -143,12 +143,12 @@ void declare_image_options(CommandOptions& command, ImageOptions& options, int b
                        "Camera elevation; at 0, heights can be measured; above, the ground is a "
                        "grid with shadows",
                        "0deg");
-  command.add("--size PIXELS", options.size, whole(32, 4000),
+  command.add("--actor-size PIXELS", options.size, whole(32, 4000),
               "Max height of an actor in pixels: 32 to 4000", "280");
 }
 
 bool are_usual_sides(const std::vector<ImageSide>& sides) {
-  const auto usual = sides_kind().read(kUsualSides);
+  const auto usual = view_kind().read(kUsualSides);
   return usual && *usual == sides;
 }
 

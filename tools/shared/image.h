@@ -28,14 +28,14 @@ struct ImageOptions {
   int size = 0;          // pixels
 };
 
-// --sides: front, left, back, right, front-left, front-right, back-left, back-right, top; separated
+// --view: front, left, back, right, front-left, front-right, back-left, back-right, top; separated
 // by commas. `each` is what there is one of for each: "row".
 CommandOption add_sides_option(CommandOptions& command, std::vector<ImageSide>& sides,
                                const std::string& each, const std::string& preset);
 CommandOption add_elevation_option(CommandOptions& command, double& elevation,
                                    const std::string& help, const std::string& preset);
 
-// --moments, --sides, --elevation, --size. `by_default` is the default
+// --moments, --view, --elevation, --actor-size. `by_default` is the default
 // number of moments, for the help.
 void declare_image_options(CommandOptions& command, ImageOptions& options, int by_default);
 

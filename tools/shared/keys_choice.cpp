@@ -22,7 +22,7 @@ Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::stri
   if (choice == KeysChoice::sidecar) {
     return Error("keys-missing",
                  fmt::format("{} is missing beside it", base_name(keys_sidecar_path(path))),
-                 "create it with krok-keys, or use --keys auto to detect keytimes")
+                 "create it with krok-keys, or use --contacts auto to detect keytimes")
         .in_file(path);
   }
   const auto roles = find_roles(clip.skeleton);

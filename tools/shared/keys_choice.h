@@ -8,8 +8,8 @@
 #include "scene/motion_keys.h"
 #include "tools/cli/tool.h"
 
-// --keys: where a tool that combines motions gets their contacts and keytimes, and where it writes
-// those of the result.
+// --contacts: where a tool that combines motions gets their contacts and keytimes, and where it
+// writes those of the result.
 
 namespace krok::cli {
 

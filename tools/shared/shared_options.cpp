@@ -1,5 +1,6 @@
 #include "tools/shared/shared_options.h"
 
+#include <array>
 #include <filesystem>
 
 #include "terrain/spec.h"
@@ -32,6 +33,11 @@ ValueKind<Unit> length_unit() {
           {}};
 }
 
+ValueKind<std::string> contacts_file(const std::string& forms) {
+  return {
+      "contacts", forms, [](const std::string& text) -> Result<std::string> { return text; }, {}};
+}
+
 CommandOption add_orientation_option(CommandOptions& command, OrientationEncoding& encoding) {
   return command
       .add("--orientation HOW", encoding,
@@ -49,26 +55,33 @@ CommandOption add_map_option(CommandOptions& command, std::string& path) {
 CommandOption add_contacts_option(CommandOptions& command, std::string& contacts) {
   contacts = "auto";
   return command
-      .add_option("--contacts IN.json|auto|find", contacts,
-                  "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to "
-                  "the motion if it exists")
+      .add("--contacts", contacts, contacts_file("IN.json|auto|find"),
+           "When the feet stand: a file, find, or auto, which uses NAME.keys.json next to the "
+           "motion if it exists")
       .default_str(contacts);
 }
 
 CommandOption add_keys_option(CommandOptions& command, KeysChoice& which) {
   return command.add(
-      "--keys WHICH", which,
-      choice<KeysChoice>({{"auto", KeysChoice::automatic},
-                          {"sidecar", KeysChoice::sidecar},
-                          {"none", KeysChoice::none}}),
+      "--contacts WHICH", which,
+      contacts_choice<KeysChoice>({{"auto", KeysChoice::automatic},
+                                   {"sidecar", KeysChoice::sidecar},
+                                   {"none", KeysChoice::none}}),
       "Keytimes: auto (from NAME.keys.json beside a motion, otherwise detected as by krok-keys), "
       "sidecar (only from that file), none (start and end only)",
       "auto");
 }
 
-CommandOption add_ground_option(CommandOptions& command, std::string& ground,
+CommandOption add_ground_option(CommandOptions& command, GroundChoice& ground,
                                 const std::string& help, const std::string& preset) {
-  return command.add("--ground IN", ground, ground_text(), help, preset);
+  const CommandOption option = command.add("--ground IN", ground.text, ground_text(), help, preset);
+  command.add("--ground-size WIDTHxDEPTH", ground.placement.size,
+              lengths<std::array<double, 2>>('x'),
+              "Size of a height field along X and Z; otherwise from its sidecar "
+              "NAME.ground.json (formats/height_field/SPEC.md)");
+  command.add("--ground-range LOW,HIGH", ground.placement.range, lengths<std::array<double, 2>>(),
+              "Heights of black and white of a height field, or of 0 and 1: 0,1.5m");
+  return option;
 }
 
 CommandOption add_prints_option(CommandOptions& command, std::string& path,

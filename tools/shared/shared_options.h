@@ -7,6 +7,7 @@
 #include "skin/skin.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/shared/body_choice.h"
+#include "tools/shared/ground_choice.h"
 #include "tools/shared/keys_choice.h"
 
 // Options that several tools have, each declared here alone. `help` is what differs between tools.
@@ -22,16 +23,35 @@ CommandOption add_orientation_option(CommandOptions& command, OrientationEncodin
 // --map: a role map for joints whose names do not identify them.
 CommandOption add_map_option(CommandOptions& command, std::string& path);
 
+// Values of --contacts: a file, or one of the words of `forms`, such as "IN.json|auto|none".
+ValueKind<std::string> contacts_file(const std::string& forms);
+// The same for words alone.
+template <typename T>
+ValueKind<T> contacts_choice(std::vector<std::pair<std::string, T>> words) {
+  ValueKind<T> kind = choice(std::move(words));
+  kind.name = "contacts";
+  return kind;
+}
+
+// The up axis of files that have one of two.
+template <typename T>
+ValueKind<T> up_axis(std::vector<std::pair<std::string, T>> words) {
+  ValueKind<T> kind = choice(std::move(words));
+  kind.name = "axis";
+  return kind;
+}
+
 // --contacts: when the feet stand. A file, "find", or "auto": the sidecar beside the motion if
 // there is one.
 CommandOption add_contacts_option(CommandOptions& command, std::string& contacts);
 
-// --keys: where a tool that combines motions gets their contacts and keytimes.
+// --contacts, for a tool that combines motions: where it gets their contacts and keytimes.
 CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice);
 
 // --ground: a file, or a made ground, whose text must be right: codes of terrain::from_spec().
-// Whether a file is there and holds a ground shows when it is opened.
-CommandOption add_ground_option(CommandOptions& command, std::string& ground,
+// Whether a file is there and holds a ground shows when it is opened. --ground-size and
+// --ground-range place a height field.
+CommandOption add_ground_option(CommandOptions& command, GroundChoice& ground,
                                 const std::string& help, const std::string& preset = {});
 
 // --prints: footprints.

@@ -92,15 +92,16 @@ TEST_F(BatchClips, ASequenceDoesNotReplaceAnotherInput) {
 TEST_F(BatchClips, ACharacterWithoutAnAnimationGivesItsModel) {
   put_character("in/moves.glb", {"walk"});
   put_character("in/still.glb", {});
-  const ToolRun run = import({"in", "--out-dir", "out", "--model", "{name}.model"});
+  const ToolRun run = import({"in", "--out-dir", "out", "--save-model", "{name}.model"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_NE(run.err.find("in/still.glb: warning: the file has no animations"), std::string::npos)
       << run.err;
   EXPECT_EQ(files_below("out"), (Names{"moves.anim", "moves.model", "still.model"}));
   // As a run of its own does it.
-  ASSERT_EQ(import({"in/still.glb", "--model", "own.model"}).exit_code, 0);
+  ASSERT_EQ(import({"in/still.glb", "--save-model", "own.model"}).exit_code, 0);
   EXPECT_TRUE(get(path("own.model")) == get(path("out/still.model")));
-  const ToolRun again = import({"in", "--out-dir", "out", "--model", "{name}.model", "--json"});
+  const ToolRun again =
+      import({"in", "--out-dir", "out", "--save-model", "{name}.model", "--json"});
   EXPECT_EQ(counts(again.out), (Counts{{"unchanged", 2}}));
   // Without anything to write of it, it is an error as ever.
   EXPECT_EQ(import({"in", "--out-dir", "other"}).exit_code, 2);

@@ -131,8 +131,9 @@ TEST_F(BatchList, TwoResultsOfOneNameAreRefused) {
   put_capture("b/x.bvh");
   expect_usage_error(import({"a/*.bvh", "b/*.bvh", "--out-dir", "out"}),
                      "a/x.bvh and b/x.bvh would both be written to out/x.anim");
-  expect_usage_error(import({"a", "b", "--base", ".", "--out-dir", "out", "--model", "m.model"}),
-                     "use {name}, which is replaced");
+  expect_usage_error(
+      import({"a", "b", "--base", ".", "--out-dir", "out", "--save-model", "m.model"}),
+      "use {name}, which is replaced");
   EXPECT_EQ(listing(), (Names{"a", "b"}));
 }
 
@@ -156,14 +157,15 @@ TEST_F(BatchList, ResultsNeverReplaceInputs) {
 TEST_F(BatchList, OtherOutputsAreNamedByThePlaceholder) {
   put_capture("takes/a/x.bvh");
   put_capture("takes/y.bvh");
-  const ToolRun run = import({"takes", "--out-dir", "out", "--model", "models/{name}.model"});
+  const ToolRun run = import({"takes", "--out-dir", "out", "--save-model", "models/{name}.model"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(files_below("out"),
             (Names{"a/x.anim", "models/a/x.model", "models/y.model", "y.anim"}));
   // One that is gone is made again, with the motion that belongs to it.
   std::filesystem::remove(path("out/models/y.model"));
   EXPECT_EQ(
-      counts(import({"takes", "--out-dir", "out", "--model", "models/{name}.model", "--json"}).out),
+      counts(import({"takes", "--out-dir", "out", "--save-model", "models/{name}.model", "--json"})
+                 .out),
       (Counts{{"done", 1}, {"unchanged", 1}}));
   EXPECT_TRUE(std::filesystem::exists(path("out/models/y.model")));
 }

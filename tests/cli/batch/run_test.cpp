@@ -54,7 +54,7 @@ TEST_F(BatchRun, OptionsOfALineAreThoseOfItsFileAlone) {
   const std::vector<Names> options = {{"--fps", "48"},
                                       {},
                                       {"--orientation", "xyzw", "--strict"},
-                                      {"--unit", "cm", "--model", "NAME.model"}};
+                                      {"--unit", "cm", "--save-model", "NAME.model"}};
   std::string list;
   for (int i = 0; i < 12; ++i) {
     list += "takes/0000.bvh\t" + number(i) + ".anim\t";
@@ -157,7 +157,8 @@ TEST_F(BatchRun, WhatStandsIsLeftUnlessAnythingChanged) {
   EXPECT_EQ(imported_counts({"--fps", "30"}), (Counts{{"done", 4}})) << "another option";
   EXPECT_EQ(imported_counts({"--fps", "30"}), (Counts{{"unchanged", 4}}));
   EXPECT_EQ(imported_counts({"--fps", "30", "--force"}), (Counts{{"done", 4}}));
-  EXPECT_EQ(imported_counts({"--fps", "30", "--model", "{name}.model"}), (Counts{{"done", 4}}));
+  EXPECT_EQ(imported_counts({"--fps", "30", "--save-model", "{name}.model"}),
+            (Counts{{"done", 4}}));
 }
 
 // The keytimes beside a motion are drawn into its charts; a map says what its joints are.

@@ -18,8 +18,8 @@ class KrokBlend : public CliTest {
     const ToolRun imported = run_tool("krok-import", {kWalk, "-o", path("walk.anim"), "-q"});
     ASSERT_EQ(imported.exit_code, 0) << imported.err;
     // The same walk, twice as fast.
-    const ToolRun quick =
-        run_tool("krok-edit", {path("walk.anim"), "--speed", "2", "-o", path("quick.anim"), "-q"});
+    const ToolRun quick = run_tool(
+        "krok-edit", {path("walk.anim"), "--playback-speed", "2", "-o", path("quick.anim"), "-q"});
     ASSERT_EQ(quick.exit_code, 0) << quick.err;
   }
   ToolRun blend(std::vector<std::string> arguments) const {
@@ -71,8 +71,8 @@ TEST_F(KrokBlend, KeytimesAreFoundAndWritten) {
 TEST_F(KrokBlend, WeightsFromATable) {
   put("in.csv", "generic,weight\n0,0\n1,1\n");
   put("out.csv", "generic,weight\n0,1\n1,0\n");
-  const json result = result_of({walk("@" + path("out.csv")), quick("@" + path("in.csv")), "--keys",
-                                 "none", "--save-warp", path("warp.csv")});
+  const json result = result_of({walk("@" + path("out.csv")), quick("@" + path("in.csv")),
+                                 "--contacts", "none", "--save-warp", path("warp.csv")});
   EXPECT_EQ(result["moments"], json({"begin", "end"}));
   const std::string warp = get(path("warp.csv"));
   EXPECT_THAT(warp, HasSubstr("time [s],generic,walk.anim [s],quick.anim [s]\n0.000000,0.000000,"));
@@ -121,7 +121,7 @@ TEST_F(KrokBlend, WordsWithoutAWeightAreToldBeforeAnythingIsRead) {
 
 TEST_F(KrokBlend, OtherSkeletonsAreRefused) {
   put("chain.bvh", capture(60));
-  const ToolRun run = blend({walk("0.5"), path("chain.bvh") + ":0.5", "--keys", "none"});
+  const ToolRun run = blend({walk("0.5"), path("chain.bvh") + ":0.5", "--contacts", "none"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_TRUE(has_code(run.err, "blend-skeleton")) << run.err;
   EXPECT_THAT(run.err, HasSubstr("krok-retarget"));
@@ -134,16 +134,17 @@ TEST_F(KrokBlend, MotionsWithoutStepsAreMatchedFromEndToEnd) {
   const ToolRun run = blend({chain, chain});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("from beginning to end"));
-  const ToolRun beside = blend({chain, chain, "--keys", "sidecar"});
+  const ToolRun beside = blend({chain, chain, "--contacts", "sidecar"});
   EXPECT_EQ(beside.exit_code, 2);
   EXPECT_TRUE(has_code(beside.err, "keys-missing")) << beside.err;
 }
 
 TEST_F(KrokBlend, WithoutContactsNothingCanBeKeptInPlaceAndThatIsSaid) {
-  const ToolRun run = blend({walk("0.5"), quick("0.5"), "--keys", "none", "--align", "stance"});
+  const ToolRun run =
+      blend({walk("0.5"), quick("0.5"), "--contacts", "none", "--match-root", "stance"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(has_code(run.err, "blend-stance")) << run.err;
-  const ToolRun known = blend({walk("0.5"), quick("0.5"), "--align", "stance"});
+  const ToolRun known = blend({walk("0.5"), quick("0.5"), "--match-root", "stance"});
   EXPECT_FALSE(has_code(known.err, "blend-stance")) << known.err;
 }
 
@@ -180,9 +181,10 @@ TEST_F(KrokBlend, FeetAreLockedUnlessToldOtherwise) {
     return get(path("out.bvh"));
   };
   const std::string usual = bytes_with({});
-  EXPECT_TRUE(usual == bytes_with({"--align", "stance"}));
-  EXPECT_FALSE(usual == bytes_with({"--align", "root"}));
-  EXPECT_TRUE(bytes_with({"--keys", "none"}) == bytes_with({"--keys", "none", "--align", "root"}));
+  EXPECT_TRUE(usual == bytes_with({"--match-root", "stance"}));
+  EXPECT_FALSE(usual == bytes_with({"--match-root", "root"}));
+  EXPECT_TRUE(bytes_with({"--contacts", "none"}) ==
+              bytes_with({"--contacts", "none", "--match-root", "root"}));
 }
 
 TEST_F(KrokBlend, KeytimesThatAPersonWroteStay) {

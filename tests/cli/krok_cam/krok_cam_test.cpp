@@ -179,7 +179,8 @@ TEST_F(KrokCam, ComesBackFromGltf) {
   const ToolRun run = cam({path("zoom.cam"), "-o", path("zoom.glb")});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_TRUE(has_code(run.err, "gltf-lens")) << run.err;
-  ASSERT_EQ(run_tool("krok-import", {path("zoom.glb"), "--cam", path("back.cam")}).exit_code, 0);
+  ASSERT_EQ(run_tool("krok-import", {path("zoom.glb"), "--save-cam", path("back.cam")}).exit_code,
+            0);
   const ToolRun diff = run_tool("krok-diff", {path("zoom.cam"), path("back.cam")});
   EXPECT_EQ(diff.exit_code, 0) << diff.out;
   EXPECT_EQ(track_at("zoom.cam").fields_of_view, track_at("back.cam").fields_of_view);

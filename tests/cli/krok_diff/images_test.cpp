@@ -63,8 +63,8 @@ class KrokDiffImages : public CliTest {
 };
 
 TEST_F(KrokDiffImages, TheMomentThatDiffersIsShownAndTheJointIsRed) {
-  const ToolRun run = diff(
-      {write("a.anim", clip()), changed(), "--sides", "front", "--moments", "0f", "--size", "200"});
+  const ToolRun run = diff({write("a.anim", clip()), changed(), "--view", "front", "--moments",
+                            "0f", "--actor-size", "200"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   const auto drawn = image();
   // Two columns: frame 0, which was asked for, and frame 3; three rows and the key. The joint that
@@ -81,14 +81,14 @@ TEST_F(KrokDiffImages, TheMomentThatDiffersIsShownAndTheJointIsRed) {
 
 TEST_F(KrokDiffImages, TheSameIsGreyAndExitCodeZero) {
   const std::string a = write("a.anim", clip());
-  const ToolRun run = diff({a, a, "--sides", "front", "--size", "200"});
+  const ToolRun run = diff({a, a, "--view", "front", "--actor-size", "200"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   const auto drawn = image();
   EXPECT_EQ(red_pixels(drawn, 62, drawn.width, drawn.height / 3 + 40, drawn.height - 80), 0);
 }
 
 TEST_F(KrokDiffImages, DrawsModelsToo) {
-  const ToolRun run = diff({kFrozen + "full.model", kFrozen + "full.model", "--size", "100"});
+  const ToolRun run = diff({kFrozen + "full.model", kFrozen + "full.model", "--actor-size", "100"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_GT(image().height, 300);
 }
@@ -96,7 +96,7 @@ TEST_F(KrokDiffImages, DrawsModelsToo) {
 TEST_F(KrokDiffImages, DrawsGlbFiles) {
   const std::string motion = kFrozen + "motion.anim";
   ASSERT_EQ(run_tool("krok-export", {motion, "-o", path("a.glb")}).exit_code, 0);
-  const ToolRun run = diff({path("a.glb"), path("a.glb"), "--size", "100", "--moments", "2"});
+  const ToolRun run = diff({path("a.glb"), path("a.glb"), "--actor-size", "100", "--moments", "2"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_GT(image().height, 300);
 }
@@ -113,10 +113,11 @@ TEST_F(KrokDiffImages, WithMaterialsBothAreInTheirColours) {
   };
   const std::string grey = coloured("grey.glb", {0.5, 0.5, 0.5, 1});
   const std::string red = coloured("red.glb", {0.8, 0.02, 0.02, 1});
-  EXPECT_EQ(diff({grey, red, "--sides", "front", "--size", "200"}).exit_code, 0);
+  EXPECT_EQ(diff({grey, red, "--view", "front", "--actor-size", "200"}).exit_code, 0);
   const auto plain = image();
   EXPECT_EQ(red_pixels(plain, 0, plain.width, 0, plain.height - 70), 0);
-  EXPECT_EQ(diff({grey, red, "--materials", "--sides", "front", "--size", "200"}).exit_code, 1);
+  EXPECT_EQ(diff({grey, red, "--materials", "--view", "front", "--actor-size", "200"}).exit_code,
+            1);
   const auto dressed = image();
   EXPECT_GT(red_pixels(dressed, 0, dressed.width, 0, dressed.height - 70), 1000);
 }
@@ -124,8 +125,8 @@ TEST_F(KrokDiffImages, WithMaterialsBothAreInTheirColours) {
 TEST_F(KrokDiffImages, SkeletonsThatDifferAreDrawnWithoutDistances) {
   Clip other = clip();
   other.skeleton.names[3] = "third";
-  const ToolRun run =
-      diff({write("a.anim", clip()), write("c.anim", other), "--size", "100", "--moments", "1"});
+  const ToolRun run = diff(
+      {write("a.anim", clip()), write("c.anim", other), "--actor-size", "100", "--moments", "1"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_GT(image().height, 300);
 }
@@ -149,8 +150,8 @@ TEST_F(KrokDiffImages, RefusesWhatItCannotDraw) {
       {model, model, "--plot", path("d.svg")},
       {a, a, "--sheet", path("d.svg")},
       {a, a, "--plot", path("d.png")},
-      {a, a, "--size", "100"},
-      {a, a, "--sheet", path("d.png"), "--size", "1"},
+      {a, a, "--actor-size", "100"},
+      {a, a, "--sheet", path("d.png"), "--actor-size", "1"},
       {a, a, "--sheet", path("d.png"), "--moments", "77f"}};
   for (const auto& arguments : wrong) {
     const ToolRun run = run_tool("krok-diff", arguments);

@@ -252,6 +252,13 @@ TEST_F(KrokDiffMatching, RenamedClipsMeshesAndMaterialsAreTold) {
   const auto clip = diff({"a.glb", "clip.glb"});
   EXPECT_EQ(clip.exit_code, 1) << clip.out << clip.err;
   EXPECT_THAT(clip.out, HasSubstr("differs: animation walk is named stroll in the second"));
+  test::GlbBuilder moved = named_rig("stroll", "skin");
+  const auto root = moved.json["skins"][0]["joints"][0].get<std::size_t>();
+  moved.json["nodes"][root]["translation"] = {0.1, 0, 0};
+  write("moved.glb", moved);
+  const auto both = diff({"a.glb", "moved.glb"});
+  const std::size_t distance = both.out.find("  differs: positions 100 mm (10000 x the tolerance)");
+  EXPECT_LT(distance, both.out.find("  differs: animation walk is named stroll")) << both.out;
   EXPECT_EQ(diff({"a.glb", "clip.glb", "--match", "order"}).exit_code, 0);
   EXPECT_EQ(diff({"a.glb", "material.glb"}).exit_code, 0);
   const auto material = diff({"a.glb", "material.glb", "--materials"});
@@ -282,13 +289,14 @@ TEST_F(KrokDiffMatching, JointsAndNormalsHaveTolerancesOfTheirOwn) {
   EXPECT_THAT(done.out, HasSubstr("joints beyond tolerance, 2 of 3:\n    joint Head: positions up "
                                   "to 0.2 mm, RMS 0.2 mm, 95 % 0.2 mm\n    joint Spine: "
                                   "orientations up to 0.101 deg, RMS 0.1 deg"));
-  EXPECT_EQ(diff({"a.anim", "b.anim", "--joints", "0.3mm"}).exit_code, 1);
-  const auto wide = diff({"a.anim", "b.anim", "--joints", "0.3mm,0.2deg"});
+  EXPECT_EQ(diff({"a.anim", "b.anim", "--joint-tolerance", "0.3mm"}).exit_code, 1);
+  const auto wide = diff({"a.anim", "b.anim", "--joint-tolerance", "0.3mm,0.2deg"});
   EXPECT_EQ(wide.exit_code, 0);
   EXPECT_THAT(wide.out, HasSubstr("within 0.01 mm, 0.01 deg, joints 0.3 mm and 0.2 deg\n"));
-  EXPECT_EQ(diff({"a.anim", "b.anim", "--tolerance", "1m", "--angle", "1", "--joints", "0.1mm"})
-                .exit_code,
-            1);
+  EXPECT_EQ(
+      diff({"a.anim", "b.anim", "--tolerance", "1m", "--angle", "1", "--joint-tolerance", "0.1mm"})
+          .exit_code,
+      1);
   test::GlbBuilder tilted = test::square();
   const double tilt = 1 * kRadiansPerDegree;
   const auto normals = tilted.json["accessors"][1]["bufferView"].get<std::size_t>();
@@ -301,8 +309,9 @@ TEST_F(KrokDiffMatching, JointsAndNormalsHaveTolerancesOfTheirOwn) {
   EXPECT_EQ(diff({"a.glb", "b.glb"}).exit_code, 1);
   EXPECT_EQ(diff({"a.glb", "b.glb", "--normals", "1.1deg"}).exit_code, 0);
   EXPECT_EQ(diff({"a.glb", "b.glb", "--normals", "0.9deg", "--angle", "5"}).exit_code, 1);
-  for (const char* option : {"--joints=1mm,", "--joints=,1", "--joints=-1mm", "--normals=1mm",
-                             "--times=-1ms", "--times=3f", "--joints=1mm,1deg,1"}) {
+  for (const char* option :
+       {"--joint-tolerance=1mm,", "--joint-tolerance=,1", "--joint-tolerance=-1mm", "--normals=1mm",
+        "--times=-1ms", "--times=3f", "--joint-tolerance=1mm,1deg,1"}) {
     const auto bad = diff({"a.anim", "a.anim", option});
     EXPECT_EQ(bad.exit_code, 2) << option;
     EXPECT_THAT(bad.err, HasSubstr("error: ")) << option;
@@ -313,7 +322,7 @@ TEST_F(KrokDiffMatching, AMotionIsHeldAgainstItsBvhAndItsGlb) {
   write("walk.anim", three_joint_clip());
   ASSERT_EQ(run("krok-export", {"walk.anim", "-o", "walk.bvh"}).exit_code, 0);
   ASSERT_EQ(run("krok-export", {"walk.anim", "-o", "walk.glb"}).exit_code, 0);
-  const auto bvh = diff({"walk.anim", "walk.bvh", "--joints", "0.1mm,0.1deg"});
+  const auto bvh = diff({"walk.anim", "walk.bvh", "--joint-tolerance", "0.1mm,0.1deg"});
   EXPECT_THAT(bvh.out, HasSubstr("600 frames compared"));
   EXPECT_THAT(bvh.out, Not(HasSubstr("frames/s in the first")));
   const auto result = result_of({"walk.anim", "walk.bvh"});

@@ -158,7 +158,8 @@ TEST_F(KrokEdit, FiltersAndSaysWhatItCosts) {
   EXPECT_EQ(step["cutoff"], 8);
   EXPECT_LT(step["joints"].get<int>(), 20);
   EXPECT_TRUE(step["feet_moved"].contains("distance"));
-  EXPECT_EQ(edited({"--filter", "savgol", "--window", "11", "--order", "4"}).frame_count(), 241);
+  EXPECT_EQ(edited({"--filter", "savgol", "--window", "11", "--filter-order", "4"}).frame_count(),
+            241);
   EXPECT_THAT(last_message_, HasSubstr("Savitzky-Golay, 11 frames, degree 4"));
   EXPECT_THAT(last_message_, HasSubstr("feet moved by at most"));
   EXPECT_EQ(edited({"--filter", "savgol", "--window", "301"}).positions,
@@ -167,7 +168,7 @@ TEST_F(KrokEdit, FiltersAndSaysWhatItCosts) {
   for (const auto& [options, code] :
        {std::pair<std::vector<std::string>, std::string>{{"--cutoff", "30Hz"}, "filter-cutoff"},
         {{"--cutoff", "6deg"}, "quantity-unit"},
-        {{"--order", "3"}, "filter-order"},
+        {{"--filter-order", "3"}, "filter-order"},
         {{"--joints", "Tail"}, "motion-joint"}}) {
     std::vector<std::string> all = {"walk.anim", "-o", "x.anim", "--filter", "butterworth"};
     all.insert(all.end(), options.begin(), options.end());
@@ -276,7 +277,7 @@ TEST_F(KrokEdit, EveryMotionThatIsAppendedStandsInTheProvenance) {
 TEST_F(KrokEdit, PlacesScalesAndGrounds) {
   write("walk.anim", walk());
   const Clip clip = edited({"--height", "1m", "--at-origin", "--heading", "90deg", "--turn", "-30",
-                            "--move", "1m, 0,-20cm", "--ground"});
+                            "--move", "1m, 0,-20cm", "--on-ground"});
   EXPECT_NEAR(reference_height(clip.skeleton), 1, 1e-6);
   const GroundFrame start = ground_frame(clip, 0, 0);
   EXPECT_NEAR(start.x, 1, 1e-5);
@@ -289,19 +290,19 @@ TEST_F(KrokEdit, PlacesScalesAndGrounds) {
 
 TEST_F(KrokEdit, TimingAndTheOrderOfSteps) {
   write("walk.anim", walk());
-  const Clip fast = edited({"--speed", "2", "--resample", "30", "--to", "1s"});
+  const Clip fast = edited({"--playback-speed", "2", "--rate", "30", "--to", "1s"});
   EXPECT_EQ(fast.rate, 30);
   EXPECT_EQ(fast.frame_count(), 16);
   // The order on the command line means nothing.
-  edited({"--mirror", "--from", "1s", "--speed", "1.5"});
+  edited({"--mirror", "--from", "1s", "--playback-speed", "1.5"});
   const std::string one = get(path("out.anim"));
-  const Clip other = edited({"--speed", "1.5", "--from", "1s", "--mirror"});
+  const Clip other = edited({"--playback-speed", "1.5", "--from", "1s", "--mirror"});
   EXPECT_EQ(other.positions, [&] {
     put("again.anim", one);
     return read("again.anim").positions;
   }());
   const auto report = report_of({"--turn", "10", "--loop", "--mirror", "--from", "1s", "--filter",
-                                 "savgol", "--scale", "2", "--resample", "30", "--treadmill",
+                                 "savgol", "--scale", "2", "--rate", "30", "--treadmill",
                                  "--append", "walk.anim", "--spikes"});
   std::vector<std::string> steps;
   for (const auto& step : report["result"]["steps"]) steps.push_back(step["step"]);
@@ -341,7 +342,7 @@ TEST_F(KrokEdit, OptionsThatDoNotGoTogether) {
         {"--cutoff", "banana"},
         {"--cutoff", "6Hz", "--filter", "savgol"},
         {"--window", "3", "--filter", "butterworth"},
-        {"--order", "2"},
+        {"--filter-order", "2"},
         {"--below", "Hips"},
         {"--blend", "3s"},
         {"--match-height", "--loop"},
@@ -350,8 +351,8 @@ TEST_F(KrokEdit, OptionsThatDoNotGoTogether) {
         {"--loop-turn", "keep"},
         {"--loop-climb", "keep"},
         {"--filter", "median"},
-        {"--resample", "0"},
-        {"--speed", "-1"},
+        {"--rate", "0"},
+        {"--playback-speed", "-1"},
         {"--scale", "0"},
         {"--from", "1s", "--to", "61f", "--loop"}}) {
     std::vector<std::string> all = {"walk.anim", "-o", "x.anim"};
@@ -370,8 +371,8 @@ TEST_F(KrokEdit, WithoutOptionsTheMotionIsTheSame) {
   Clip empty = walk();
   empty.resize(0);
   write("walk.anim", empty);
-  EXPECT_EQ(edited({"--spikes", "--filter", "butterworth", "--mirror", "--speed", "2", "--in-place",
-                    "--at-origin", "--ground", "--scale", "2"})
+  EXPECT_EQ(edited({"--spikes", "--filter", "butterworth", "--mirror", "--playback-speed", "2",
+                    "--in-place", "--at-origin", "--on-ground", "--scale", "2"})
                 .frame_count(),
             0);
   const auto no_frames = edit({"walk.anim", "-o", "x.anim", "--from", "0"});

@@ -123,7 +123,7 @@ TEST_F(KrokIk, GoalsComeFromAFileAndFromAnotherMotion) {
 
 TEST_F(KrokIk, LimitsAreLearntAndWritten) {
   const auto learn =
-      ik({"walk.anim", "--learn-limits", "walk.anim", "--write-limits", "actor.limits.json"});
+      ik({"walk.anim", "--learn-limits", "walk.anim", "--save-limits", "actor.limits.json"});
   ASSERT_EQ(learn.exit_code, 0) << learn.err;
   EXPECT_THAT(learn.err, HasSubstr("actor.limits.json: limits of "));
   const auto file = InputFile::open(path("actor.limits.json"));
@@ -134,7 +134,7 @@ TEST_F(KrokIk, LimitsAreLearntAndWritten) {
 }
 
 TEST_F(KrokIk, AutoLimitsAreWrittenAndReadAgain) {
-  const auto make = ik({"walk.anim", "--limits", "auto", "--write-limits", "auto.limits.json"});
+  const auto make = ik({"walk.anim", "--limits", "auto", "--save-limits", "auto.limits.json"});
   ASSERT_EQ(make.exit_code, 0) << make.err;
   const auto by_file = ik({"walk.anim", "--limits", "auto.limits.json", "--reach",
                            reach(Vec3(0, 0.2, 0.2)), "-o", "a.anim", "--orientation", "xyzw"});
@@ -150,7 +150,7 @@ TEST_F(KrokIk, AutoLimitsAreWrittenAndReadAgain) {
 
 TEST_F(KrokIk, EveryMethodReachesAnEasyGoal) {
   for (const char* method : {"least-squares", "ccd", "two-bone"}) {
-    const auto run = ik({"walk.anim", "--reach", reach(Vec3(0, 0.05, 0.02)), "--method", method,
+    const auto run = ik({"walk.anim", "--reach", reach(Vec3(0, 0.05, 0.02)), "--solver", method,
                          "--iterations", "300", "-o", std::string(method) + ".anim"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const Vec3 wanted = place(walk_, 30, "RightHand") + Vec3(0, 0.05, 0.02);
@@ -197,7 +197,7 @@ TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
       {{"walk.anim", "--reach", good, "--stiffness", "Spine=2", "-o", "x.anim"}, "0 to 1"},
       {{"walk.anim", "--reach", good, "--fade", "-1s", "-o", "x.anim"}, "--fade"},
       {{"walk.anim", "--reach", good, "--tolerance", "0mm", "-o", "x.anim"}, "--tolerance"},
-      {{"walk.anim", "--write-limits", "y.json"}, "--write-limits is for --limits"},
+      {{"walk.anim", "--save-limits", "y.json"}, "--save-limits is for --limits"},
       {{"walk.anim", "--goals", "bad.json", "-o", "x.anim"}, "bad.json:2:13: error: "},
       {{"walk.anim", "--reach", good, "--limits", "bad.limits.json", "-o", "x.anim"},
        "bad.limits.json:2:11: error: "},

@@ -37,7 +37,7 @@ TEST_F(AcclaimImport, AMotionWithItsSkeleton) {
 
 TEST_F(AcclaimImport, ASkeletonAloneHasNoFrames) {
   put("leg.asf", small_files::kAsf);
-  const Clip clip = imported({path("leg.asf"), "--model", path("leg.model")});
+  const Clip clip = imported({path("leg.asf"), "--save-model", path("leg.model")});
   EXPECT_EQ(clip.frame_count(), 0);
   EXPECT_EQ(clip.skeleton.reference[2].position, Vec3(0, -4, 0));
   EXPECT_TRUE(std::filesystem::exists(path("leg.model")));

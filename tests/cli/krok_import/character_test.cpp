@@ -1,5 +1,5 @@
-// If these fail, krok-import --character writes a character that does not hold together, loses a
-// material or a byte of a texture, writes outside of its folder, or leaves half of it behind.
+// If these fail, krok-import --save-character writes a character that does not hold together, loses
+// a material or a byte of a texture, writes outside of its folder, or leaves half of it behind.
 
 #include <nlohmann/json.hpp>
 #include <set>
@@ -73,7 +73,7 @@ class CharacterImportTest : public CliTest {
 
 TEST_F(CharacterImportTest, WritesAllThatBelongsTogether) {
   put_glb(character({"Skin", "Cloth"}));
-  const ToolRun run = import({"--character", path("hero.character"), "-o", path("a.anim")});
+  const ToolRun run = import({"--save-character", path("hero.character"), "-o", path("a.anim")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(listing(),
             (std::vector<std::string>{"a.anim", "hero.character", "hero.material", "hero.model",
@@ -133,7 +133,8 @@ TEST_F(CharacterImportTest, ColoursCoordinatesAndTransformsComeBack) {
       {"scale", {3, 0.5}}, {"rotation", 0.3}, {"offset", {-1, 0.2}}};
   material["occlusionTexture"] = {{"index", 0}, {"texCoord", 1}};
   put_glb(builder);
-  ASSERT_EQ(import({"--character", path("hero.character"), "-o", path("a.anim")}).exit_code, 0);
+  ASSERT_EQ(import({"--save-character", path("hero.character"), "-o", path("a.anim")}).exit_code,
+            0);
   for (const auto& options : {std::vector<std::string>{}, {"--quantize", "--compress"}}) {
     std::vector<std::string> skin = {path("hero.character"), path("a.anim"), "-o", path("out.glb")};
     skin.insert(skin.end(), options.begin(), options.end());
@@ -150,7 +151,7 @@ TEST_F(CharacterImportTest, ColoursCoordinatesAndTransformsComeBack) {
 
 TEST_F(CharacterImportTest, WhatItWroteIsSound) {
   put_glb(character({"Skin"}));
-  ASSERT_EQ(import({"--character", path("hero.character")}).exit_code, 0);
+  ASSERT_EQ(import({"--save-character", path("hero.character")}).exit_code, 0);
   const ToolRun info = run_tool("krok-info", {path("hero.character"), path("hero.material")});
   EXPECT_EQ(info.exit_code, 0) << info.err;
   for (const char* text : {"a character (.character)", "Nose (0.5)", "left at 0.1, 1.2, 0.3 m",
@@ -167,7 +168,7 @@ TEST_F(CharacterImportTest, HostileNamesStayInTheFolder) {
   fs::create_directory(path("out"));
   put_glb(character({"../../evil", "..", "", "a/b", "A/B", "con\nx.png", "a.png.", "\xC5\x99",
                      std::string(300, 'x'), "-rf", ".hidden"}));
-  const ToolRun run = import({"--character", path("out/hero.character")});
+  const ToolRun run = import({"--save-character", path("out/hero.character")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(listing(), (std::vector<std::string>{"in.glb", "out"}));
   const auto names = names_in("out/hero_textures");
@@ -187,13 +188,13 @@ TEST_F(CharacterImportTest, HostileNamesStayInTheFolder) {
 TEST_F(CharacterImportTest, NothingIsLeftOfWhatFails) {
   put_glb(character({"Skin"}));
   put("hero.character", "mine");
-  const ToolRun run = import({"--character", path("hero.character"), "--no-clobber"});
+  const ToolRun run = import({"--save-character", path("hero.character"), "--no-clobber"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(listing(), (std::vector<std::string>{"hero.character", "in.glb"}));
   EXPECT_EQ(get(path("hero.character")), "mine");
   // A file where the folder would be.
   put("hero_textures", "mine");
-  const ToolRun taken = import({"--character", path("hero.character")});
+  const ToolRun taken = import({"--save-character", path("hero.character")});
   EXPECT_EQ(taken.exit_code, 2);
   EXPECT_TRUE(has_code(taken.err, "file-unwritable")) << taken.err;
   EXPECT_EQ(listing(), (std::vector<std::string>{"hero.character", "hero_textures", "in.glb"}));
@@ -203,11 +204,13 @@ TEST_F(CharacterImportTest, NothingIsLeftOfWhatFails) {
 TEST_F(CharacterImportTest, OptionsThatContradictItAreErrors) {
   put_glb(character({"Skin"}));
   put("in.bvh", capture(3));
-  EXPECT_EQ(import({"--character", path("a.character"), "--model", path("a.model")}).exit_code, 2);
-  EXPECT_EQ(import({"--character", path("a.model")}).exit_code, 2);
-  EXPECT_EQ(import({"--character", "-"}).exit_code, 2);
+  EXPECT_EQ(
+      import({"--save-character", path("a.character"), "--save-model", path("a.model")}).exit_code,
+      2);
+  EXPECT_EQ(import({"--save-character", path("a.model")}).exit_code, 2);
+  EXPECT_EQ(import({"--save-character", "-"}).exit_code, 2);
   const ToolRun capture_run =
-      run_tool("krok-import", {path("in.bvh"), "--character", path("a.character")});
+      run_tool("krok-import", {path("in.bvh"), "--save-character", path("a.character")});
   EXPECT_EQ(capture_run.exit_code, 2);
   EXPECT_TRUE(has_code(capture_run.err, "import-missing")) << capture_run.err;
   EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh", "in.glb"}));
@@ -215,7 +218,7 @@ TEST_F(CharacterImportTest, OptionsThatContradictItAreErrors) {
 
 TEST_F(CharacterImportTest, AActorWithoutMaterialsHasNone) {
   put("in.glb", text_of(rig().glb()));
-  const ToolRun run = import({"--character", path("hero.character")});
+  const ToolRun run = import({"--save-character", path("hero.character")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(listing(), (std::vector<std::string>{"hero.character", "hero.model", "in.glb"}));
   EXPECT_EQ(run_tool("krok-info", {path("hero.character")}).exit_code, 0);
@@ -226,18 +229,18 @@ TEST_F(CharacterImportTest, WithoutAMeshIsRefused) {
   GlbBuilder builder = rig();
   builder.json["meshes"][0]["primitives"][0]["mode"] = 0;  // points
   put_glb(builder);
-  const ToolRun points = import({"--character", path("a.character")});
+  const ToolRun points = import({"--save-character", path("a.character")});
   EXPECT_EQ(points.exit_code, 2);
-  EXPECT_NE(points.err.find("no mesh with triangles: --character"), std::string::npos)
+  EXPECT_NE(points.err.find("no mesh with triangles: --save-character"), std::string::npos)
       << points.err;
   builder = rig();
   builder.json.erase("meshes");
   builder.json["nodes"][0].erase("mesh");
   builder.json["nodes"][0].erase("skin");
   put_glb(builder);
-  const ToolRun none = import({"--character", path("a.character")});
+  const ToolRun none = import({"--save-character", path("a.character")});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_NE(none.err.find("no mesh: --character"), std::string::npos) << none.err;
+  EXPECT_NE(none.err.find("no mesh: --save-character"), std::string::npos) << none.err;
   EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
 }
 

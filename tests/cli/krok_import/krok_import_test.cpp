@@ -46,7 +46,7 @@ TEST_F(ImportTest, RatesAreTakenAndResampled) {
   const Clip faster = imported({"--fps", "60"});
   EXPECT_EQ(faster.rate, 60.0);
   EXPECT_EQ(faster.frame_count(), 11);
-  const Clip resampled = imported({"--resample", "60"});
+  const Clip resampled = imported({"--rate", "60"});
   EXPECT_EQ(resampled.rate, 60.0);
   EXPECT_EQ(resampled.frame_count(), 21);
   for (const std::string rate : {"0", "-5", "nan", "inf", "1e999", "30x", ""}) {
@@ -58,7 +58,7 @@ TEST_F(ImportTest, RatesAreTakenAndResampled) {
 
 TEST_F(ImportTest, TheModelIsTheSkeleton) {
   put("in.bvh", capture(5));
-  const Clip clip = imported({"--model", path("out.model")});
+  const Clip clip = imported({"--save-model", path("out.model")});
   const auto file = InputFile::open(path("out.model"));
   ASSERT_TRUE(file.ok());
   const auto model = model::read(file->bytes());
@@ -74,7 +74,7 @@ TEST_F(ImportTest, BothOutputsAppearOrNone) {
         {"none/out.anim", "out.model"},
         {"out.anim", "out.anim"}}) {
     const ToolRun run =
-        run_tool("krok-import", {path("in.bvh"), "-o", path(motion), "--model", path(model)});
+        run_tool("krok-import", {path("in.bvh"), "-o", path(motion), "--save-model", path(model)});
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh"}));
   }
@@ -157,8 +157,8 @@ TEST_F(ImportTest, OutputsNamedAfterAnotherFormatAreRefused) {
     EXPECT_TRUE(has_code(run.err, "usage")) << run.err;
     EXPECT_NE(run.err.find("krok-export"), std::string::npos) << run.err;
   }
-  const ToolRun model =
-      run_tool("krok-import", {path("in.bvh"), "-o", path("x.anim"), "--model", path("x.glb")});
+  const ToolRun model = run_tool(
+      "krok-import", {path("in.bvh"), "-o", path("x.anim"), "--save-model", path("x.glb")});
   EXPECT_EQ(model.exit_code, 2);
   EXPECT_NE(model.err.find("krok-skin"), std::string::npos) << model.err;
   EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh"}));

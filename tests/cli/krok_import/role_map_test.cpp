@@ -78,7 +78,7 @@ TEST_F(RoleMapImport, AMapOverridesTheRolesAndWithThemTheAxes) {
   put_exchanged_sides();
   // In blocks, and as a whole.
   using Words = std::vector<std::string>;
-  for (const Words& more : {Words(), Words{"--resample", "60"}}) {
+  for (const Words& more : {Words(), Words{"--rate", "60"}}) {
     std::vector<std::string> arguments = {path("walk.bvh"), "--map", path("sides.json")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Json result = result_of(arguments);

@@ -51,7 +51,7 @@ class SceneImportTest : public CliTest {
 
 TEST_F(SceneImportTest, MotionAndModelOfAGlb) {
   put_glb("in.glb", rig());
-  const ToolRun run = import({"-o", path("a.anim"), "--model", path("a.model")});
+  const ToolRun run = import({"-o", path("a.anim"), "--save-model", path("a.model")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto motion = InputFile::open(path("a.anim"));
   const auto clip = anim::read(motion->bytes());
@@ -74,11 +74,11 @@ TEST_F(SceneImportTest, ThePoseOfAFileWithoutAnimationsIsToldAndCanBeKept) {
   builder.json.erase("animations");
   builder.json["nodes"][2]["rotation"] = {0.5, 0, 0, std::sqrt(0.75)};
   put_glb("in.glb", builder);
-  const ToolRun model = import({"--model", path("a.model")});
+  const ToolRun model = import({"--save-model", path("a.model")});
   ASSERT_EQ(model.exit_code, 0) << model.err;
   EXPECT_NE(model.err.find("warning: without animation"), std::string::npos) << model.err;
   EXPECT_NE(model.err.find("-o POSE.anim"), std::string::npos) << model.err;
-  const ToolRun pose = import({"--model", path("a.model"), "-o", path("pose.anim")});
+  const ToolRun pose = import({"--save-model", path("a.model"), "-o", path("pose.anim")});
   ASSERT_EQ(pose.exit_code, 0) << pose.err;
   EXPECT_EQ(pose.err.find("warning"), std::string::npos) << pose.err;
   const ToolRun skin = run_tool("krok-skin", {path("a.model"), path("pose.anim"), "--as", "pose",
@@ -91,9 +91,9 @@ TEST_F(SceneImportTest, ThePoseOfAFileWithoutAnimationsIsToldAndCanBeKept) {
 TEST_F(SceneImportTest, OneOutputAloneWillDo) {
   put_glb("in.glb", character());
   for (const auto& [option, name] :
-       std::vector<std::pair<std::string, std::string>>{{"--model", "a.model"},
-                                                        {"--cam", "a.cam"},
-                                                        {"--morphs", "a.exr"},
+       std::vector<std::pair<std::string, std::string>>{{"--save-model", "a.model"},
+                                                        {"--save-cam", "a.cam"},
+                                                        {"--save-morphs", "a.exr"},
                                                         {"--morph-weights", "a.csv"}}) {
     const ToolRun run = import({option, path(name)});
     EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -107,7 +107,7 @@ TEST_F(SceneImportTest, OneOutputAloneWillDo) {
 
 TEST_F(SceneImportTest, ACameraIsAsLongAsItsAnimation) {
   put_glb("in.glb", character());
-  ASSERT_EQ(import({"--cam", path("a.cam"), "--resample", "10"}).exit_code, 0);
+  ASSERT_EQ(import({"--save-cam", path("a.cam"), "--rate", "10"}).exit_code, 0);
   const auto file = InputFile::open(path("a.cam"));
   const auto camera = cam::read(file->bytes());
   ASSERT_TRUE(camera.ok());
@@ -155,16 +155,16 @@ TEST_F(AnimationsOfObjectsTest, ThatOfTheSkeletonIsTakenWithTheReason) {
 }
 
 TEST_F(AnimationsOfObjectsTest, ACameraAloneHasItsOwn) {
-  ASSERT_EQ(import({"--cam", path("a.cam")}).exit_code, 0);
+  ASSERT_EQ(import({"--save-cam", path("a.cam")}).exit_code, 0);
   EXPECT_EQ(camera().frame_count(), 91);
   EXPECT_FLOAT_EQ(camera().positions[90].x(), 3);
-  const ToolRun given = import({"--cam", path("a.cam"), "--clip", "Bend"});
+  const ToolRun given = import({"--save-cam", path("a.cam"), "--clip", "Bend"});
   EXPECT_TRUE(has_code(given.err, "import-camera-clip")) << given.err;
   EXPECT_FLOAT_EQ(camera().positions[30].x(), 0);
 }
 
 TEST_F(AnimationsOfObjectsTest, ACameraBesideAMotionHasTheTimeOfTheMotion) {
-  const ToolRun run = import({"-o", path("a.anim"), "--cam", path("a.cam"), "--json"});
+  const ToolRun run = import({"-o", path("a.anim"), "--save-cam", path("a.cam"), "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(Json::parse(run.out)["result"]["camera"]["clip"]["name"], "Dolly");
   EXPECT_EQ(camera().frame_count(), 31);
@@ -211,8 +211,8 @@ TEST_F(SceneImportTest, WhatTheFileDoesNotHoldIsSaid) {
   put_glb("in.glb", square());
   for (const auto& [option, what] :
        std::vector<std::pair<std::string, std::string>>{{"-o", "animation"},
-                                                        {"--cam", "camera"},
-                                                        {"--morphs", "morph target"},
+                                                        {"--save-cam", "camera"},
+                                                        {"--save-morphs", "morph target"},
                                                         {"--morph-weights", "morph target"}}) {
     const ToolRun run = import({option, path("out")});
     EXPECT_EQ(run.exit_code, 2) << option;
@@ -224,13 +224,14 @@ TEST_F(SceneImportTest, WhatTheFileDoesNotHoldIsSaid) {
 
 TEST_F(SceneImportTest, ACaptureHasNoCameraAndOneMotion) {
   put("in.bvh", capture(5));
-  for (const std::string option : {"--cam", "--camera", "--morphs", "--skin", "--clip"}) {
+  for (const std::string option : {"--save-cam", "--camera", "--save-morphs", "--skin", "--clip"}) {
     const ToolRun run =
         run_tool("krok-import", {path("in.bvh"), "-o", path("a.anim"), option, path("x")});
     EXPECT_EQ(run.exit_code, 2) << option;
     EXPECT_TRUE(has_code(run.err, "import-missing")) << run.err;
   }
-  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "--model", path("a.model")}).exit_code, 0);
+  EXPECT_EQ(run_tool("krok-import", {path("in.bvh"), "--save-model", path("a.model")}).exit_code,
+            0);
   EXPECT_EQ(listing(), (std::vector<std::string>{"a.model", "in.bvh"}));
 }
 
@@ -280,7 +281,7 @@ TEST_F(SceneImportTest, ARestFrameBeforeTheMotionIsTold) {
 TEST_F(SceneImportTest, UnitAndAxesCanBeGiven) {
   put_glb("in.glb", rig());
   const ToolRun run =
-      import({"--model", path("a.model"), "--unit", "ft", "--forward", "x", "--json"});
+      import({"--save-model", path("a.model"), "--unit", "ft", "--forward", "x", "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const Json result = Json::parse(run.out)["result"];
   EXPECT_EQ(result["unit"]["reason"], "as given");
@@ -294,17 +295,17 @@ TEST_F(SceneImportTest, UnitAndAxesCanBeGiven) {
 
 TEST_F(SceneImportTest, WeightsAreATable) {
   put_glb("in.glb", character());
-  ASSERT_EQ(import({"--morph-weights", path("w.csv"), "--resample", "1"}).exit_code, 0);
+  ASSERT_EQ(import({"--morph-weights", path("w.csv"), "--rate", "1"}).exit_code, 0);
   EXPECT_EQ(get(path("w.csv")), "frame,time,Nose\n0,0,0.5\n1,1,0.5\n");
 }
 
 TEST_F(SceneImportTest, TheOutputsAppearTogetherOrNotAtAll) {
   put_glb("in.glb", character());
-  const ToolRun run =
-      import({"-o", path("a.anim"), "--model", path("a.model"), "--cam", path("none/a.cam")});
+  const ToolRun run = import(
+      {"-o", path("a.anim"), "--save-model", path("a.model"), "--save-cam", path("none/a.cam")});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
-  const ToolRun twice = import({"-o", path("a.x"), "--cam", path("a.x")});
+  const ToolRun twice = import({"-o", path("a.x"), "--save-cam", path("a.x")});
   EXPECT_EQ(twice.exit_code, 2);
   EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
 }
@@ -329,7 +330,7 @@ TEST_F(SceneImportTest, ABatchDoesAnewWhatACompanionChanges) {
   put("walk.md5mesh", md5mesh(rig));
   const auto batch = [&] {
     const ToolRun run = run_tool("krok-import", {path("walk.md5anim"), "--out-dir", path("out"),
-                                                 "--model", "{name}.model", "--json"});
+                                                 "--save-model", "{name}.model", "--json"});
     EXPECT_EQ(run.exit_code, 0) << run.err;
     return Json::parse(run.out)["files"][0];
   };

@@ -71,8 +71,8 @@ TEST_F(KrokKeys, SetMovesMarksAndStays) {
   ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
   const std::size_t count = written()["keytimes"].size();
   const double before = time_of(written(), "left_off");
-  ASSERT_EQ(keys({"-o", file_, "--set", "left_off=" + std::to_string(before + 0.05) + "s,clap=120f",
-                  "--new"})
+  ASSERT_EQ(keys({"-o", file_, "--keytime",
+                  "left_off=" + std::to_string(before + 0.05) + "s,clap=120f", "--new"})
                 .exit_code,
             0);
   EXPECT_NEAR(time_of(written(), "left_off"), before + 0.05, 1e-6);
@@ -142,14 +142,14 @@ TEST_F(KrokKeys, ContactsCanBeAddedAndTakenOut) {
 
 TEST_F(KrokKeys, SaysWhatCannotBe) {
   for (const std::vector<std::string>& arguments :
-       std::vector<std::vector<std::string>>{{"--set", "left_off=1s"},  // no -o
-                                             {"-o", file_, "--set", "left_off"},
-                                             {"-o", file_, "--set", "=1s"},
-                                             {"-o", file_, "--set", "left_off=99s"},
-                                             {"-o", file_, "--set", "a=1s,b=1s"},
+       std::vector<std::vector<std::string>>{{"--keytime", "left_off=1s"},  // no -o
+                                             {"-o", file_, "--keytime", "left_off"},
+                                             {"-o", file_, "--keytime", "=1s"},
+                                             {"-o", file_, "--keytime", "left_off=99s"},
+                                             {"-o", file_, "--keytime", "a=1s,b=1s"},
                                              {"-o", file_, "--find", "everything"},
                                              {"-o", file_, "--find", "none", "--discard-edits"},
-                                             {"--keys", path("none.json")}}) {
+                                             {"--contacts", path("none.json")}}) {
     const ToolRun run = keys(arguments);
     EXPECT_EQ(run.exit_code, 2) << arguments.back();
     EXPECT_THAT(run.err, HasSubstr("error: ")) << arguments.back();

@@ -19,8 +19,8 @@ class KrokMix : public CliTest {
     std::filesystem::create_directory(path("in"));
     const ToolRun imported = run_tool("krok-import", {kWalk, "-o", path("in/walk.anim"), "-q"});
     ASSERT_EQ(imported.exit_code, 0) << imported.err;
-    const ToolRun quick = run_tool(
-        "krok-edit", {path("in/walk.anim"), "--speed", "1.5", "-o", path("in/quick.anim"), "-q"});
+    const ToolRun quick = run_tool("krok-edit", {path("in/walk.anim"), "--playback-speed", "1.5",
+                                                 "-o", path("in/quick.anim"), "-q"});
     ASSERT_EQ(quick.exit_code, 0) << quick.err;
   }
 
@@ -154,10 +154,10 @@ TEST_F(KrokMix, CapturesAndSequencesByName) {
           "{\"schema\": \"krok.timeline/1\", \"sources\": {\"c\": {\"file\": \"chain.bvh\", "
           "\"sequences\": \"parts.json\"}}, \"base\": [{\"source\": \"c\", \"sequence\": \"a\"}, "
           "{\"source\": \"c\", \"sequence\": \"a\", \"loop\": 3}]}");
-  EXPECT_EQ(result_of(file, {"--keys", "none"})["frames"], 81);
+  EXPECT_EQ(result_of(file, {"--contacts", "none"})["frames"], 81);
   // A wrong one names its own file.
   put("in/parts.json", "{\"schema\": \"krok.sequences/1\", \"sequences\": [{}]}");
-  const ToolRun wrong = mix(file, {"--keys", "none"});
+  const ToolRun wrong = mix(file, {"--contacts", "none"});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("parts.json:1:"));
 }
@@ -180,7 +180,7 @@ TEST_F(KrokMix, KeysAreTakenFromBesideAMotion) {
   ASSERT_EQ(result["keytimes"].size(), 1u);
   EXPECT_EQ(result["keytimes"][0]["name"], "sneeze");
   EXPECT_NEAR(result["keytimes"][0]["time"].get<double>(), 1.0, 1e-6);
-  const ToolRun sidecar = mix(timeline(kFade), {"--keys", "sidecar"});
+  const ToolRun sidecar = mix(timeline(kFade), {"--contacts", "sidecar"});
   EXPECT_EQ(sidecar.exit_code, 2);
   EXPECT_TRUE(has_code(sidecar.err, "keys-missing")) << sidecar.err;
 }

@@ -344,7 +344,7 @@ TEST_F(KrokMorph, ShapesOfOtherMeshesAreRefused) {
   const std::string odd = put("odd.obj", other);
   refused({"pack", base_, odd, "-o", path("out.exr")}, "morph-triangles",
           "odd.obj: error: triangle 4 (vertices 2, 4, 15");
-  EXPECT_EQ(morph({"pack", base_, odd, "--by-order", "-o", path("fine.exr")}).exit_code, 0);
+  EXPECT_EQ(morph({"pack", base_, odd, "--match", "order", "-o", path("fine.exr")}).exit_code, 0);
   refused({"bake", packed(), small, "--weights", put("w.json", kWeights), "-o", path("out.glb")},
           "morph-vertices",
           "face.exr: error: the targets have 144 vertices, but small.obj has 121");

@@ -18,7 +18,7 @@ class PlotCharacter : public HeroCharacter {
     Silhouette actor() const { return silhouette(image, cell, 16); }
   };
   Shot sheet(std::vector<std::string> arguments, const std::string& moment = "0s") {
-    arguments.insert(arguments.end(), {"--sheet", "s.png", "--moments", moment, "--sides", "front",
+    arguments.insert(arguments.end(), {"--sheet", "s.png", "--moments", moment, "--view", "front",
                                        "--json=report.json"});
     tool("krok-plot", arguments);
     auto image = image_of(get(path("s.png")));

@@ -135,9 +135,9 @@ TEST_F(KrokPlot, DrawsContactsThatStandBesideTheMotion) {
   EXPECT_THAT(svg(), HasSubstr(">left_strike<"));
   EXPECT_THAT(svg(), HasSubstr("fill-opacity"));
   const std::string with_keys = svg();
-  ASSERT_EQ(plot({path("walk.bvh"), "--keys", "none"}).exit_code, 0);
+  ASSERT_EQ(plot({path("walk.bvh"), "--contacts", "none"}).exit_code, 0);
   EXPECT_THAT(svg(), Not(HasSubstr("left_strike")));
-  ASSERT_EQ(plot({kWalk, "--keys", path("walk.keys.json")}).exit_code, 0);
+  ASSERT_EQ(plot({kWalk, "--contacts", path("walk.keys.json")}).exit_code, 0);
   EXPECT_EQ(svg(), with_keys);
   put("walk.keys.json", "{\"schema\": 7}");
   expect_trouble({path("walk.bvh")}, "keys-value", "walk.keys.json:1:12");
@@ -197,7 +197,7 @@ TEST_F(KrokPlot, DrawsATableByColumnNames) {
 
 TEST_F(KrokPlot, TakesATableOfAnyNameWhereItIsTold) {
   const std::string table = put("numbers.dat", "1;2\n2;4\n3;6\n");
-  ASSERT_EQ(plot({"--table", table}).exit_code, 0);
+  ASSERT_EQ(plot({"--as-table", table}).exit_code, 0);
   EXPECT_THAT(lines(0), ElementsAre("column 2"));
   EXPECT_EQ(panels()[0]["lines"][0]["largest"], 6.0);
 }

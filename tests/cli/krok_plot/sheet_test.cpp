@@ -58,7 +58,7 @@ class KrokPlotSheet : public CliTest {
 };
 
 TEST_F(KrokPlotSheet, EveryJointsPixelIsWhereTheJointIs) {
-  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides",
+  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--view",
                   "front,left,back-right,top", "--moments", "4"})
                 .exit_code,
             0);
@@ -102,7 +102,7 @@ TEST_F(KrokPlotSheet, TheBodyStandsOnTheGroundAndIsAsTallAsTheActor) {
 
 TEST_F(KrokPlotSheet, TheLeftIsBlueAndToTheRightOfWhoeverLooksAtTheFront) {
   ASSERT_EQ(
-      plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front,back"}).exit_code,
+      plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--view", "front,back"}).exit_code,
       0);
   const auto drawn = image("s.png");
   const json cells = report()["sheet"]["cells"];
@@ -118,13 +118,13 @@ TEST_F(KrokPlotSheet, TheLeftIsBlueAndToTheRightOfWhoeverLooksAtTheFront) {
 }
 
 TEST_F(KrokPlotSheet, ShowsTheMomentsThatAreNamed) {
-  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front",
-                  "--moments", "2s,30f,0.5s"})
+  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--view", "front", "--moments",
+                  "2s,30f,0.5s"})
                 .exit_code,
             0);
   EXPECT_THAT(frames_shown(), ElementsAre(30, 120)) << "30f and 0.5s are one frame of 60 a second";
-  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--sides", "front",
-                  "--moments", "3", "--from", "1s", "--to", "120f"})
+  ASSERT_EQ(plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--view", "front", "--moments",
+                  "3", "--from", "1s", "--to", "120f"})
                 .exit_code,
             0);
   EXPECT_THAT(frames_shown(), ElementsAre(60, 90, 120));
@@ -132,7 +132,7 @@ TEST_F(KrokPlotSheet, ShowsTheMomentsThatAreNamed) {
 
 TEST_F(KrokPlotSheet, PutsFilesOnOneSheetAtOneScale) {
   put("short.bvh", capture(5));
-  ASSERT_EQ(plot({kWalk, path("short.bvh"), "--body", "none", "--sheet", path("s.png"), "--sides",
+  ASSERT_EQ(plot({kWalk, path("short.bvh"), "--body", "none", "--sheet", path("s.png"), "--view",
                   "front", "--moments", "4"})
                 .exit_code,
             0);
@@ -172,12 +172,11 @@ TEST_F(KrokPlotSheet, DrawsModelsAndGlbFiles) {
   ASSERT_EQ(run_tool("krok-body", {anim, "--detail", "low", "-o", model}).exit_code, 0);
   ASSERT_EQ(run_tool("krok-skin", {model, anim, "-o", glb, "--as", "rig"}).exit_code, 0);
   ASSERT_EQ(
-      plot({model, anim, "--sheet", path("a.png"), "--sides", "left", "--moments", "2"}).exit_code,
+      plot({model, anim, "--sheet", path("a.png"), "--view", "left", "--moments", "2"}).exit_code,
       0);
   const json by_model = report()["sheet"];
   EXPECT_EQ(by_model["cells"].size(), 2U) << "the model is moved, not shown beside the motion";
-  ASSERT_EQ(plot({glb, "--sheet", path("b.png"), "--sides", "left", "--moments", "2"}).exit_code,
-            0);
+  ASSERT_EQ(plot({glb, "--sheet", path("b.png"), "--view", "left", "--moments", "2"}).exit_code, 0);
   const json by_glb = report()["sheet"];
   const auto a = image("a.png");
   const auto b = image("b.png");
@@ -197,8 +196,8 @@ TEST_F(KrokPlotSheet, MovesModelsByTheMethodAskedFor) {
   ASSERT_EQ(run_tool("krok-import", {kWalk, "-o", anim}).exit_code, 0);
   ASSERT_EQ(run_tool("krok-body", {anim, "--detail", "low", "-o", model}).exit_code, 0);
   const auto drawn = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments = {model,     anim,   "--sheet",   path("s.png"),
-                                          "--sides", "left", "--moments", "20f"};
+    std::vector<std::string> arguments = {model,    anim,   "--sheet",   path("s.png"),
+                                          "--view", "left", "--moments", "20f"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     EXPECT_EQ(run_tool("krok-plot", arguments).exit_code, 0);
     return get(path("s.png"));
@@ -224,17 +223,17 @@ TEST_F(KrokPlotSheet, GivesTheSameBytesForAnyNumberOfThreads) {
 
 TEST_F(KrokPlotSheet, RefusesWhatMakesNoSense) {
   const std::vector<std::vector<std::string>> wrong = {
-      {"--size", "5"},
-      {"--size", "100000"},
-      {"--size", "4000", "--moments", "100", "--sides", "front,left,back"},
+      {"--actor-size", "5"},
+      {"--actor-size", "100000"},
+      {"--actor-size", "4000", "--moments", "100", "--view", "front,left,back"},
       {"--moments", "0"},
       {"--moments", "100000"},
       {"--moments", "soon"},
       {"--moments", "99s"},
       {"--moments", "-1f"},
       {"--moments", "0s,,1s"},
-      {"--sides", "under"},
-      {"--sides", ""},
+      {"--view", "under"},
+      {"--view", ""},
       {"--elevation", "100deg"},
       {"--elevation", "high"},
       {"--from", "99s"},

@@ -48,8 +48,8 @@ class PlotTexture : public CliTest {
   };
   Shot shot(const std::string& input, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> arguments = {
-        input,     "--sheet", path("s.png"), "--sides", "front",
-        "--front", "world",   "--moments",   "1",       "--json=" + path("report.json")};
+        input,     "--sheet", path("s.png"), "--view", "front",
+        "--front", "world",   "--moments",   "1",      "--json=" + path("report.json")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ToolRun run = run_tool("krok-plot", arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -91,9 +91,9 @@ TEST_F(PlotTexture, AGlbShowsItsImage) {
 
 TEST_F(PlotTexture, ACharacterShowsTheImageOfItsMaterial) {
   put_glb(painted(png()));
-  ASSERT_EQ(
-      run_tool("krok-import", {path("in.glb"), "--character", path("hero.character")}).exit_code,
-      0);
+  ASSERT_EQ(run_tool("krok-import", {path("in.glb"), "--save-character", path("hero.character")})
+                .exit_code,
+            0);
   expect_four_colours(shot(path("hero.character")));
 }
 

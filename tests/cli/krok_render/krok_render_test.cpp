@@ -19,7 +19,7 @@ class KrokRender : public MotionTest {
   // Small bones from the walk's beginning.
   static std::vector<std::string> small(std::vector<std::string> more) {
     more.insert(more.begin(),
-                {"walk.anim", "--body", "none", "--size", "96x64", "--to", "0.3s", "--fps", "20"});
+                {"walk.anim", "--body", "none", "--size", "96x64", "--to", "0.3s", "--rate", "20"});
     return more;
   }
 

@@ -28,7 +28,7 @@ class RetargetOnGround : public StepLibrary {
   }
   void walk(const std::string& ground) const {
     const ToolRun made =
-        run_tool("krok-walk", {path("out.steps"), "--to", "0.3m,3m", "--ground", ground, "-q",
+        run_tool("krok-walk", {path("out.steps"), "--goal", "0.3m,3m", "--ground", ground, "-q",
                                "--save-prints", path("prints.csv"), "-o", path("walk.anim")});
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }

@@ -108,13 +108,13 @@ TEST_F(SkinClips, MeshesKeepTheirNames) {
   two["nodes"].push_back(node);
   two["scenes"][0]["nodes"].push_back(two["nodes"].size() - 1);
   put("two.gltf", two.dump());
-  tool("krok-import", {"two.gltf", "--model", "two.model", "-o", "two.anim"});
+  tool("krok-import", {"two.gltf", "--save-model", "two.model", "-o", "two.anim"});
   for (const std::string as : {"rig", "baked"}) {
     tool("krok-skin", {"two.model", "two.anim", "--as", as, "-o", "again.gltf"});
     EXPECT_THAT(names(gltf("again.gltf")["meshes"]), ElementsAre("Knight", "Hat")) << as;
   }
   tool("krok-skin", {"two.model", "two.anim", "-o", "again.gltf"});
-  tool("krok-import", {"again.gltf", "--model", "again.model"});
+  tool("krok-import", {"again.gltf", "--save-model", "again.model"});
   tool("krok-diff", {"two.model", "again.model", "--tolerance", "0.01mm"});
 }
 

@@ -21,8 +21,8 @@ class WalkOnGround : public StepLibrary {
     fit_well();
     const ToolRun made =
         run_tool("krok-walk",
-                 {path("out.steps"), "--to", "0m,3m", "--ground", kStairs, "-q", "--save-prints",
-                  path("prints.csv"), "-o", path("walk.anim"), "--view", path("walk.html")});
+                 {path("out.steps"), "--goal", "0m,3m", "--ground", kStairs, "-q", "--save-prints",
+                  path("prints.csv"), "-o", path("walk.anim"), "--save-page", path("walk.html")});
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   ToolRun view(std::vector<std::string> more) const {
@@ -92,7 +92,7 @@ TEST_F(WalkOnGround, WithoutAGroundThePrintsAreLevel) {
 
 TEST_F(WalkOnGround, IsInTheCharts) {
   const ToolRun walked =
-      run_tool("krok-walk", {path("out.steps"), "--to", "0m,3m", "--ground", "slope:6deg", "-q",
+      run_tool("krok-walk", {path("out.steps"), "--goal", "0m,3m", "--ground", "slope:6deg", "-q",
                              "--save-prints", path("prints.csv"), "-o", path("walk.anim")});
   ASSERT_EQ(walked.exit_code, 0) << walked.err;
   const ToolRun made = plot(

@@ -77,9 +77,9 @@ TEST_F(KrokView, ShowsTheKeysThatStandBesideAMotion) {
   EXPECT_EQ(item["keytimes"][0]["name"], "hop");
   ASSERT_EQ(item["contacts"].size(), 1U);
   EXPECT_EQ(item["contacts"][0]["end"], 2.0);
-  ASSERT_EQ(view({motion, "--body", "none", "--keys", "none"}).exit_code, 0);
+  ASSERT_EQ(view({motion, "--body", "none", "--contacts", "none"}).exit_code, 0);
   EXPECT_FALSE(data()["items"][0].contains("keytimes"));
-  ASSERT_EQ(view({motion, "--body", "none", "--keys", "find"}).exit_code, 0);
+  ASSERT_EQ(view({motion, "--body", "none", "--contacts", "find"}).exit_code, 0);
   EXPECT_EQ(data()["items"][0]["keytimes"].size(), 17U);
 }
 

@@ -57,7 +57,7 @@ class KrokWalk : public StepLibrary {
 // Would fail if the goal were missed, if the files beside the motion were missing, or if prints
 // that were saved and handed back made another walk.
 TEST_F(KrokWalk, WalksToAGoalAndFromItsOwnPrints) {
-  const auto report = walked({"--to", "1m,4m", "--save-prints", path("prints.csv")});
+  const auto report = walked({"--goal", "1m,4m", "--save-prints", path("prints.csv")});
   EXPECT_THAT(listing(), testing::IsSupersetOf({"walk.anim", "walk.keys.json", "prints.csv"}));
   const auto set = prints("prints.csv");
   ASSERT_EQ(report["prints"], set.size());
@@ -140,7 +140,7 @@ TEST_F(KrokWalk, FollowsAJointAndANode) {
 // height that is known.
 TEST_F(KrokWalk, StandsOnEveryKindOfGround) {
   const auto hips_rise = [&](const std::vector<std::string>& ground) {
-    std::vector<std::string> arguments = {"--to", "0,4m"};
+    std::vector<std::string> arguments = {"--goal", "0,4m"};
     arguments.insert(arguments.end(), ground.begin(), ground.end());
     walked(arguments);
     const Clip made = clip("walk.anim");
@@ -172,31 +172,31 @@ TEST_F(KrokWalk, RefusesOrAdaptsWhatIsTooFar) {
 
 TEST_F(KrokWalk, RefusesWrongInput) {
   refused({}, "usage", "no path is given");
-  refused({"--to", "1,2", "--path", "x.svg"}, "usage", "exclude each other");
-  refused({"--to", "1"}, "usage", "too few");
-  refused({"--to", "1,2,3"}, "usage", "too many");
-  refused({"--to", "1kg,2"}, "quantity-unit", "kg");
-  refused({"--to", "0,0"}, "path-short", "5 cm");
-  refused({"--to", "0,3", "--ground", "stars"}, "ground-kind", "stairs");
-  refused({"--to", "0,3", "--ground", path("none.exr")}, "file-missing", "none.exr");
-  refused({"--to", "0,3", "--ground-size", "3"}, "usage", "too few");
-  refused({"--to", "0,3", "--ground-size", "3x3"}, "usage", "height fields");
-  refused({"--to", "0,3", "--speed", "0"}, "usage", "--speed");
-  refused({"--to", "0,3", "--save-prints", "p.txt"}, "usage", ".csv");
+  refused({"--goal", "1,2", "--path", "x.svg"}, "usage", "exclude each other");
+  refused({"--goal", "1"}, "usage", "too few");
+  refused({"--goal", "1,2,3"}, "usage", "too many");
+  refused({"--goal", "1kg,2"}, "quantity-unit", "kg");
+  refused({"--goal", "0,0"}, "path-short", "5 cm");
+  refused({"--goal", "0,3", "--ground", "stars"}, "ground-kind", "stairs");
+  refused({"--goal", "0,3", "--ground", path("none.exr")}, "file-missing", "none.exr");
+  refused({"--goal", "0,3", "--ground-size", "3"}, "usage", "too few");
+  refused({"--goal", "0,3", "--ground-size", "3x3"}, "usage", "height fields");
+  refused({"--goal", "0,3", "--speed", "0"}, "usage", "--speed");
+  refused({"--goal", "0,3", "--save-prints", "p.txt"}, "usage", ".csv");
   refused({"--prints", path("walk_50_0.bvh")}, "prints-column", "side");
   refused({"--prints", put("p.csv", "side,x,z,heading\nleft,nan,0,0\n")}, "prints-value",
           "p.csv:2:6");
   refused({"--prints", put("p.csv", "side,x,z,heading\nleft,0,0,0\n")}, "walk-prints", "three");
   refused({"--path", put("p.svg", "<svg><path d='M0 0X'/></svg>")}, "path-data", "p.svg:1:19");
   const ToolRun other =
-      run_tool("krok-walk", {path("walk_50_0.bvh"), "--to", "0,3", "-o", path("w.anim")});
+      run_tool("krok-walk", {path("walk_50_0.bvh"), "--goal", "0,3", "-o", path("w.anim")});
   EXPECT_EQ(other.exit_code, 2) << other.err;
 }
 
 // Would fail if the number of threads changed a walk.
 TEST_F(KrokWalk, IsTheSameOnAnyNumberOfThreads) {
-  walked({"--to", "3m,20m", "-j", "1"});
-  walked({"--to", "3m,20m", "-j", "2", "-o", path("two.anim")});
+  walked({"--goal", "3m,20m", "-j", "1"});
+  walked({"--goal", "3m,20m", "-j", "2", "-o", path("two.anim")});
   const Clip one = clip("walk.anim"), two = clip("two.anim");
   ASSERT_EQ(one.positions.size(), two.positions.size());
   for (std::size_t i = 0; i < one.positions.size(); ++i) {

@@ -111,24 +111,24 @@ TEST_F(StepLibrary, ATableMakesAMotionForEachRow) {
 // What was made is measured, not what the weights promise.
 // The figures of the fit, before the files that it was made of.
 TEST_F(StepLibrary, TheSameBytesWhateverTheThreads) {
-  fit_well({"--refine", "12", "--until", "0.001mm", "-j", "1"});
+  fit_well({"--refine", "12", "--max-error", "0.001mm", "-j", "1"});
   const auto first = InputFile::open(path("out.steps"));
   ASSERT_TRUE(first.ok());
   const std::string bytes(first->text());
-  fit_well({"--refine", "12", "--until", "0.001mm", "-j", "2"});
+  fit_well({"--refine", "12", "--max-error", "0.001mm", "-j", "2"});
   EXPECT_TRUE(bytes == InputFile::open(path("out.steps"))->text());
 }
 
 // The weights of a library that was stopped at the end of a round (2 + 4 points here) and continued
 // are those of one made in one go: the same steps come out of both.
 TEST_F(StepLibrary, GoingOnIsAsIfItHadNotStopped) {
-  fit_well({"--refine", "16", "--until", "0.001mm"});
+  fit_well({"--refine", "16", "--max-error", "0.001mm"});
   const std::vector<std::string> set = {"--set", "length=57cm", "--set", "height=5cm"};
   const json whole = synthesised(set);
-  fit_well({"--refine", "6", "--until", "0.001mm"});
+  fit_well({"--refine", "6", "--max-error", "0.001mm"});
   const ToolRun moved = run({"/bin/mv", path("out.steps"), path("half.steps")});
   ASSERT_EQ(moved.exit_code, 0);
-  fit_well({"--refine", "16", "--until", "0.001mm", "--resume", path("half.steps")});
+  fit_well({"--refine", "16", "--max-error", "0.001mm", "--resume", path("half.steps")});
   EXPECT_EQ(synthesised(set)[0]["weights"], whole[0]["weights"]);
 }
 
@@ -137,7 +137,7 @@ TEST_F(StepLibrary, GoingOnIsAsIfItHadNotStopped) {
 TEST_F(StepLibrary, InsertedWeightsArePolishedUnlessToldNotTo) {
   const std::vector<std::string> set = {"--set", "length=57cm", "--set", "height=5cm"};
   const auto fitted = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.end(), {"--refine", "16", "--until", "0.001mm", "--json"});
+    arguments.insert(arguments.end(), {"--refine", "16", "--max-error", "0.001mm", "--json"});
     describe();
     const ToolRun run = fit(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -162,14 +162,14 @@ TEST_F(StepLibrary, InsertedWeightsArePolishedUnlessToldNotTo) {
 
 TEST_F(StepLibrary, TheErrorsBeforePolishingAreSaid) {
   describe();
-  const ToolRun run = fit({"--refine", "16", "--until", "0.001mm"});
+  const ToolRun run = fit({"--refine", "16", "--max-error", "0.001mm"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out + run.err, HasSubstr("polished together; before that, errors were "));
 }
 
 // A report that does not fit the points is not believed: each point would take time.
 TEST_F(StepLibrary, ALibraryWithOtherPointsThanItSaysIsNotGoneOnWith) {
-  fit_well({"--refine", "8", "--until", "0.001mm"});
+  fit_well({"--refine", "8", "--max-error", "0.001mm"});
   const auto bytes = InputFile::open(path("out.steps"));
   const auto whole = steps::read(bytes->bytes());
   ASSERT_TRUE(whole.ok());
@@ -266,7 +266,7 @@ TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
   };
   describe();
   for (const std::vector<std::string>& unsmoothed :
-       {std::vector<std::string>(), {"--smooth", "auto"}, {"--smooth", "0"}}) {
+       {std::vector<std::string>(), {"--smoothing", "auto"}, {"--smoothing", "0"}}) {
     std::vector<std::string> arguments = {"--report", path("r.json")};
     arguments.insert(arguments.end(), unsmoothed.begin(), unsmoothed.end());
     const ToolRun run = fit(arguments);
@@ -274,7 +274,7 @@ TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
     EXPECT_FALSE(has_code(run.err, "fit-contradictions")) << run.err;
     EXPECT_EQ(report()["smoothing"], 0);
   }
-  fit_well({"--smooth", "0.1", "--report", path("r.json")});
+  fit_well({"--smoothing", "0.1", "--report", path("r.json")});
   EXPECT_EQ(report()["smoothing"], 0.1);
   EXPECT_GT(report()["example_distance"], 0);
   // Going on does not lose it.
@@ -282,7 +282,7 @@ TEST_F(StepLibrary, WeightsAreSmoothedWhereItIsAskedFor) {
   fit_well({"--resume", path("half.steps"), "--refine", "90", "--report", path("r.json")});
   EXPECT_EQ(report()["smoothing"], 0.1);
   for (const char* odd : {"-1", "much", "nan", ""}) {
-    EXPECT_EQ(fit({"--smooth", odd}).exit_code, 2) << odd;
+    EXPECT_EQ(fit({"--smoothing", odd}).exit_code, 2) << odd;
   }
 }
 
@@ -315,7 +315,7 @@ TEST_F(StepLibrary, SaysWhyRefinementCouldNotGoOn) {
   write("library.json", R"({"schema": "krok.library/1", "steps": "auto", "spacing": 0,
  "parameters": [{"measures": "step.length"}, {"measures": "duration"}],
  "examples": [{"clip": "noisy_*.bvh"}]})");
-  const ToolRun wild = fit({"--kernel", "cubic", "--smooth", "0"});
+  const ToolRun wild = fit({"--kernel", "cubic", "--smoothing", "0"});
   ASSERT_EQ(wild.exit_code, 0) << wild.err;
   EXPECT_TRUE(has_code(wild.err, "fit-stalled")) << wild.err;
   EXPECT_THAT(wild.err, HasSubstr("weights"));
@@ -333,7 +333,7 @@ TEST_F(StepLibrary, AFileThatIsNoLibraryIsRefused) {
 }
 
 TEST_F(StepLibrary, ChartsAreWritten) {
-  fit_well({"--plots", path("charts")});
+  fit_well({"--plot", path("charts")});
   for (const char* name : {"errors.svg", "weights.svg", "parameters.svg", "measured.svg"}) {
     const auto file = InputFile::open(path(std::string("charts/") + name));
     ASSERT_TRUE(file.ok()) << name;
@@ -348,7 +348,7 @@ TEST_F(StepLibrary, WeightsOfAllExamplesAreShown) {
     for (const char* rise : {"0", "4", "8"}) make_walk(length, rise);
   }
   describe();
-  const ToolRun run = fit({"--plots", path("charts"), "--json"});
+  const ToolRun run = fit({"--plot", path("charts"), "--json"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto count = json::parse(run.out)["result"]["examples"].size();
   ASSERT_GT(count, 9u);

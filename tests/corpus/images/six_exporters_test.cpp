@@ -40,7 +40,7 @@ TEST_F(SixExporters, StandUprightOnTheGroundFacingTheCameraAtTheRightSize) {
     arguments.push_back(kCorpus + capture.file);
     if (!std::filesystem::exists(arguments.back())) GTEST_SKIP() << "no corpus here";
   }
-  for (const char* argument : {"--body", "none", "--sides", "front", "--moments", "0f"}) {
+  for (const char* argument : {"--body", "none", "--view", "front", "--moments", "0f"}) {
     arguments.emplace_back(argument);
   }
   arguments.insert(arguments.end(), {"--sheet", path("six.png"), "--json=" + path("report.json")});

@@ -37,7 +37,7 @@ TEST_F(CharactersOfTheCorpus, KeepTheirMaterialsAndTextures) {
   int textures_compared = 0;
   for (const fs::path& file : files) {
     SCOPED_TRACE(file);
-    const ToolRun run = run_tool("krok-import", {file, "--character", path("a.character")});
+    const ToolRun run = run_tool("krok-import", {file, "--save-character", path("a.character")});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(run_tool("krok-info", {path("a.character")}).exit_code, 0);
     const auto character = character_file::read(get(path("a.character")));

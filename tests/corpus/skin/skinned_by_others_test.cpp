@@ -54,8 +54,8 @@ std::vector<double> numbers(const std::string& lines) {
 class SkinnedByOthers : public CliTest {
  protected:
   void import(const fs::path& rig) {
-    const ToolRun run =
-        run_tool("krok-import", {rig.string(), "-o", path("in.anim"), "--model", path("in.model")});
+    const ToolRun run = run_tool(
+        "krok-import", {rig.string(), "-o", path("in.anim"), "--save-model", path("in.model")});
     ASSERT_EQ(run.exit_code, 0) << rig << "\n" << run.err;
   }
   void skin(const std::vector<std::string>& options) {

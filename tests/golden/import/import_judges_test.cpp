@@ -38,7 +38,7 @@ class ImportJudges : public CliTest {
 TEST_F(ImportJudges, AForeignRigShowsTheSameVertices) {
   const std::string source = test::corpus_folder() + "/other/gltf/rigged_simple.gltf";
   if (!std::filesystem::exists(source)) GTEST_SKIP() << "skipped: no corpus at " << source;
-  tool("krok-import", {source, "-o", path("a.anim"), "--model", path("a.model")});
+  tool("krok-import", {source, "-o", path("a.anim"), "--save-model", path("a.model")});
   tool("krok-skin", {path("a.model"), path("a.anim"), "--as", "rig", "-o", path("a.glb")});
   // 9 m tall; its node transforms hold turns and an armature, its keys begin with the second frame.
   judge(path("a.glb"), source, "2e-5");
@@ -50,7 +50,7 @@ TEST_F(ImportJudges, AnOwnRigComesBack) {
        {path("in.bvh"), "-o", path("a.anim"), "--unit", "m", "--up", "y", "--forward", "z"});
   tool("krok-body", {path("a.anim"), "-o", path("a.model"), "--detail", "low"});
   tool("krok-skin", {path("a.model"), path("a.anim"), "--as", "rig", "-o", path("rig.glb")});
-  tool("krok-import", {path("rig.glb"), "-o", path("b.anim"), "--model", path("b.model")});
+  tool("krok-import", {path("rig.glb"), "-o", path("b.anim"), "--save-model", path("b.model")});
   tool("krok-diff", {path("a.anim"), path("b.anim"), "--tolerance", "0.01mm"});
   tool("krok-skin", {path("b.model"), path("b.anim"), "--as", "rig", "-o", path("again.glb")});
   judge(path("again.glb"), path("rig.glb"), "1e-5");
@@ -69,7 +69,7 @@ TEST_F(ImportJudges, ScaledJointsShowTheSameVertices) {
   scene["nodes"][joints[2].get<std::size_t>()]["scale"] = {1.3, 1, 0.8};
   scene["nodes"][joints[joints.size() / 2].get<std::size_t>()]["scale"] = {1, 1.5, -1.1};
   put("scaled.gltf", scene.dump());
-  tool("krok-import", {path("scaled.gltf"), "-o", path("b.anim"), "--model", path("b.model")});
+  tool("krok-import", {path("scaled.gltf"), "-o", path("b.anim"), "--save-model", path("b.model")});
   tool("krok-skin", {path("b.model"), path("b.anim"), "--as", "rig", "-o", path("b.glb")});
   judge(path("b.glb"), path("scaled.gltf"), "5e-5");
   // Baked by Krok's own skinning.

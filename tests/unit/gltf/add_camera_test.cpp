@@ -149,14 +149,14 @@ TEST(CameraInGltf, MovesInTheAnimationThatIsAskedFor) {
   ASSERT_EQ(first->diagnostics.size(), 1u);
   EXPECT_EQ(first->diagnostics[0].code, "gltf-animations");
   CameraOptions options;
-  options.animation = 1;
+  options.animation = "1";
   const auto made = add_camera(builder.glb(), moving(), options, {});
   ASSERT_TRUE(made.ok());
   EXPECT_TRUE(made->diagnostics.empty());
   const auto scene = read(made->bytes);
   ASSERT_TRUE(scene.ok());
   EXPECT_EQ(scene->animations[1].channels.size(), scene->animations[0].channels.size() + 2);
-  for (const int wrong : {2, -1}) {
+  for (const char* wrong : {"2", "-1", "1x", "none"}) {
     options.animation = wrong;
     const auto failed = add_camera(builder.glb(), moving(), options, {});
     ASSERT_FALSE(failed.ok());
