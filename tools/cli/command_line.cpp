@@ -24,9 +24,10 @@ namespace {
 constexpr std::size_t kHelpColumn = 34;
 
 std::string usage_lines(const ToolSpec& spec) {
-  std::string text =
-      fmt::format("Usage: {} [options] {}{}\n", spec.name, spec.inputs,
-                  spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "");
+  std::string text = fmt::format(
+      "Usage: {} [options] {}{}\n", spec.name, spec.inputs,
+      spec.has_output ? (spec.needs_output && !spec.default_output ? " -o OUTPUT" : " [-o OUTPUT]")
+                      : "");
   if (spec.batch) {
     const bool ends_so = std::string_view(spec.inputs).ends_with("...");
     text += fmt::format("       {} [options] {}{} --out-dir DIR\n", spec.name, spec.inputs,
@@ -164,6 +165,7 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
       app_(spec.details.empty() ? spec.summary : spec.summary + "\n\n" + spec.details, spec.name),
       tool_(spec.name),
       needs_output_(spec.has_output && spec.needs_output),
+      default_output_(spec.default_output),
       takes_many_(spec.batch.has_value()) {
   app_.set_help_flag();
   declare_(options_);
@@ -337,6 +339,7 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     if (error.hint.empty()) error.hint = fmt::format("see {} --help", tool_);
     return error;
   }
+  if (form_ == Form::single && default_output_ && output.empty()) output = default_output_();
   if (form_ == Form::single && needs_output_ && output.empty()) return no_output();
   // Those of a list stand in part on its lines.
   if (form_ == Form::single || form_ == Form::one_file) {

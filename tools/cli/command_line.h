@@ -104,6 +104,7 @@ class CommandLine {
   std::vector<GivenOption> given_;
   std::string tool_;
   bool needs_output_ = false;
+  std::function<std::string()> default_output_;
   bool takes_many_ = false;
 };
 

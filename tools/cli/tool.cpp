@@ -263,6 +263,11 @@ Result<int> run_guarded(const ToolSpec& spec, ToolContext& context) {
     Status status = check_output_kind(context.output, "-o", *spec.writes);
     if (!status) return status.error();
   }
+  if (!spec.output_endings.empty()) {
+    if (const auto named = output(spec.output_endings).read(context.output); !named) {
+      return usage("-o: " + named.error().message, named.error().hint);
+    }
+  }
   try {
     return spec.run(context);
   } catch (const std::exception&) {
