@@ -16,6 +16,7 @@ constexpr double kOffGround = 0.012;   // of the leg
 constexpr double kJitter = 0.002;      // metres, less does not matter to a place
 constexpr double kUneven = 1.5;        // deviations
 constexpr int kDistanceRounds = 200;
+constexpr double kStillPart = 0.5;  // of a stay
 constexpr double kExact = 1e-8;  // metres
 
 Vec3 median_place(const std::vector<Vec3>& track, int first, int last) {
@@ -161,8 +162,11 @@ class StayFixer {
     while (stay.first <= stay.last && is_far(stay.first)) ++stay.first;
     while (stay.first <= stay.last && is_far(stay.last)) --stay.last;
     if (stay.first > stay.last) return;
-    stay.place = median_place(track, stay.first, stay.last);
-    footing.stays.push_back(stay);
+    for (const auto& [from, to] : found ? still_parts(track, stay) : whole(stay)) {
+      stay.first = from, stay.last = to;
+      stay.place = median_place(track, from, to);
+      footing.stays.push_back(stay);
+    }
   }
 
   // By point and frame; stays of a point that overlap become one.
@@ -207,6 +211,23 @@ class StayFixer {
   Footing footing;
 
  private:
+  using Part = std::pair<int, int>;  // frames, inclusive
+  static std::vector<Part> whole(const FixedStay& stay) { return {{stay.first, stay.last}}; }
+
+  // The parts of a stay in which the point does not move, where they are most of it: it has been
+  // planted, and the frames between and beside them are of steps. Otherwise the whole.
+  std::vector<Part> still_parts(const std::vector<Vec3>& track, const FixedStay& stay) const {
+    std::vector<Part> parts;
+    int still = 0;
+    for (int from = stay.first, to = from; from <= stay.last; from = ++to) {
+      while (to < stay.last && drift_of(track, from, to + 1) <= kStands * body_.leg_length) ++to;
+      if (to == from) continue;
+      parts.emplace_back(from, to);
+      still += to - from + 1;
+    }
+    return still < kStillPart * (stay.last - stay.first + 1) ? whole(stay) : parts;
+  }
+
   static double height_jitter_in(const std::vector<Vec3>& track, const FixedStay& stay) {
     KnownCurve heights(static_cast<std::size_t>(stay.last - stay.first + 1));
     for (std::size_t i = 0; i < heights.values.size(); ++i) {
