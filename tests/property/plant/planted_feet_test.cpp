@@ -90,7 +90,8 @@ TEST(PlantedFeet, TurnedInputGivesTurnedOutput) {
     move_clip(turn, turned);
     Clip expected = planted(walk).clip;
     move_clip(turn, expected);
-    EXPECT_LT(test::apart(expected, planted(turned).clip), kSame) << seed;
+    // What is still by less than 0.0004 of a leg may be corrected or not.
+    EXPECT_LT(test::apart(expected, planted(turned).clip), 0.0004) << seed;
   }
 }
 
