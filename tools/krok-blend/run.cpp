@@ -1,4 +1,4 @@
-#include "tools/krok-blend/run.h"
+#include "tools/krok-blend/options.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "tools/krok-import/run.h"
+#include "tools/krok-import/options.h"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,6 @@
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-import/facts.h"
-#include "tools/krok-import/options.h"
 #include "tools/krok-import/scene_importer.h"
 
 namespace krok::cli::import {

@@ -11,7 +11,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-plot/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::plot {

@@ -1,4 +1,4 @@
-#include "tools/krok-plot/run.h"
+#include "tools/krok-plot/options.h"
 
 #include <fmt/format.h>
 

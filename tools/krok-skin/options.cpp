@@ -7,7 +7,6 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/krok-skin/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::skin {

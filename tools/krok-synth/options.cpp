@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "tools/krok-synth/asked_parameters.h"
-#include "tools/krok-synth/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::synth {

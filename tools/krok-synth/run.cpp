@@ -1,4 +1,4 @@
-#include "tools/krok-synth/run.h"
+#include "tools/krok-synth/options.h"
 
 #include <fmt/format.h>
 

@@ -68,7 +68,7 @@ Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice
 // animations.
 Status add_glb(const std::string& path, std::vector<std::byte> bytes, Files& files) {
   gltf::ReadOptions as_is;
-  as_is.unpack = false;
+  as_is.draco = false;
   const auto scene = gltf::read(bytes, as_is);
   if (!scene) return Error(scene.error()).in_file(path);
   Files::Glb glb{path, name_of_input(path), std::move(bytes), {}, {}, 0};
@@ -97,7 +97,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       // A page cannot open external files, so buffers and images are packed.
       gltf::ReadOptions packing;
       packing.folder = folder_of(path);
-      packing.unpack = false;
+      packing.draco = false;
       auto packed = gltf::pack_glb(input->bytes(), packing);
       if (!packed) return std::move(packed).error().in_file(path);
       for (Diagnostic& diagnostic : packed->diagnostics) context.diagnose(std::move(diagnostic));

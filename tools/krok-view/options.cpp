@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/krok-view/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::view {

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/krok-walk/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::walk {
@@ -49,11 +48,6 @@ void declare_ground(CommandOptions& command, Options& o) {
                         std::string(terrain::kSpecForms) +
                         "; stairs and slopes begin 1 m ahead along +Z",
                     "level");
-  command.add("--ground-size WIDTHxDEPTH", o.placement.size, lengths<std::array<double, 2>>('x'),
-              "Size of a height field along X and Z; otherwise from its sidecar "
-              "NAME.ground.json (formats/height_field/SPEC.md)");
-  command.add("--ground-range LOW,HIGH", o.placement.range, lengths<std::array<double, 2>>(),
-              "Heights of black and white of a height field, or of 0 and 1: 0,1.5m");
 }
 
 void declare_steps(CommandOptions& command, Options& o) {
