@@ -56,6 +56,7 @@ class WalkBlock {
 
   void begin_stance(std::size_t print);
   void finish_stance(std::size_t print);
+  void roll_over_ball(std::size_t print);
   void place_feet(std::size_t step, MadeStep& made);
   Swing make_swing(std::size_t step) const;
   void emit(std::size_t step, Clip& clip, MadeStep& made);
@@ -66,7 +67,8 @@ class WalkBlock {
   std::vector<Gap> gaps_;    // from step low - 1 on
   std::vector<SampledStep> sampled_;
   std::vector<Stance> stances_;
-  std::vector<double> needs_;  // [frames], metres that the pelvis must be lowered
+  std::vector<double> needs_;    // [frames], metres that the pelvis must be lowered
+  std::vector<double> lowered_;  // [frames], metres that it is
 };
 
 // Contacts and keytimes of a walk; fills the times of its prints.

@@ -281,6 +281,9 @@ Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
     learn_flat_foot(steps, side, walker);
   }
   for (const FootSide side : {FootSide::left, FootSide::right}) learn_knee(steps, side, walker);
+  walker.spine = steps.roles().joint(Role::spine);
+  if (walker.spine < 0) walker.spine = steps.roles().joint(Role::chest);
+  walker.neck = steps.roles().joint(Role::neck);
   walker.bones = fixed_joints(steps);
   walker.ball_off = find_ball_off(steps, walker);
   walker.usual_off = off_of_swing(steps.steps(FootSide::left));

@@ -83,6 +83,7 @@ struct Walker {
   std::array<Leg, 2> legs;             // [FootSide]
   PoseVector stand;                    // the root relative to the point below the ankles, facing +Z
   std::vector<FixedJoint> bones;       // all but the root and what moves in captures
+  int spine = -1, neck = -1;           // the joints that the trunk and the head turn about
   double sole_width = 0.08;            // metres
   // When the ball leaves the ground, as a share of the time from the other foot's strike to this
   // foot's toe-off, from captures: the toes stay on the ground longer.
