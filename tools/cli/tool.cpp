@@ -133,6 +133,7 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
   const auto console = console_progress(silent ? ProgressStyle::none : line.style);
   context.console = console.get();
   context.progress = console.get();
+  for (const Diagnostic& diagnostic : line.left_out) context.diagnose(diagnostic);
   const Status status = spec.check ? spec.check() : Status();
   const Result<int> done = status ? run_guarded(spec, context) : Result<int>(status.error());
   console->end();

@@ -156,6 +156,9 @@ struct ToolSpec {
   // Where the output goes without -o, after the options are parsed: "" for nowhere. May be empty.
   std::function<std::string()> default_output;
   std::optional<Batch> batch;
+  // In a list of inputs, and without a Batch, a folder stands for all its files with one of these
+  // endings, sub-folders included. None: it is a file that cannot be read.
+  std::vector<std::string> folder_endings;
 
   // Adds the tool's own options and positionals.
   std::function<void(CommandOptions&)> declare;

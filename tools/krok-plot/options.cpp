@@ -224,6 +224,7 @@ ToolSpec make_spec() {
        "an animated character with the colours and textures of its materials; without "
        "a motion, in its reference pose"}};
   spec.needs_output = false;  // --sheet and --strip have their own output files
+  spec.folder_endings = io::motion_endings();
   spec.output_endings = {".svg"};
   spec.default_output = [options] {
     return options->sheet.wanted() ? "" : beside(options->inputs.front(), ".svg");

@@ -136,6 +136,7 @@ ToolSpec make_spec() {
   spec.summary = "Renders films of motions and characters: mp4, gif, webp, PNG frames";
   spec.details = "ffmpeg makes mp4, gif and webp.";
   spec.inputs = "IN...";
+  spec.folder_endings = io::motion_endings();
   spec.default_output = [options] {
     return beside(options->inputs.front(), ending_of(options->format));
   };
