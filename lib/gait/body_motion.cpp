@@ -30,6 +30,7 @@ constexpr double kShortest = 1.0 / 120;  // seconds between poses that a velocit
 constexpr double kUsualGap = 0.06;       // metres between the hips of steps that are alike
 constexpr double kVelocityWidth = 0.12;  // seconds in which a difference in velocity fades
 constexpr double kShortStride = 0.25;    // metres: shorter ones have no grade
+constexpr double kLongStride = 1.5;      // of the leg: in shorter ones the pelvis goes ahead less
 constexpr double kRiseSpeed = 1.2;       // of the pelvis at a strike, of its mean over the steps
 
 // From rest at 0 to slope 2 at 1, no acceleration at both ends.
@@ -180,11 +181,12 @@ void BodyStep::pose(double time, PoseVector& pose,
     const double u = smoother_step((time - start) / (finish - start));
     const double lifted = 4 * kLifted * u * (1 - u);
     pose = lifted * pose + (1 - lifted) * ((1 - u) * stand + u * stand_after);
-  } else if (standing > 0) {
+    return;
+  }
+  if (part < 1) pose = part * pose + (1 - part) * stand;
+  if (standing > 0) {
     const double u = smoother_step((time - start) / (finish - start));
     pose = (1 - standing) * pose + standing * ((1 - u) * stand + u * stand_after);
-  } else if (part < 1) {
-    pose = part * pose + (1 - part) * stand;
   }
 }
 
@@ -337,6 +339,7 @@ void take_slope(const PlannedWalk& plan, const PlannedStep& planned,
   const double covered = std::atan2(2 * rises, run);
   const double grade = std::atan2(step.rise_before + step.rise_after, run);
   step.gait = slope_gait(share * grade, share * (sole - covered));
+  step.gait.ahead *= std::min(1.0, run / (kLongStride * step.walker->legs[0].length));
 }
 
 }  // namespace
@@ -364,7 +367,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   step.stance = planned.stance;
   const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
   const StepKind made_of = libraries[at(planned.library)].kind();
-  if (!is_first && !is_last) {
+  if (!is_last && (!is_first || made_of == StepKind::walk)) {
     step.standing = smoother_step((planned.far - kNear) / (kFar - kNear));
     if (step.standing > 0) {
       step.stand = standing_on(walker, plan.grounded[stance - 1], print);

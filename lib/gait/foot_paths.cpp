@@ -17,8 +17,9 @@ namespace {
 constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
 constexpr double kMatching = 0.16;  // seconds
 constexpr double kAway = 0.09;  // metres from where the foot was or will be, to be cleared in full
-constexpr double kShortestRamp = 0.06;  // seconds
-constexpr double kRamp = 0.35;          // of the time from strike to flat, and from flat to off
+constexpr double kRaisedFrom = 0.25, kRaisedInFull = 0.45;  // of the swing
+constexpr double kShortestRamp = 0.06;                      // seconds
+constexpr double kRamp = 0.35;  // of the time from strike to flat, and from flat to off
 
 double ramp_of(double lasts) {
   return std::min(lasts, std::max(kRamp * lasts, kShortestRamp));
@@ -181,8 +182,14 @@ double Swing::away(const FootPose& foot) const {
                   level_distance(foot.foot.position, to_));
 }
 
-bool Swing::is_away(const FootPose& foot) const {
-  return away(foot) > kAway;
+double Swing::share_of_clearance(double part, const FootPose& foot) const {
+  // A foot that turns or steps on the spot is lifted, too.
+  const double middle = (std::min(part, 1 - part) - kRaisedFrom) / (kRaisedInFull - kRaisedFrom);
+  return smoother_step(std::max(away(foot) / kAway, middle));
+}
+
+bool Swing::is_to_be_clear(double time, const FootPose& foot) const {
+  return share_of_clearance((time - off_) / (strike_ - off_), foot) == 1;
 }
 
 std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const double> times,
@@ -193,7 +200,7 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
     const double u = (times[i] - off_) / (strike_ - off_);
     if (!(u > 0 && u < 1)) continue;
     const FootPose foot = at(times[i], blend[i]);
-    const double wanted = clearance * smoother_step(away(foot) / kAway);
+    const double wanted = clearance * share_of_clearance(u, foot);
     // The tip of the toes rolls over the ground as the foot leaves.
     const auto points = sole_points(*leg_, foot);
     const std::size_t count = u < kTipUp ? 2 : 3;

@@ -85,8 +85,9 @@ class Swing {
 
   FootPose at(double time, const FootPose& blend) const;
 
-  // Whether a foot is so far from both prints that it is to be clear of the ground.
-  bool is_away(const FootPose& foot) const;
+  // Whether a foot is so far from both prints, or so near to the middle of the swing, that it is to
+  // be clear of the ground in full.
+  bool is_to_be_clear(double time, const FootPose& foot) const;
 
  private:
   using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
@@ -101,6 +102,8 @@ class Swing {
     double part, height;
   };
   double away(const FootPose& foot) const;  // metres from the nearer print, level
+  // 0 to 1: the share of the clearance that is asked for at a part of the swing.
+  double share_of_clearance(double part, const FootPose& foot) const;
   Vec3 detour_at(double part, const Detour& detour) const;
   std::vector<Lack> lacks(const Terrain& ground, std::span<const double> times,
                           std::span<const FootPose> blend, double clearance, double from) const;

@@ -60,6 +60,18 @@ double time_of_flat(std::span<const PitchAt> series) {
   return to;
 }
 
+// Metres, level, from the hips to the line between the ankles.
+double off_support(const Walker& walker, std::span<const Transform> world) {
+  const auto level = [&](int joint) {
+    const Vec3& place = world[at(joint)].position;
+    return Vec2(place.x(), place.z());
+  };
+  const Vec2 from = level(walker.legs[0].foot), way = level(walker.legs[1].foot) - from;
+  const Vec2 hips = level(0) - from;
+  const double part = std::clamp(hips.dot(way) / std::max(way.squaredNorm(), 1e-9), 0.0, 1.0);
+  return (hips - part * way).norm();
+}
+
 }  // namespace
 
 int WalkParts::first_frame(std::size_t step) const {
@@ -281,7 +293,7 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
       const auto points = sole_points(parts_.leg_of(step), foot);
       // Heel and ball: the tip of the toes rolls over the ground as the foot leaves.
       for (const Vec3& point : std::span(points).first(2)) {
-        if (!swing.is_away(foot)) break;
+        if (!swing.is_to_be_clear(time, foot)) break;
         const auto found = ground_near(parts_.ground, point.x(), point.z(), point.y(), 0.3);
         if (found) clearance = std::min(clearance, point.y() - found->height);
       }
@@ -308,6 +320,13 @@ void WalkBlock::emit(std::size_t step, Clip& clip, MadeStep& made) {
     made.lowered = std::max(made.lowered, down);
     made.extension = std::max(made.extension, legs.extension);
     made.missed = std::max(made.missed, legs.missed);
+    const double time = parts_.time_of(frames.first + i);
+    made.off_support = std::max(made.off_support, off_support(parts_.walker, world));
+    for (const std::size_t print : {step, step + 1}) {
+      if (print == step && time > parts_.body.steps()[step].off) continue;
+      const Leg& leg = parts_.leg_of(print);
+      made.ankle = std::max(made.ankle, leg.standing_ankle - ankle_angle(leg, world));
+    }
   }
   frames = {};
 }

@@ -29,6 +29,8 @@ struct WalkParts {
 // Measures of a step, taken while its frames are made.
 struct MadeStep {
   double clearance = 0, lowered = 0, extension = 0, missed = 0;
+  double off_support = 0;  // metres, of the hips, level
+  double ankle = 0;        // radians by which an ankle bends more than in standing, toes up
 };
 
 class WalkBlock {

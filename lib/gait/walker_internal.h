@@ -70,7 +70,11 @@ struct Leg : LegJoints {
   double length = 0;               // metres, thigh and shank
   FootGeometry sole;
   Quat flat_toes = Quat::Identity();  // sole_to_toes: of the toes while the foot is flat
+  double standing_ankle = 0;          // ankle_angle() in the standing pose
 };
+
+// Radians between shank and sole.
+double ankle_angle(const Leg& leg, std::span<const Transform> joint_to_world);
 
 // A joint that stays where it is in its parent.
 struct FixedJoint {

@@ -125,7 +125,7 @@ def main():
         ground = ground_of(spec)
         with tempfile.TemporaryDirectory() as folder:
             out, prints = f"{folder}/walk.anim", f"{folder}/prints.csv"
-            run = subprocess.run([walk, "-q", path, "--to", "0,6m", "--ground", spec, "-o", out,
+            run = subprocess.run([walk, "-q", path, "--goal", "0,6m", "--ground", spec, "-o", out,
                                   "--save-prints", prints], capture_output=True, text=True)
             if run.returncode != 0:
                 print(f"{spec[:24]:24} {run.stderr.strip().splitlines()[0]}")

@@ -133,6 +133,7 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
   const auto console = console_progress(silent ? ProgressStyle::none : line.style);
   context.console = console.get();
   context.progress = console.get();
+  for (const Diagnostic& diagnostic : line.left_out) context.diagnose(diagnostic);
   const Status status = spec.check ? spec.check() : Status();
   const Result<int> done = status ? run_guarded(spec, context) : Result<int>(status.error());
   console->end();
@@ -196,7 +197,7 @@ int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>&
   if (expanded != arguments) wish = line.parse(expanded);
   if (!wish) return fail_usage(spec, arguments, many, wish.error());
   if (*wish == CommandLine::Wish::version) {
-    return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version()));
+    return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version_of_build()));
   }
   // The help is that of single-file mode, whatever else was given.
   if (*wish == CommandLine::Wish::help) {
@@ -250,10 +251,6 @@ void install_out_of_memory_handler(const char* path) {
 
 }  // namespace
 
-std::string version() {
-  return KROK_VERSION;
-}
-
 std::function<Result<std::string>()> always(std::string ending) {
   return [ending = std::move(ending)] { return ending; };
 }
@@ -262,6 +259,11 @@ Result<int> run_guarded(const ToolSpec& spec, ToolContext& context) {
   if (spec.writes) {
     Status status = check_output_kind(context.output, "-o", *spec.writes);
     if (!status) return status.error();
+  }
+  if (!spec.output_endings.empty()) {
+    if (const auto named = output(spec.output_endings).read(context.output); !named) {
+      return usage("-o: " + named.error().message, named.error().hint);
+    }
   }
   try {
     return spec.run(context);

@@ -62,8 +62,7 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
 Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Motions& motions,
                                         ToolContext& context) {
   draw::ChartedGround charted;
-  auto opened =
-      options.ground.empty() ? terrain::level() : options.ground.open(context);
+  auto opened = options.ground.empty() ? terrain::level() : options.ground.open(context);
   if (!opened) return opened.error();
   const std::shared_ptr<const Terrain> ground = *std::move(opened);
   if (!options.ground.empty()) {

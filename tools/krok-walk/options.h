@@ -29,7 +29,7 @@ struct Options {
   std::optional<double> step_length, step_width;  // metres
   FootSide first = FootSide::left;
   double speed = 1, rate = 0;  // 0: the library's
-  bool adapt = false, extrapolate = false;
+  bool adapt = false, extrapolate = false, strict = false;
   double stretch = 0, clearance = 0;  // metres
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };

@@ -363,7 +363,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     return status.error();
   }
   report_walk(walk->frames(), *prints, context);
-  return kExitDone;
+  return options.strict && !walk->details().warnings.empty() ? kExitNo : kExitDone;
 }
 
 }  // namespace krok::cli::walk
