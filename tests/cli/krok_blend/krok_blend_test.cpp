@@ -75,7 +75,7 @@ TEST_F(KrokBlend, WhatHasNoCounterpartIsNamed) {
   ASSERT_EQ(cut.exit_code, 0) << cut.err;
   const ToolRun run = blend({walk("1"), path("late.anim") + ":0"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("walk: "));
+  EXPECT_THAT(run.err, HasSubstr("walk.anim: "));
   EXPECT_THAT(run.err, HasSubstr("are used, what has a counterpart in the others"));
   EXPECT_THAT(blend({walk("1"), walk("0")}).err, Not(HasSubstr("are used")));
 }
