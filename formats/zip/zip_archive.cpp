@@ -94,4 +94,40 @@ Result<std::vector<std::byte>> Archive::read(const std::string& name,
   return bytes;
 }
 
+Result<std::vector<std::byte>> pack(
+    std::span<const std::pair<std::string, std::vector<std::byte>>> files) {
+  constexpr zip_uint16_t kFirstDate = 1 << 5 | 1;  // 1980-01-01
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_t* target = zip_source_buffer_create(nullptr, 0, 0, &error);
+  zip_t* archive = target == nullptr ? nullptr : zip_open_from_source(target, ZIP_TRUNCATE, &error);
+  if (archive == nullptr) {
+    if (target != nullptr) zip_source_free(target);
+    return damaged("the ZIP archive cannot be written");
+  }
+  zip_source_keep(target);
+  bool good = true;
+  for (const auto& [name, bytes] : files) {
+    zip_source_t* source = zip_source_buffer(archive, bytes.data(), bytes.size(), 0);
+    const zip_int64_t place =
+        source == nullptr ? -1 : zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
+    good = good && place >= 0 &&
+           zip_file_set_dostime(archive, static_cast<zip_uint64_t>(place), 0, kFirstDate, 0) == 0;
+  }
+  good = good && zip_close(archive) == 0;
+  if (!good) zip_discard(archive);
+  std::vector<std::byte> packed;
+  zip_stat_t facts;
+  zip_stat_init(&facts);
+  if (good && zip_source_stat(target, &facts) == 0 && zip_source_open(target) == 0) {
+    packed.resize(facts.size);
+    good = zip_source_read(target, packed.data(), packed.size()) ==
+           static_cast<zip_int64_t>(packed.size());
+    zip_source_close(target);
+  }
+  zip_source_free(target);
+  if (!good || packed.empty()) return damaged("the ZIP archive cannot be written");
+  return packed;
+}
+
 }  // namespace krok::zip
