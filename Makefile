@@ -172,9 +172,13 @@ golden: test-build
 format: test-deps
 	$(SOURCES) | xargs clang-format -i
 
+# Versions of clang-format differ in what they break where; Debian 12's decides.
 format-check:
 	$(call install-missing,clang-format)
-	$(SOURCES) | xargs clang-format --dry-run --Werror
+	@case "$$(clang-format --version)" in \
+	  *"version 14."*) $(SOURCES) | xargs clang-format --dry-run --Werror;; \
+	  *) echo "format not checked: that takes clang-format 14, and here is $$(clang-format --version)";; \
+	esac
 
 # The sources of a folder as one, since nine tenths of the time go into their headers. The analyzer
 # follows paths through the sources of a unit only if its name has this word. With FILES each source

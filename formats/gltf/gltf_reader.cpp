@@ -451,9 +451,9 @@ Result<Scene> read(std::span<const std::byte> bytes, const ReadOptions& options)
   if (!container) return container.error();
   auto parsed = parse_json(*container);
   if (!parsed) return parsed.error();
-  if (!options.unpack && !(parsed->packed_views.empty() && parsed->packed_primitives.empty())) {
+  if (!options.draco && !parsed->packed_primitives.empty()) {
     return Error(
-        "gltf-compression", "its meshes are compressed, which is not supported here",
+        "gltf-compression", "its meshes are compressed by Draco, which is not supported here",
         "import it with krok-import --save-character, or decompress it in another program");
   }
   auto buffers = open_buffers(parsed->buffers, *container, options);

@@ -35,9 +35,9 @@ struct ReadOptions {
   // rules). An unusable image is left out with a warning (gltf-picture), as are properties that
   // Material does not have (gltf-material).
   bool with_materials = false;
-  // Whether compressed data is unpacked; if not, it is an error (gltf-compression). For consumers
-  // of the file itself that cannot.
-  bool unpack = true;
+  // Whether Draco's data is unpacked; if not, it is an error (gltf-compression). For consumers of
+  // the file itself that cannot.
+  bool draco = true;
   GivenLimits limits = {};  // of Draco's decoder, which runs in a process of its own
 };
 

@@ -215,11 +215,22 @@ Result<std::string> write_viewer_page(const ViewerPage& page) {
       return status.error();
     }
   }
-  for (const ViewedGlb& file : page.files) {
+  for (std::size_t i = 0; i < page.files.size(); ++i) {
+    const ViewedGlb& file = page.files[i];
     Json item = parts.start("gltf", file.name, file.facts);
     item["visible"] = file.visible;
     item["animation"] = file.animation;
     item["rates"] = file.rates;
+    if (i > 0 && file.difference) {
+      const ViewedDifference& difference = *file.difference;
+      item["difference"] = {{"from", page.files[i - 1].name},
+                            {"animation", difference.animation},
+                            {"other_animation", difference.other_animation},
+                            {"times", difference.times},
+                            {"distances", difference.distances},
+                            {"time", difference.time},
+                            {"distance", difference.distance}};
+    }
     parts.finish(std::move(item), to_base64(file.bytes));
   }
   for (const ViewedCamera& viewed : page.cameras) {

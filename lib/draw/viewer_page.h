@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -80,6 +81,15 @@ struct ViewedCamera {
   const CameraTrack* camera = nullptr;
 };
 
+// How far the vertices of a GLB are from those of another, if both play these animations. Without
+// it, the page measures at as many times as it can afford.
+struct ViewedDifference {
+  int animation = 0, other_animation = 0;
+  std::vector<double> times;      // seconds, rising
+  std::vector<float> distances;   // the largest at each time, metres
+  double time = 0, distance = 0;  // of the largest of all
+};
+
 // A GLB file, shown unmodified.
 struct ViewedGlb {
   std::string name;
@@ -88,6 +98,7 @@ struct ViewedGlb {
   std::span<const std::byte> bytes;
   int animation = 0;          // index of the animation that plays first
   std::vector<double> rates;  // frames per second of each animation, for stepping; else 60
+  std::optional<ViewedDifference> difference;  // from the file before it
 };
 
 struct ViewerPage {

@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "math/euler.h"
+#include "math/quaternion.h"
 #include "math/smoother_step.h"
 #include "motion/ground_frame.h"
 
@@ -28,6 +29,9 @@ constexpr double kNear = 0.12, kFar = 0.55;
 constexpr double kShortest = 1.0 / 120;  // seconds between poses that a velocity is taken from
 constexpr double kUsualGap = 0.06;       // metres between the hips of steps that are alike
 constexpr double kVelocityWidth = 0.12;  // seconds in which a difference in velocity fades
+constexpr double kShortStride = 0.25;    // metres: shorter ones have no grade
+constexpr double kLongStride = 1.5;      // of the leg: in shorter ones the pelvis goes ahead less
+constexpr double kRiseSpeed = 1.2;       // of the pelvis at a strike, of its mean over the steps
 
 // From rest at 0 to slope 2 at 1, no acceleration at both ends.
 double speed_up(double s) {
@@ -108,6 +112,32 @@ PoseVector standing_on(const Walker& walker, const GroundedPrint& one, const Gro
   return pose;
 }
 
+// The pelvis rises or falls as the ground does, is as high over the stance foot as on the level in
+// the middle of the step and halfway between the prints at its ends; and the body leans.
+void BodyStep::follow_slope(double time, PoseVector& pose) const {
+  if (strike > start) {
+    const double length = strike - start;
+    const double u = std::clamp((time - start) / length, 0.0, 1.0);
+    const Fading begin = fading(u), end = fading(1 - u);
+    position_of(pose, 0).y() += 0.5 * (end.value * rise_after - begin.value * rise_before) +
+                                length * (begin.slope * speed_before - end.slope * speed_after);
+  }
+  const double leg = walker->legs[0].length;
+  position_of(pose, 0) += leg * (gait.ahead * way - gait.lower * Vec3::UnitY());
+  if (gait.lean == 0) return;
+  const Quat lean = from_rotation_vector(gait.lean * Vec3::UnitY().cross(way));
+  const auto turn = [&](int joint, const Quat& by) {
+    if (joint <= 0) return;
+    const int parent = walker->skeleton->parents[at(joint)];
+    const Quat above = joint_to_world(*walker->skeleton, pose, parent).orientation;
+    Quat own;
+    own.coeffs() = rotation_of(pose, joint);
+    rotation_of(pose, joint) = (above.conjugate() * by * above * own).coeffs();
+  };
+  turn(walker->spine, lean);
+  turn(walker->neck, lean.conjugate());
+}
+
 void BodyStep::pose(double time, PoseVector& pose,
                     parametric::BlendedMotion::Scratch& scratch) const {
   double inside = (time - start) / scale, part = 1;
@@ -146,15 +176,17 @@ void BodyStep::pose(double time, PoseVector& pose,
   Quat turn;
   turn.coeffs() = rotation_of(pose, 0);
   rotation_of(pose, 0) = (stance_to_world.orientation * turn).coeffs();
+  follow_slope(time, pose);
   if (kind == Kind::only) {
     const double u = smoother_step((time - start) / (finish - start));
     const double lifted = 4 * kLifted * u * (1 - u);
     pose = lifted * pose + (1 - lifted) * ((1 - u) * stand + u * stand_after);
-  } else if (standing > 0) {
+    return;
+  }
+  if (part < 1) pose = part * pose + (1 - part) * stand;
+  if (standing > 0) {
     const double u = smoother_step((time - start) / (finish - start));
     pose = (1 - standing) * pose + standing * ((1 - u) * stand + u * stand_after);
-  } else if (part < 1) {
-    pose = part * pose + (1 - part) * stand;
   }
 }
 
@@ -249,7 +281,7 @@ Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
   if (step.kind == last) moving = 2 * step.rest;
   if (step.kind == first || step.kind == only) lead = kLead;
   if (step.kind == last || step.kind == only) tail = kTail;
-  step.scale = 1 / speed;
+  step.scale = step.gait.duration / speed;
   const auto& time = plan.prints[at(step.stance) + 1].time;
   if (time) {
     const double wanted = *time - step.start;
@@ -280,6 +312,38 @@ Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
   return {};
 }
 
+namespace {
+
+// How the ground goes on, beyond what the blend of the step does.
+void take_slope(const PlannedWalk& plan, const PlannedStep& planned,
+                const parametric::Library& library, BodyStep& step) {
+  const std::size_t stance = at(planned.stance);
+  const GroundedPrint& from = plan.grounded[stance - 1];
+  const GroundedPrint& on = plan.grounded[stance];
+  const GroundedPrint& to = plan.grounded[stance + 1];
+  const Vec3 stride(to.heel.x() - from.heel.x(), 0, to.heel.z() - from.heel.z());
+  double rises = 0;
+  for (std::size_t d = 0; d < library.parameters.size(); ++d) {
+    if (library.parameters[d].quantity == parametric::Quantity::step_height) {
+      rises = planned.made[d];
+    }
+  }
+  step.rise_before = on.heel.y() - from.heel.y() - rises;
+  step.rise_after = to.heel.y() - on.heel.y() - rises;
+  const double run = stride.norm();
+  if (run < kShortStride) return;
+  step.way = stride / run;
+  const double share = smoother_step(run / kShortStride - 1);
+  const double sole =
+      std::asin(std::clamp(to.forward.y(), -1.0, 1.0)) * (step.way.dot(to.forward) < 0 ? -1 : 1);
+  const double covered = std::atan2(2 * rises, run);
+  const double grade = std::atan2(step.rise_before + step.rise_after, run);
+  step.gait = slope_gait(share * grade, share * (sole - covered));
+  step.gait.ahead *= std::min(1.0, run / (kLongStride * step.walker->legs[0].length));
+}
+
+}  // namespace
+
 Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker& walker,
                             const PlannedWalk& plan, std::size_t index,
                             const WalkOptions& options) {
@@ -303,7 +367,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   step.stance = planned.stance;
   const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
   const StepKind made_of = libraries[at(planned.library)].kind();
-  if (!is_first && !is_last) {
+  if (!is_last && (!is_first || made_of == StepKind::walk)) {
     step.standing = smoother_step((planned.far - kNear) / (kFar - kNear));
     if (step.standing > 0) {
       step.stand = standing_on(walker, plan.grounded[stance - 1], print);
@@ -319,6 +383,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
               : is_last           ? made_of == StepKind::stop ? captured_stop : last
                                   : middle;
   if (step.kind == captured_start || step.kind == captured_stop) step.stand.resize(0);
+  take_slope(plan, planned, maker.library(), step);
   if (Status status = set_times(plan, off, options.speed, step); !status) return status;
   step.stance_to_world = stance_frame(walker, print, libraries[at(planned.library)], step);
   if (step.stand.size() > 0) {
@@ -350,6 +415,13 @@ Result<BodyMotion> BodyMotion::create(std::span<const StepLibrary> libraries, co
     if (Status status = body.add_step(libraries, walker, plan, i, options); !status) {
       return status.error();
     }
+  }
+  for (std::size_t i = 0; i + 1 < body.steps_.size(); ++i) {
+    BodyStep& before = body.steps_[i];
+    BodyStep& after = body.steps_[i + 1];
+    const double lasts = 0.5 * (after.strike - before.start);
+    before.speed_after = kRiseSpeed * before.rise_after / lasts;
+    after.speed_before = kRiseSpeed * after.rise_before / lasts;
   }
   return body;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gait/ground_prints_internal.h"
+#include "gait/slope_gait_internal.h"
 #include "gait/walk.h"
 #include "parametric/blended_motion.h"
 
@@ -58,7 +59,10 @@ struct BodyStep {
   enum class Kind : unsigned char { middle, captured_start, captured_stop, first, last, only };
 
   BodyStep(parametric::BlendedMotion blend, const Walker& walker)
-      : motion(std::move(blend)), bones(&walker.bones), joints(walker.skeleton->joint_count()) {}
+      : motion(std::move(blend)),
+        bones(&walker.bones),
+        joints(walker.skeleton->joint_count()),
+        walker(&walker) {}
 
   parametric::BlendedMotion motion;
   const std::vector<FixedJoint>* bones;
@@ -75,9 +79,18 @@ struct BodyStep {
   PoseVector stand;         // in the world, before the first step or after the last
   double standing = 0;      // share of standing in a step that no example is near
   PoseVector stand_after;   // after an only step, and where standing > 0
+  // What the ground rises more than the blend does, metres: from the print before to the stance
+  // foot's, and on to the next one; and how fast the pelvis rises where the steps meet, m/s.
+  double rise_before = 0, rise_after = 0, speed_before = 0, speed_after = 0;
+  SlopeGait gait;           // for that rise
+  Vec3 way = Vec3::Zero();  // level, from print to print, unit vector
+  const Walker* walker = nullptr;
 
   // Before joining, clamped to the step.
   void pose(double time, PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) const;
+
+ private:
+  void follow_slope(double time, PoseVector& pose) const;
 };
 
 // The difference between two steps where they meet, the later minus the earlier one, and its time

@@ -17,8 +17,9 @@ namespace {
 constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
 constexpr double kMatching = 0.16;  // seconds
 constexpr double kAway = 0.09;  // metres from where the foot was or will be, to be cleared in full
-constexpr double kShortestRamp = 0.06;  // seconds
-constexpr double kRamp = 0.35;          // of the time from strike to flat, and from flat to off
+constexpr double kRaisedFrom = 0.25, kRaisedInFull = 0.45;  // of the swing
+constexpr double kShortestRamp = 0.06;                      // seconds
+constexpr double kRamp = 0.35;  // of the time from strike to flat, and from flat to off
 
 double ramp_of(double lasts) {
   return std::min(lasts, std::max(kRamp * lasts, kShortestRamp));
@@ -80,9 +81,14 @@ FootPose Stance::at(double time, const FootPose& blend) const {
   FootPose foot{flat_, axes_ * leg_->flat_toes.conjugate()};
   if (part == 0) return foot;
   Vec3 turn = part * deviation(blend);
+  if (time < flat_from) {
+    const double down = smoother_step((flat_from - time) / (flat_from - strike));
+    turn.x() = std::lerp(gait_.landing * turn.x(), down * gait_.toes_down, gait_.forefoot);
+  }
   // Once the heel is up the ball stays.
   const bool is_leaving = time > flat_to;
   if (is_leaving) turn.x() = std::max(turn.x(), 0.0);
+  if (roll_ > 0) turn.x() += roll_ * smoother_step((time - roll_from_) / (off - roll_from_));
   const bool on_ball = is_leaving || turn.x() > 0;
   const Quat rotation = axes_ * from_rotation_vector(turn) * axes_.conjugate();
   foot.foot.orientation = rotation * flat_.orientation;
@@ -90,6 +96,24 @@ FootPose Stance::at(double time, const FootPose& blend) const {
                                : heel_ - foot.foot.orientation * leg_->sole.heel;
   if (!on_ball) foot.toes = rotation * foot.toes;
   return foot;
+}
+
+FootPose Stance::rolled(FootPose foot, double angle) const {
+  const Quat turn = from_rotation_vector(axes_ * Vec3(angle, 0, 0));
+  foot.foot.orientation = turn * foot.foot.orientation;
+  foot.foot.position = pivot_ - foot.foot.orientation * leg_->sole.pivot;
+  return foot;
+}
+
+void Stance::land(const SlopeGait& gait, double flat) {
+  gait_ = gait;
+  flat_from = std::max(flat_from, strike + gait.forefoot * (flat - strike));
+}
+
+void Stance::roll_further(double angle, double from) {
+  roll_ = angle;
+  roll_from_ = from;
+  flat_to = std::min(flat_to, from);
 }
 
 Swing::Offset Swing::offset_of(const FootPose& blend, const FootPose& wanted) {
@@ -158,8 +182,14 @@ double Swing::away(const FootPose& foot) const {
                   level_distance(foot.foot.position, to_));
 }
 
-bool Swing::is_away(const FootPose& foot) const {
-  return away(foot) > kAway;
+double Swing::share_of_clearance(double part, const FootPose& foot) const {
+  // A foot that turns or steps on the spot is lifted, too.
+  const double middle = (std::min(part, 1 - part) - kRaisedFrom) / (kRaisedInFull - kRaisedFrom);
+  return smoother_step(std::max(away(foot) / kAway, middle));
+}
+
+bool Swing::is_to_be_clear(double time, const FootPose& foot) const {
+  return share_of_clearance((time - off_) / (strike_ - off_), foot) == 1;
 }
 
 std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const double> times,
@@ -170,7 +200,7 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
     const double u = (times[i] - off_) / (strike_ - off_);
     if (!(u > 0 && u < 1)) continue;
     const FootPose foot = at(times[i], blend[i]);
-    const double wanted = clearance * smoother_step(away(foot) / kAway);
+    const double wanted = clearance * share_of_clearance(u, foot);
     // The tip of the toes rolls over the ground as the foot leaves.
     const auto points = sole_points(*leg_, foot);
     const std::size_t count = u < kTipUp ? 2 : 3;
@@ -189,7 +219,7 @@ void Swing::clear(const Terrain& ground, std::span<const double> times,
   constexpr double kHolds[] = {0,     -0.04, 0.04, -0.08, 0.08,  -0.12, 0.12,
                                -0.16, 0.16,  -0.2, 0.2,   -0.26, 0.26};  // metres
   constexpr double kEdge = 0.08;    // of the bump: below, it does not raise the foot
-  constexpr double kEnough = 0.03;  // metres: what is raised less needs no holding
+  constexpr double kEnough = 3e-4;  // metres: what is raised less needs no holding
   constexpr double kHoldCost = 0.3, kLeftCost = 30;
   Detour best;
   double least = std::numeric_limits<double>::infinity();
@@ -228,15 +258,17 @@ constexpr double kStraight = 0.9995;
 
 }  // namespace
 
+double longest_reach(const Leg& leg, double blend) {
+  return std::max(kNearlyStraight * leg.length, std::min(blend, kMaxStraight * leg.length));
+}
+
 double lowering_for(const Walker& walker, std::span<const Transform> joint_to_world,
                     const std::array<FootPose, 2>& target) {
   double lowest = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     const Leg& leg = walker.legs[side];
     const Vec3& hip = joint_to_world[at(leg.upper)].position;
-    const double blend = (hip - joint_to_world[at(leg.foot)].position).norm();
-    const double longest =
-        std::max(kNearlyStraight * leg.length, std::min(blend, kMaxStraight * leg.length));
+    const double longest = longest_reach(leg, (hip - joint_to_world[at(leg.foot)].position).norm());
     const Vec3 way = hip - target[side].foot.position;
     const double level = std::hypot(way.x(), way.z());
     if (way.norm() <= longest) continue;
@@ -247,12 +279,29 @@ double lowering_for(const Walker& walker, std::span<const Transform> joint_to_wo
 }
 
 std::vector<double> smooth_above(std::span<const double> needs, int reach) {
-  if (reach < 1 || std::ranges::all_of(needs, [](double need) { return need == 0; })) {
-    return {needs.begin(), needs.end()};
+  constexpr int kRounds = 12;
+  constexpr double kGain = 1.2;  // more than 1 because a bump is lower than the peak it stands for
+  constexpr double kEnough = 1e-5;  // metres
+  // Mirrored at its ends, so that the curve is level there: the walker stands.
+  const auto count = static_cast<int>(needs.size()), beyond = std::min(kRounds * reach, count);
+  std::vector<double> mirrored;
+  for (int i = -beyond; i < count + beyond; ++i) {
+    mirrored.push_back(needs[at(i < 0 ? -i - 1 : i < count ? i : 2 * count - i - 1)]);
   }
-  // Twice averaged over 2 half + 1 frames, a value spreads over 2 half on either side.
+  std::vector<double> curve(mirrored.size(), 0), missing(mirrored.size());
   const int half = std::max(1, reach / 2);
-  return mean_within(mean_within(max_within(needs, 2 * half), half), half);
+  for (int round = 0; round <= kRounds; ++round) {
+    for (std::size_t i = 0; i < curve.size(); ++i) {
+      missing[i] = std::max(0.0, mirrored[i] - curve[i]);
+    }
+    if (std::ranges::all_of(missing, [](double more) { return more < kEnough; })) break;
+    // What is left after all rounds is met everywhere.
+    if (round == kRounds) missing = max_within(missing, 2 * half);
+    const std::vector<double> bumps = mean_within(mean_within(missing, half), half);
+    const double gain = round == kRounds ? 1 : kGain;
+    for (std::size_t i = 0; i < curve.size(); ++i) curve[i] += gain * bumps[i];
+  }
+  return {curve.begin() + beyond, curve.end() - beyond};
 }
 
 SolvedLegs solve_legs(const Walker& walker, const std::array<FootPose, 2>& target, double stretch,

@@ -22,6 +22,7 @@ struct SampledStep {
   int first = 0;                                // frame of the walk
   std::vector<PoseVector> poses;                // joined, [frames]
   std::vector<std::array<FootPose, 2>> blend;   // the feet of these poses
+  std::vector<std::array<Vec3, 2>> hips;        // the thighs' upper ends in these poses
   std::vector<std::array<FootPose, 2>> target;  // where they shall be
   std::vector<double> lowering;                 // metres that the pelvis needs, [frames]
 };
@@ -38,6 +39,18 @@ class Stance {
 
   double strike = 0, flat_from = 0, flat_to = 0, off = 0;  // seconds
   FootPose at(double time, const FootPose& blend) const;
+  // When the ball comes to rest: with the heel, unless it strikes first.
+  double ball_from() const { return gait_.forefoot >= 1 ? strike : flat_from; }
+
+  // `foot` turned by radians more about its ball, toes down.
+  FootPose rolled(FootPose foot, double angle) const;
+  // From `from` on, where the heel rises, rolls over the ball further than the blend: by `angle` at
+  // toe-off. `from` is at least flat_from and becomes flat_to if that is later.
+  void roll_further(double angle, double from);
+  // How the foot strikes, other than in the blend. With `gait.forefoot` its ball is on the ground
+  // from the strike on, and its heel comes down until `flat`, which is flat_from if that is
+  // earlier.
+  void land(const SlopeGait& gait, double flat);
 
  private:
   Vec3 deviation(const FootPose& blend) const;  // rotation vector in the sole's axes
@@ -47,6 +60,8 @@ class Stance {
   Quat axes_;       // sole_to_world
   Quat middle_;
   Vec3 heel_ = Vec3::Zero(), pivot_ = Vec3::Zero();  // world
+  double roll_ = 0, roll_from_ = 0;                  // radians, seconds
+  SlopeGait gait_;
 };
 
 // The path of a foot from print to print, as an offset from the blend's.
@@ -70,8 +85,9 @@ class Swing {
 
   FootPose at(double time, const FootPose& blend) const;
 
-  // Whether a foot is so far from both prints that it is to be clear of the ground.
-  bool is_away(const FootPose& foot) const;
+  // Whether a foot is so far from both prints, or so near to the middle of the swing, that it is to
+  // be clear of the ground in full.
+  bool is_to_be_clear(double time, const FootPose& foot) const;
 
  private:
   using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
@@ -86,6 +102,8 @@ class Swing {
     double part, height;
   };
   double away(const FootPose& foot) const;  // metres from the nearer print, level
+  // 0 to 1: the share of the clearance that is asked for at a part of the swing.
+  double share_of_clearance(double part, const FootPose& foot) const;
   Vec3 detour_at(double part, const Detour& detour) const;
   std::vector<Lack> lacks(const Terrain& ground, std::span<const double> times,
                           std::span<const FootPose> blend, double clearance, double from) const;
@@ -109,13 +127,16 @@ FootPose foot_of(const Leg& leg, std::span<const Transform> joint_to_world);
 
 // Legs from where the pelvis and the feet are.
 
-// Metres by which the pelvis must be lowered so that no leg is stretched further than in the blend,
-// or than nearly straight.
+// The longest distance from hip to ankle that a leg is given where the blend's is `blend`: nearly
+// straight, or as far as in the blend.
+double longest_reach(const Leg& leg, double blend);
+
+// Metres by which the pelvis must be lowered so that no leg is longer than that.
 double lowering_for(const Walker& walker, std::span<const Transform> joint_to_world,
                     const std::array<FootPose, 2>& target);
 
-// A curve at or above `needs` (>= 0) with two derivatives: their maximum within `reach` frames on
-// either side, averaged over as many twice.
+// A curve at or above `needs` (>= 0), without corners, that is no higher than it has to be: bumps
+// of `reach` frames on either side are added until nothing is missing.
 std::vector<double> smooth_above(std::span<const double> needs, int reach);
 
 struct SolvedLegs {

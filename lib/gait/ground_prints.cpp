@@ -14,7 +14,8 @@ namespace krok::gait {
 namespace {
 
 constexpr double kStep = 0.6;  // of the leg: what is higher is overhead, or a wall
-constexpr double kSteepest = 42 * kRadiansPerDegree;
+constexpr double kSteepest =
+    35 * kRadiansPerDegree;  // no shoe holds on more, nor does an ankle bend
 constexpr double kMaxRoll = 32 * kRadiansPerDegree;
 constexpr double kUneven = 0.02;    // metres: what is higher under a sole is an edge
 constexpr double kShortSole = 0.1;  // metres, where the ball is not known

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "core/numbers.h"
+#include "gait/slope_gait_internal.h"
+#include "math/window.h"
 
 namespace krok::gait {
 
@@ -80,6 +82,8 @@ SoleGround ground_under_sole(const Print& print, double near, const Terrain& gro
 
 constexpr double kPlanGrid = 0.005;      // metres, of places for feet on uneven ground
 constexpr double kMaxPlanPlaces = 5e6;   // of them
+constexpr double kGradeReach = 1;        // metres on either side, over which slopes are averaged
+constexpr double kSteepNormal = 0.5;     // least height of a normal: what is steeper is a wall
 constexpr double kStorey = 0.6;          // metres: what is higher than this is overhead
 constexpr double kEndRange = 0.4;        // metres by which the last prints may be short of the end
 constexpr double kBesideRange = 0.3;     // metres by which one may be before the other
@@ -144,8 +148,8 @@ class PrintPlanner {
 
   Result<PlannedPrints> plan() {
     if (Status status = check_plan_options(options_); !status) return status.error();
-    count_steps();
     if (Status status = follow_ground(); !status) return status.error();
+    count_steps();
     std::vector<double> places = even_places();
     PlannedPrints result;
     if (!all_fit(places)) {
@@ -162,9 +166,10 @@ class PrintPlanner {
   // The places of prints below are along the path, without the first two; the last print is set
   // beside the one before it.
 
-  // Steps from the begin to places every spacing_: where the way is straight, one in step_length.
-  void count_steps();
   Status follow_ground();
+  // Steps from the begin to places every spacing_: where the way is straight, one in step_length,
+  // downhill a little more.
+  void count_steps();
   double ground_near(double length) const;
   double length_of(std::size_t place) const {
     return std::min(static_cast<double>(place) * spacing_, path_.length());
@@ -188,21 +193,11 @@ class PrintPlanner {
   const Terrain& ground_;
   const PlanOptions& options_;
   double spacing_ = kPlanGrid;
-  std::vector<double> steps_;    // at i * spacing_
-  std::vector<double> heights_;  // of the ground under the path, the same
+  std::vector<double> heights_;  // of the ground under the path, at i * spacing_
+  std::vector<double> slopes_;   // of the ground along it, tangents, 0 on treads; the same
+  std::vector<double> steps_;    // the same
+  double straight_steps_ = 0;    // all, if the path were straight
 };
-
-void PrintPlanner::count_steps() {
-  spacing_ = std::max(kPlanGrid, path_.length() / kMaxPlanPlaces);
-  const auto count = static_cast<std::size_t>(std::ceil(path_.length() / spacing_)) + 1;
-  steps_.assign(count, 0);
-  for (std::size_t i = 1; i < count; ++i) {
-    const double width = std::min(spacing_, path_.length() - static_cast<double>(i - 1) * spacing_);
-    const double turn = std::abs(path_.at(static_cast<double>(i) * spacing_).heading -
-                                 path_.at(static_cast<double>(i - 1) * spacing_).heading);
-    steps_[i] = steps_[i - 1] + std::max(width / options_.step_length, turn / options_.max_turn);
-  }
-}
 
 Status PrintPlanner::follow_ground() {
   const PathPlace begin = path_.at(0);
@@ -218,15 +213,35 @@ Status PrintPlanner::follow_ground() {
                              readable(begin.x, 4), readable(begin.z, 4)),
                  "move the path, or give a larger ground");
   }
-  heights_.resize(steps_.size());
+  spacing_ = std::max(kPlanGrid, path_.length() / kMaxPlanPlaces);
+  heights_.resize(static_cast<std::size_t>(std::ceil(path_.length() / spacing_)) + 1);
+  slopes_.assign(heights_.size(), 0);
   double height = found->height;
   for (std::size_t i = 0; i < heights_.size(); ++i) {
     const PathPlace place = path_.at(static_cast<double>(i) * spacing_);
     const auto here = ground_.at(place.x, place.z, height + kStorey);
     if (here && here->height > height - 2 * kStorey) height = here->height;
     heights_[i] = height;
+    if (!here) continue;
+    const Vec3 way(std::sin(place.heading), 0, std::cos(place.heading));
+    slopes_[i] = -here->normal.dot(way) / std::max(here->normal.y(), kSteepNormal);
   }
   return {};
+}
+
+void PrintPlanner::count_steps() {
+  const auto reach = static_cast<int>(std::lround(kGradeReach / spacing_));
+  const std::vector<double> slopes = mean_within(slopes_, reach);
+  steps_.assign(heights_.size(), 0);
+  for (std::size_t i = 1; i < steps_.size(); ++i) {
+    const double width = std::min(spacing_, path_.length() - static_cast<double>(i - 1) * spacing_);
+    const double turn = std::abs(path_.at(static_cast<double>(i) * spacing_).heading -
+                                 path_.at(static_cast<double>(i - 1) * spacing_).heading);
+    const double grade = std::atan(slopes[i]);
+    const double straight = width / (options_.step_length * slope_gait(grade, grade).length);
+    straight_steps_ += straight;
+    steps_[i] = steps_[i - 1] + std::max(straight, turn / options_.max_turn);
+  }
 }
 
 double PrintPlanner::ground_near(double length) const {
@@ -238,7 +253,7 @@ std::vector<double> PrintPlanner::even_places() const {
   const double all = steps_.back();
   double count = std::max(1.0, std::round(all));
   // Fewer steps than counted are longer ones, and turn more where that is what limits them.
-  const bool turns = all > path_.length() / options_.step_length + 0.01;
+  const bool turns = all > straight_steps_ + 0.01;
   if (turns || all / count * options_.step_length > options_.max_step) {
     count = std::ceil(all - 1e-9);
   }

@@ -18,7 +18,13 @@ namespace krok::gait {
 namespace {
 
 constexpr double kMaxFrames = 1e8;
-constexpr double kMissed = 1e-4;  // metres that count as a footprint missed
+constexpr double kMissed = 1e-4;     // metres that count as a footprint missed
+constexpr double kLowered = 5e-4;    // metres of clearance that may be missing
+constexpr double kOffSupport = 0.2;  // metres
+// Of dorsiflexion under load: 45 degrees in the lunge of Bennell and others, "Intra-rater and
+// inter-rater reliability of a weight-bearing lunge measure of ankle dorsiflexion" (Australian
+// Journal of Physiotherapy 44, 1998).
+constexpr double kMaxAnkle = 45 * kRadiansPerDegree;
 constexpr std::size_t kStepsAtOnce = 64;
 
 Status check_options(std::span<const StepLibrary> libraries, const WalkOptions& options) {
@@ -210,14 +216,39 @@ WalkDetails Walk::details() const {
                              planned.asked, planned.made, state_->plan.moved[to], made.clearance,
                              made.lowered, made.extension, made.missed,
                              state_->plan.why_moved[to]});
-    if (made.missed <= kMissed) continue;
-    Diagnostic warning;
-    warning.severity = Severity::warning;
-    warning.code = "walk-missed";
-    warning.message = fmt::format("print {}: a leg is {} mm too short for its footprint", to + 1,
-                                  readable(1000 * made.missed, 3));
-    warning.hint = "move the prints closer together, or allow --stretch";
-    details.warnings.push_back(std::move(warning));
+    const auto warn = [&](const char* code, const std::string& what, const char* hint) {
+      Diagnostic warning;
+      warning.severity = Severity::warning;
+      warning.code = code;
+      warning.message = fmt::format("print {}: {}", to + 1, what);
+      warning.hint = hint;
+      details.warnings.push_back(std::move(warning));
+    };
+    if (made.missed > kMissed) {
+      warn("walk-missed",
+           fmt::format("a leg is {} mm too short for its footprint",
+                       readable(1000 * made.missed, 3)),
+           "move the prints closer together, or allow --stretch");
+    }
+    const double asked = state_->options.clearance;
+    if (made.clearance < asked - kLowered) {
+      warn("walk-clearance",
+           fmt::format("the swing foot comes to {} mm over the ground, {} mm are asked for",
+                       readable(1000 * made.clearance, 3), readable(1000 * asked, 3)),
+           "move the print, or give a library with steps like this one");
+    }
+    if (made.off_support > kOffSupport) {
+      warn("walk-balance",
+           fmt::format("the hips are {} mm beside the line between the feet",
+                       readable(1000 * made.off_support, 3)),
+           "give a library with steps like this one");
+    }
+    if (made.ankle > kMaxAnkle) {
+      warn("walk-ankle",
+           fmt::format("an ankle bends by {}°, more than people's",
+                       readable(made.ankle / kRadiansPerDegree, 3)),
+           "lead the way across the slope, or over flatter ground");
+    }
   }
   return details;
 }

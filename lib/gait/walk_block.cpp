@@ -6,6 +6,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
+#include "math/smoother_step.h"
 
 namespace krok::gait {
 
@@ -13,11 +14,19 @@ namespace {
 
 constexpr double kSpacing = 0.01;       // seconds, of derivatives at the ends of a swing
 constexpr double kLoweringReach = 0.2;  // seconds over which the pelvis is lowered
-// Steps that are computed on either side of a block: lowering the pelvis depends on 0.4 s of them,
-// and they depend on their neighbours.
+// Steps that are computed on either side of a block: what the lowering of the pelvis takes from
+// farther ones is below the rounding of floats, and they depend on their neighbours.
 constexpr std::size_t kLookedAt = 3, kAround = kLookedAt + 2;
 constexpr double kStaysFlat = 3;  // of the pitch at which a foot is flat
 constexpr double kMiddle = 0.4;   // of the single support: the foot is flat
+// The heel of the stance foot rises so long before the other foot's strike, as a share of single
+// support: at 30 to 35 % of the cycle (Perry and Burnfield, "Gait Analysis", 2010).
+constexpr double kHeelRise = 0.4;
+constexpr double kMoreRoll = 25 * kRadiansPerDegree;  // more than in the blend
+constexpr double kMaxPitch = 75 * kRadiansPerDegree;  // of a foot on its ball
+constexpr double kLeastShare = 0.45;  // of the roll, below which the pelvis gives way
+constexpr int kRollSteps = 16;
+constexpr double kHeelDown = 0.5;  // of the time to the middle: after a forefoot strike
 
 struct PitchAt {
   double time = 0, pitch = 0;
@@ -49,6 +58,18 @@ double time_of_flat(std::span<const PitchAt> series) {
     }
   }
   return to;
+}
+
+// Metres, level, from the hips to the line between the ankles.
+double off_support(const Walker& walker, std::span<const Transform> world) {
+  const auto level = [&](int joint) {
+    const Vec3& place = world[at(joint)].position;
+    return Vec2(place.x(), place.z());
+  };
+  const Vec2 from = level(walker.legs[0].foot), way = level(walker.legs[1].foot) - from;
+  const Vec2 hips = level(0) - from;
+  const double part = std::clamp(hips.dot(way) / std::max(way.squaredNorm(), 1e-9), 0.0, 1.0);
+  return (hips - part * way).norm();
 }
 
 }  // namespace
@@ -92,6 +113,8 @@ SampledStep WalkBlock::sample(std::size_t step) const {
     parts_.walker.to_world(pose, world);
     result.blend.push_back(
         {foot_of(parts_.walker.legs[0], world), foot_of(parts_.walker.legs[1], world)});
+    result.hips.push_back({world[at(parts_.walker.legs[0].upper)].position,
+                           world[at(parts_.walker.legs[1].upper)].position});
   }
   return result;
 }
@@ -143,6 +166,7 @@ void WalkBlock::begin_stance(std::size_t print) {
   if (!series.empty()) {
     series.front().time = stance.strike;
     stance.flat_from = time_of_flat(series);
+    stance.land(steps[print - 2].gait, std::lerp(stance.strike, middle, kHeelDown));
   }
   changed_stance(print) = stance;
 }
@@ -171,6 +195,45 @@ void WalkBlock::finish_stance(std::size_t print) {
   if (series.empty()) return;
   series.front().time = stance.off;
   stance.flat_to = std::max(time_of_flat(series), stance.flat_from);
+}
+
+// Where the leg that is left behind would be too long, its foot rolls over the ball, as people's
+// do, before the pelvis has to give way.
+void WalkBlock::roll_over_ball(std::size_t print) {
+  const std::vector<BodyStep>& steps = parts_.body.steps();
+  if (print == 0 || print >= steps.size()) return;
+  Stance& stance = changed_stance(print);
+  const Leg& leg = parts_.leg_of(print);
+  const std::size_t side = index_of(parts_.side_of(print));
+  const BodyStep& over = steps[print - 1];
+  const double from =
+      std::max(stance.flat_from, over.strike - kHeelRise * (over.strike - over.off));
+  if (!(stance.off > from)) return;
+  double roll = 0;
+  for (std::size_t step = print - 1; step <= print; ++step) {
+    const SampledStep& frames = sampled(step);
+    for (std::size_t i = 0; i < frames.blend.size(); ++i) {
+      const double time = parts_.time_of(frames.first + static_cast<int>(i));
+      const double share = smoother_step((time - from) / (stance.off - from));
+      if (share < kLeastShare || time > stance.off) continue;
+      const FootPose& blend = frames.blend[i][side];
+      const Vec3& hip = frames.hips[i][side];
+      const double longest = longest_reach(leg, (hip - blend.foot.position).norm());
+      const FootPose foot = stance.at(time, blend);
+      const auto is_too_long = [&](double angle) {
+        return (hip - stance.rolled(foot, angle).foot.position).norm() > longest;
+      };
+      if (!is_too_long(0)) continue;
+      double low = 0, high = std::min(kMoreRoll, kMaxPitch - stance.pitch(blend));
+      if (high <= 0) continue;
+      for (int k = 0; k < kRollSteps && !is_too_long(high); ++k) {
+        const double middle = 0.5 * (low + high);
+        (is_too_long(middle) ? low : high) = middle;
+      }
+      roll = std::max(roll, std::min(high / share, kMoreRoll));
+    }
+  }
+  if (roll > 0) stance.roll_further(roll, from);
 }
 
 Swing WalkBlock::make_swing(std::size_t step) const {
@@ -230,7 +293,7 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
       const auto points = sole_points(parts_.leg_of(step), foot);
       // Heel and ball: the tip of the toes rolls over the ground as the foot leaves.
       for (const Vec3& point : std::span(points).first(2)) {
-        if (!swing.is_away(foot)) break;
+        if (!swing.is_to_be_clear(time, foot)) break;
         const auto found = ground_near(parts_.ground, point.x(), point.z(), point.y(), 0.3);
         if (found) clearance = std::min(clearance, point.y() - found->height);
       }
@@ -244,16 +307,10 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
 void WalkBlock::emit(std::size_t step, Clip& clip, MadeStep& made) {
   SampledStep& frames = sampled(step);
   const int count = static_cast<int>(frames.poses.size());
-  const int reach = std::max(2, static_cast<int>(std::lround(kLoweringReach * parts_.rate)));
-  const int low = parts_.first_frame(low_), high = parts_.first_frame(high_);
-  const int from = std::max(low, frames.first - 2 * reach - 2);
-  const int to = std::min(high, frames.first + count + 2 * reach + 2);
-  const auto lowered =
-      smooth_above(std::span(needs_).subspan(at(from - low), at(to - from)), reach);
   std::vector<Transform> world(parts_.walker.skeleton->names.size());
   for (int i = 0; i < count; ++i) {
     PoseVector& pose = frames.poses[at(i)];
-    const double down = lowered[at(frames.first + i - from)];
+    const double down = lowered_[at(frames.first + i - parts_.first_frame(low_))];
     position_of(pose, 0).y() -= down;
     parts_.walker.to_world(pose, world);
     const SolvedLegs legs =
@@ -263,6 +320,13 @@ void WalkBlock::emit(std::size_t step, Clip& clip, MadeStep& made) {
     made.lowered = std::max(made.lowered, down);
     made.extension = std::max(made.extension, legs.extension);
     made.missed = std::max(made.missed, legs.missed);
+    const double time = parts_.time_of(frames.first + i);
+    made.off_support = std::max(made.off_support, off_support(parts_.walker, world));
+    for (const std::size_t print : {step, step + 1}) {
+      if (print == step && time > parts_.body.steps()[step].off) continue;
+      const Leg& leg = parts_.leg_of(print);
+      made.ankle = std::max(made.ankle, leg.standing_ankle - ankle_angle(leg, world));
+    }
   }
   frames = {};
 }
@@ -279,11 +343,15 @@ void WalkBlock::make(Clip& clip, std::span<MadeStep> steps) {
   for (std::size_t print = low_ == 0 ? 0 : low_ + 1; print < high_ || print < 1; ++print) {
     finish_stance(print);
   }
+  // Depends on both steps beside it, so that the outermost are left out.
+  for (std::size_t print = low_ == 0 ? 0 : low_ + 2; print < high_; ++print) roll_over_ball(print);
   const std::size_t from = first_ - std::min(first_, kLookedAt);
   const std::size_t to = std::min(end_ + kLookedAt, last);
   for (std::size_t step = from; step < to; ++step) {
     place_feet(step, step >= first_ && step < end_ ? steps[step] : unused);
   }
+  const int reach = std::max(2, static_cast<int>(std::lround(kLoweringReach * parts_.rate)));
+  lowered_ = smooth_above(needs_, reach);
   for (std::size_t step = first_; step < end_; ++step) emit(step, clip, steps[step]);
 }
 
@@ -304,7 +372,7 @@ MotionKeys keys_of(const WalkParts& parts, std::span<const Stance> stances, doub
         {leg.foot, stance.flat_from, std::min(stance.flat_to, duration), flat.position});
     if (leg.toes < 0) continue;
     const Transform toes = parts.walker.skeleton->reference_local(leg.toes);
-    keys.contacts.push_back({leg.toes, stance.flat_from, grounded.off, flat * toes.position});
+    keys.contacts.push_back({leg.toes, stance.ball_from(), grounded.off, flat * toes.position});
   }
   std::ranges::stable_sort(keys.contacts, [](const Contact& a, const Contact& b) {
     return a.start != b.start ? a.start < b.start : a.joint < b.joint;

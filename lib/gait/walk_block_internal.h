@@ -29,6 +29,8 @@ struct WalkParts {
 // Measures of a step, taken while its frames are made.
 struct MadeStep {
   double clearance = 0, lowered = 0, extension = 0, missed = 0;
+  double off_support = 0;  // metres, of the hips, level
+  double ankle = 0;        // radians by which an ankle bends more than in standing, toes up
 };
 
 class WalkBlock {
@@ -56,6 +58,7 @@ class WalkBlock {
 
   void begin_stance(std::size_t print);
   void finish_stance(std::size_t print);
+  void roll_over_ball(std::size_t print);
   void place_feet(std::size_t step, MadeStep& made);
   Swing make_swing(std::size_t step) const;
   void emit(std::size_t step, Clip& clip, MadeStep& made);
@@ -66,7 +69,8 @@ class WalkBlock {
   std::vector<Gap> gaps_;    // from step low - 1 on
   std::vector<SampledStep> sampled_;
   std::vector<Stance> stances_;
-  std::vector<double> needs_;  // [frames], metres that the pelvis must be lowered
+  std::vector<double> needs_;    // [frames], metres that the pelvis must be lowered
+  std::vector<double> lowered_;  // [frames], metres that it is
 };
 
 // Contacts and keytimes of a walk; fills the times of its prints.

@@ -255,6 +255,13 @@ PoseVector standing_pose(const StepLibrary& steps, const Walker& walker) {
 
 }  // namespace
 
+double ankle_angle(const Leg& leg, std::span<const Transform> world) {
+  const Transform& foot = world[at(leg.foot)];
+  const Vec3 shank = (world[at(leg.lower)].position - foot.position).normalized();
+  const Vec3 forward = foot.orientation * (leg.sole.sole * Vec3::UnitZ());
+  return std::acos(std::clamp(shank.dot(forward), -1.0, 1.0));
+}
+
 void Walker::to_world(const PoseVector& pose, std::span<Transform> joint_to_world) const {
   for (std::size_t j = 0; j < joint_to_world.size(); ++j) {
     const int parent = skeleton->parents[j];
@@ -281,6 +288,9 @@ Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
     learn_flat_foot(steps, side, walker);
   }
   for (const FootSide side : {FootSide::left, FootSide::right}) learn_knee(steps, side, walker);
+  walker.spine = steps.roles().joint(Role::spine);
+  if (walker.spine < 0) walker.spine = steps.roles().joint(Role::chest);
+  walker.neck = steps.roles().joint(Role::neck);
   walker.bones = fixed_joints(steps);
   walker.ball_off = find_ball_off(steps, walker);
   walker.usual_off = off_of_swing(steps.steps(FootSide::left));
@@ -294,6 +304,9 @@ Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
   for (const FixedJoint& bone : walker.bones) {
     position_of(walker.stand, bone.joint) = bone.place;
   }
+  std::vector<Transform> world(walker.skeleton->names.size());
+  walker.to_world(walker.stand, world);
+  for (Leg& leg : walker.legs) leg.standing_ankle = ankle_angle(leg, world);
   return walker;
 }
 

@@ -70,7 +70,11 @@ struct Leg : LegJoints {
   double length = 0;               // metres, thigh and shank
   FootGeometry sole;
   Quat flat_toes = Quat::Identity();  // sole_to_toes: of the toes while the foot is flat
+  double standing_ankle = 0;          // ankle_angle() in the standing pose
 };
+
+// Radians between shank and sole.
+double ankle_angle(const Leg& leg, std::span<const Transform> joint_to_world);
 
 // A joint that stays where it is in its parent.
 struct FixedJoint {
@@ -83,6 +87,7 @@ struct Walker {
   std::array<Leg, 2> legs;             // [FootSide]
   PoseVector stand;                    // the root relative to the point below the ankles, facing +Z
   std::vector<FixedJoint> bones;       // all but the root and what moves in captures
+  int spine = -1, neck = -1;           // the joints that the trunk and the head turn about
   double sole_width = 0.08;            // metres
   // When the ball leaves the ground, as a share of the time from the other foot's strike to this
   // foot's toe-off, from captures: the toes stay on the ground longer.

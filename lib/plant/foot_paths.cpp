@@ -262,6 +262,7 @@ KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& le
 namespace {
 
 constexpr double kSpread = 0.3;    // seconds
+constexpr double kMargin = 0.008;  // of the leg
 constexpr double kReached = 1e-5;  // metres
 
 // A leg in one frame, as captured but for the pelvis.
@@ -301,11 +302,16 @@ TwoBoneSolution solve(const Leg& leg, const LegNow& now) {
   chain.hinge = sine > 1e-5 ? Vec3(hinge.normalized()) : usual;
   TwoBoneGoal goal;
   goal.target = now.goal;
-  // Added flexion is about the usual axis: the plane of a nearly straight leg is mostly noise.
+  // Added flexion is about the usual axis: the plane of a nearly straight leg is mostly noise, or
+  // that of a knee bent backwards. It gives way to the usual one as flexion is added.
   const double bend = two_bone_bend(now.thigh, now.shank, now.reach);
   const double then = two_bone_bend(now.thigh, now.shank, (goal.target - chain.root).norm());
+  const double added = std::max(0.0, then - bend);
   const double agree = std::max(0.0, chain.hinge.dot(usual));
-  const Vec3 axis = bend * chain.hinge + std::max(0.0, then - bend) * agree * usual;
+  const double straight = std::max(0.0, 1 - bend / kNearlyStraight);
+  const double give_way = straight * std::min(1.0, added / std::max(bend, 1e-9));
+  const Vec3 captured = bend * chain.hinge + added * agree * usual;
+  const Vec3 axis = (1 - give_way) * captured + give_way * then * usual;
   const Vec3 line = goal.target - chain.root;
   const Quat swing = shortest_arc(chain.end - chain.root, line);
   goal.pole = line.cross(swing * (axis.norm() > 1e-9 ? axis : usual));
@@ -355,6 +361,10 @@ std::vector<double> lowering(const Clip& clip, const PlantedBody& body,
       needs[f] = std::max(needs[f], drop_for(now.goal - now.upper.position, longest));
     }
   }
+  // A little more than needed: a leg at the limit of its reach for a frame bends there least of
+  // all, and far more in the frames beside it.
+  const double margin = kMargin * body.leg_length;
+  for (double& metres : needs) metres += margin * (1 - std::exp(-metres / margin));
   std::vector<double> lowered =
       smooth_above(needs, static_cast<int>(std::lround(kSpread * clip.rate)));
   for (double& metres : lowered) metres = std::max(0.0, metres);

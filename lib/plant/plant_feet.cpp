@@ -116,11 +116,12 @@ namespace {
 // Jitter of the whole body, in leg lengths, from which contacts are found again after its removal.
 constexpr double kShakes = 0.003;
 
-// Drift of standing heels and balls, in leg lengths, up to which a clip is left as it is.
-constexpr double kStands = 0.0004;
-
 // Rounds of contact detection: feet that stand still show longer stays than feet that slide.
 constexpr int kRounds = 3;
+
+// Passes, each over the result of the one before, until one finds nothing to correct: where the
+// sole points are depends on how the feet stand.
+constexpr int kPasses = 8;
 
 // Stances without a contact from which there is a warning: their number, and their share.
 constexpr int kFewMissed = 2;
@@ -201,7 +202,7 @@ class Planter {
     }
     planted.clip = clip_;
     note_stays(body_, captured, captured, planted);
-    if (planted.drift_before <= kStands * body_.leg_length) return planted;
+    if (planted.drift_before <= plant::kStands * body_.leg_length) return planted;
     auto footings = captured;
     const double pelvis_jitter = plant::pelvis_jitter(body_, clip_);
     // Twice: places are known better once the body is steady.
@@ -275,29 +276,74 @@ class Planter {
   const std::optional<std::span<const Contact>>& contacts_;
 };
 
-}  // namespace
+// One pass, and whether it left the clip as it is.
+struct Pass {
+  PlantedFeet planted;
+  bool unchanged = false;
+};
 
-Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
-                               std::optional<std::span<const Contact>> contacts) {
-  if (Status status = check(clip); !status) return std::move(status).error();
+Result<Pass> plant_once(const Clip& clip, const RoleMap& roles,
+                        const std::optional<std::span<const Contact>>& contacts) {
   const auto body = plant::find_body(clip, roles);
   if (!body) return body.error();
   const auto found = find_contacts(clip, roles);
   if (!found) return found.error();
   const Planter planter(clip, roles, *body, contacts);
+  const double stands = plant::kStands * body->leg_length;
   std::vector<Stay> more;
   auto planted = planter.plant(*found, more);
   for (int round = 1; !contacts && planted && round < kRounds; ++round) {
     const auto shown = find_contacts(planted->clip, roles);
     if (!shown) return shown.error();
-    if (planter.drift_in(planted->clip, *shown) <= kStands * body->leg_length) break;
+    if (planter.drift_in(planted->clip, *shown) <= stands) break;
     more.insert(more.end(), shown->stays.begin(), shown->stays.end());
     planted = planter.plant(*found, more);
   }
-  if (!contacts && planted) {
+  if (!planted) return std::move(planted).error();
+  if (!contacts) {
     for (Diagnostic& warning : missed_stances(clip, roles, *found, planted->stays)) {
       planted->warnings.push_back(std::move(warning));
     }
+  }
+  const bool unchanged = planted->drift_before <= stands;
+  return Pass{*std::move(planted), unchanged};
+}
+
+// Measures the drifts before on the clip that was captured.
+void measure_before(const Clip& clip, PlantedFeet& planted) {
+  planted.drift_before = 0;
+  for (FixedStay& stay : planted.stays) {
+    std::vector<Vec3> track;
+    for (int f = stay.first; f <= stay.last; ++f) {
+      track.push_back(joint_at(clip, f, stay.point.joint) * stay.point.offset);
+    }
+    stay.drift_before = plant::drift_of(track, 0, stay.last - stay.first);
+    if (stay.point.part == FootPart::tip) continue;
+    planted.drift_before = std::max(planted.drift_before, stay.drift_before);
+  }
+}
+
+}  // namespace
+
+Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
+                               std::optional<std::span<const Contact>> contacts) {
+  if (Status status = check(clip); !status) return std::move(status).error();
+  auto first = plant_once(clip, roles, contacts);
+  if (!first) return std::move(first).error();
+  PlantedFeet planted = std::move(first->planted);
+  bool unchanged = first->unchanged;
+  for (int pass = 1; !unchanged && pass < kPasses; ++pass) {
+    auto next = plant_once(planted.clip, roles, contacts);
+    if (!next) break;  // no stay is left that would be found
+    unchanged = next->unchanged;
+    if (unchanged) break;
+    PlantedFeet& again = next->planted;
+    again.pelvis_lowered += planted.pelvis_lowered;
+    again.body_steadied = std::hypot(again.body_steadied, planted.body_steadied);
+    again.out_of_reach = std::max(again.out_of_reach, planted.out_of_reach);
+    again.warnings = std::move(planted.warnings);
+    planted = std::move(again);
+    measure_before(clip, planted);
   }
   return planted;
 }

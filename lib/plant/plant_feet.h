@@ -54,13 +54,18 @@ struct PlantedFeet {
 //   and a pelvis that jitters would shake.
 // - A leg that is nearly straight is not stretched further than captured: the heel comes up further
 //   while ball or tip stand (15 degrees at most), and then the pelvis is lowered, smoothly.
-// - Legs are solved by solve_two_bone(). Bend that is added is about the knee's usual axis.
+// - Legs are solved by solve_two_bone(). Bend that is added is about the knee's usual axis, also to
+//   a knee that is straight or bent backwards.
 //
 // Feet that stand still show longer stays than feet that slide. Where stays are found, they are
-// looked for again on the result, and held as well.
+// looked for again on the result, and held as well. Frames in which a point is higher or lower than
+// the rest of a stay that was found, by 0.012 of the leg and three deviations of its jitter, are of
+// a step: a heel that rises is not pressed down.
 //
-// A clip in which no heel and no ball moves by more than 0.0004 of the leg while it stands is
-// returned as it is, so that planting twice with the same contacts is the same as once.
+// Planting twice is planting once, with the same contacts and with contacts found anew: the passes
+// go on, 8 at most, until one finds no heel and no ball that moves by more than 0.0004 of the leg
+// while it stands. Of a stay that was found and in which a point is that still for half of the time
+// or more, the rest is of steps. A clip in which nothing is to correct is returned as it is.
 //
 // Everything outside the legs keeps its orientation, and its position relative to the hips; joints
 // above the hips do not move. Bones keep their lengths. Root and reference pose do not matter.

@@ -11,12 +11,13 @@ namespace krok::plant {
 namespace {
 
 constexpr double kFarFromPlace = 0.2;  // of the leg
-constexpr double kBesideEnds = 0.15;   // seconds
+constexpr double kRisesFor = 0.1;      // seconds
 constexpr double kOffGround = 0.012;   // of the leg
 constexpr double kJitter = 0.002;      // metres, less does not matter to a place
 constexpr double kUneven = 1.5;        // deviations
 constexpr int kDistanceRounds = 200;
-constexpr double kExact = 1e-8;  // metres
+constexpr double kStillPart = 0.5;  // of a stay
+constexpr double kExact = 1e-8;     // metres
 
 Vec3 median_place(const std::vector<Vec3>& track, int first, int last) {
   return krok::median_place(std::span(track).subspan(static_cast<std::size_t>(first),
@@ -147,22 +148,18 @@ class StayFixer {
     stay.last = std::min(last_frame, static_cast<int>(std::floor(end * clip_.rate + 1e-3)));
     if (stay.first > stay.last) return;
     stay.place = median_place(track, stay.first, stay.last);
-    // Near the ends of the clip there are too few frames to detect when a standing point leaves.
-    const int beside = static_cast<int>(kBesideEnds * clip_.rate);
-    const bool inexact = found && (stay.first <= beside || stay.last >= last_frame - beside);
-    const double rise =
-        inexact ? kOffGround * body_.leg_length + 3 * height_jitter_in(track, stay) : 0;
     const auto is_far = [&](int f) {
       const Vec3 off = track[static_cast<std::size_t>(f)] - stay.place;
-      const bool at_end = f <= beside || f >= last_frame - beside;
-      return off.norm() > kFarFromPlace * body_.leg_length ||
-             (inexact && at_end && std::abs(off.y()) > rise);
+      return off.norm() > kFarFromPlace * body_.leg_length;
     };
     while (stay.first <= stay.last && is_far(stay.first)) ++stay.first;
     while (stay.first <= stay.last && is_far(stay.last)) --stay.last;
     if (stay.first > stay.last) return;
-    stay.place = median_place(track, stay.first, stay.last);
-    footing.stays.push_back(stay);
+    for (const auto& [from, to] : found ? parts_on_ground(track, stay) : whole(stay)) {
+      stay.first = from, stay.last = to;
+      stay.place = median_place(track, from, to);
+      footing.stays.push_back(stay);
+    }
   }
 
   // By point and frame; stays of a point that overlap become one.
@@ -207,6 +204,40 @@ class StayFixer {
   Footing footing;
 
  private:
+  using Part = std::pair<int, int>;  // frames, inclusive
+  static std::vector<Part> whole(const FixedStay& stay) { return {{stay.first, stay.last}}; }
+
+  // The parts of a stay in which the point is not above or below the rest of it: not pressed down
+  // before a step, nor held back after.
+  std::vector<Part> parts_on_ground(const std::vector<Vec3>& track, FixedStay stay) const {
+    const std::vector<Part> still = still_parts(track, stay);
+    if (still.size() != 1 || still.front() != Part(stay.first, stay.last)) return still;
+    stay.place = median_place(track, stay.first, stay.last);
+    const double rise = kOffGround * body_.leg_length + 3 * height_jitter_in(track, stay);
+    const int bridged = static_cast<int>(kRisesFor * clip_.rate);
+    std::vector<Part> parts;
+    for (int f = stay.first; f <= stay.last; ++f) {
+      if (std::abs(track[static_cast<std::size_t>(f)].y() - stay.place.y()) > rise) continue;
+      if (parts.empty() || f - parts.back().second > bridged + 1) parts.emplace_back(f, f);
+      parts.back().second = f;
+    }
+    return parts;
+  }
+
+  // The parts of a stay in which the point does not move, where they are most of it: it has been
+  // planted, and the frames between and beside them are of steps. Otherwise the whole.
+  std::vector<Part> still_parts(const std::vector<Vec3>& track, const FixedStay& stay) const {
+    std::vector<Part> parts;
+    int still = 0;
+    for (int from = stay.first, to = from; from <= stay.last; from = ++to) {
+      while (to < stay.last && drift_of(track, from, to + 1) <= kStands * body_.leg_length) ++to;
+      if (to == from) continue;
+      parts.emplace_back(from, to);
+      still += to - from + 1;
+    }
+    return still < kStillPart * (stay.last - stay.first + 1) ? whole(stay) : parts;
+  }
+
   static double height_jitter_in(const std::vector<Vec3>& track, const FixedStay& stay) {
     KnownCurve heights(static_cast<std::size_t>(stay.last - stay.first + 1));
     for (std::size_t i = 0; i < heights.values.size(); ++i) {

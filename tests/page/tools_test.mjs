@@ -125,6 +125,33 @@ async function oneVertexIsFound() {
   await page.close();
 }
 
+// "Go to the largest" is what krok-diff finds, at a moment that samples would pass by; the files are
+// opened as --compress wrote them.
+async function largestIsKrokDiffs() {
+  const lines = readFileSync(WALK, 'utf8').split('\n');
+  const spike = lines.indexOf('MOTION') + 3 + 101;
+  lines[spike] = lines[spike].trim().split(/\s+/).map((value, i) => (i === 1 ? String(Number(value) + 7) : value)).join(' ');
+  writeFileSync(made('spike.bvh'), lines.join('\n'));
+  run('krok-skin', made('walker.model'), WALK, '--compress', '-o', made('packed.glb'));
+  run('krok-skin', made('walker.model'), made('spike.bvh'), '--compress', '-o', made('spike.glb'));
+  run('krok-view', made('packed.glb'), made('spike.glb'), '--difference', '-o', made('spike.html'));
+  let report = {};
+  try {
+    run('krok-diff', made('packed.glb'), made('spike.glb'), '--match', 'order', '--json');
+  } catch (differs) {
+    report = JSON.parse(differs.stdout);
+  }
+  const { largest, where: { time } } = report.result.measures.find((one) => one.what === 'positions');
+  const page = await open('spike.html');
+  const text = await page.locator('#difference-worst').textContent();
+  const [, millimetres, at] = text.match(/([\d.]+) mm, ([\d.]+) s/) ?? [];
+  expect(Math.abs(millimetres - 1000 * largest) < 0.06 && Math.abs(at - time) < 0.006, `${text}, krok-diff: ${largest} m at ${time} s`);
+  await page.locator('#difference-worst').click();
+  const now = await page.locator('#difference').textContent();
+  expect(Math.abs(now.match(/([\d.]+) mm/)?.[1] - 1000 * largest) < 0.11, `there the page has ${now}`);
+  await page.close();
+}
+
 // Joints of a glTF file have the file's names, colons and all, which krok-ik wants.
 async function namesOfGlbsAreTheFiles() {
   const walk = readFileSync(WALK, 'utf8').replace(/(ROOT|JOINT) /g, '$1 hero:');
@@ -530,6 +557,7 @@ await check(90, async () => {
   await differenceOfGlbsIsColoured();
   await namesAndValuesStayInView();
   await oneVertexIsFound();
+  await largestIsKrokDiffs();
   await namesOfGlbsAreTheFiles();
   await framesWhatIsShown();
   await rootIsNoBone();

@@ -33,6 +33,19 @@ inline double median_height(const Clip& clip, const FixedStay& stay) {
   return 0.5 * (heights[heights.size() / 2] + heights[(heights.size() - 1) / 2]);
 }
 
+// The largest distance of the same joints, `offset` joints on in b.
+inline double apart(const Clip& a, const Clip& b, int offset = 0) {
+  double most = 0;
+  for (int f = 0; f < a.frame_count(); ++f) {
+    for (int j = 0; j < a.joint_count(); ++j) {
+      most = std::max<double>(most, (a.frame_positions(f)[static_cast<std::size_t>(j)] -
+                                     b.frame_positions(f)[static_cast<std::size_t>(j + offset)])
+                                        .norm());
+    }
+  }
+  return most;
+}
+
 // `clean` has the heights at which points should stand.
 inline Measures measure(const Clip& input, const Clip& clean, const RoleMap& roles,
                         const std::vector<FixedStay>& stays, const Clip& result) {

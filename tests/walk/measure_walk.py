@@ -103,8 +103,9 @@ def unrotated(turn, vector):
 
 def knee_angles(motion, side):
     """Radians between thigh and shank."""
-    thigh = motion.find(f"{side}upleg", f"{side}upperleg", f"{side}thigh", f"{side}_upper_leg")
-    foot = motion.find(f"{side}foot", f"{side}ankle", f"{side}_foot")
+    thigh = motion.find(f"{side}upleg", f"{side}upperleg", f"{side}thigh", f"{side}_upper_leg",
+                        f"cc_base_{side[0]}_thigh")
+    foot = motion.find(f"{side}foot", f"{side}ankle", f"{side}_foot", f"cc_base_{side[0]}_foot")
     shank = motion.skeleton[foot]["parent"]
     a = motion.positions[:, shank] - motion.positions[:, thigh]
     b = motion.positions[:, foot] - motion.positions[:, shank]
@@ -190,7 +191,10 @@ class Foot:
         forward = self.ball[0] - self.heel[0]
         normal = normal_at(ground, self.heel[0])
         # With the heel up, the part of the sole at the ball belongs to the toes.
-        toes = [i for i, one in enumerate(motion.skeleton) if one["parent"] == joint]
+        parents = [one["parent"] for one in motion.skeleton]
+        toes = [i for i, parent in enumerate(parents) if parent == joint]
+        # Helper bones without children are no toes.
+        toes = [i for i in toes if i in parents] or toes
         self.rest = self.ball
         if toes:
             toes_at, toes_turns = motion.positions[:, toes[0]], motion.turns[:, toes[0]]

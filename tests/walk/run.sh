@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Fits step libraries to generated walks and measures random walks made with them, and how their steps are
-# joined.
+# Fits step libraries to generated walks and measures random walks made with them, how their steps are
+# joined, and how people's walk changes on slopes and stairs.
 #
 #   run.sh BIN_FOLDER MAKE_WALK SOURCE_FOLDER [COUNT]
 #
@@ -36,4 +36,8 @@ END
 "$bin/krok-fit" -q fine.json -o fine.steps
 "$python" "$source/tests/walk/measure_joins.py" "$bin" fine.steps --check
 cd ..
+# Steps on the level only, on slopes and stairs.
+sed 's/turn_\*.bvh/turn_*_0_0.bvh/; /"height"/d; /"turn"/d; s/\(tolerance": "0.1mm"}\),/\1/' library_turns.json > level.json
+"$bin/krok-fit" -q level.json -o level.steps
+"$python" "$source/tests/walk/measure_gait.py" "$bin" level.steps --check
 "$python" "$source/tests/walk/run_scripts.py" "$bin" turning.steps --count "$count" --check

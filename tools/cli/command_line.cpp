@@ -13,6 +13,7 @@
 #include "core/glob.h"
 #include "core/nearest_name.h"
 #include "core/text.h"
+#include "tools/cli/folder_inputs.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/renamed_options.h"
 #include "tools/cli/tool.h"
@@ -24,9 +25,10 @@ namespace {
 constexpr std::size_t kHelpColumn = 34;
 
 std::string usage_lines(const ToolSpec& spec) {
-  std::string text =
-      fmt::format("Usage: {} [options] {}{}\n", spec.name, spec.inputs,
-                  spec.has_output ? (spec.needs_output ? " -o OUTPUT" : " [-o OUTPUT]") : "");
+  std::string text = fmt::format(
+      "Usage: {} [options] {}{}\n", spec.name, spec.inputs,
+      spec.has_output ? (spec.needs_output && !spec.default_output ? " -o OUTPUT" : " [-o OUTPUT]")
+                      : "");
   if (spec.batch) {
     const bool ends_so = std::string_view(spec.inputs).ends_with("...");
     text += fmt::format("       {} [options] {}{} --out-dir DIR\n", spec.name, spec.inputs,
@@ -163,7 +165,9 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
       declare_(spec.declare),
       app_(spec.details.empty() ? spec.summary : spec.summary + "\n\n" + spec.details, spec.name),
       tool_(spec.name),
+      folder_endings_(spec.folder_endings),
       needs_output_(spec.has_output && spec.needs_output),
+      default_output_(spec.default_output),
       takes_many_(spec.batch.has_value()) {
   app_.set_help_flag();
   declare_(options_);
@@ -305,6 +309,38 @@ Status CommandLine::check_use_of_batch_options() const {
                "add --out-dir or --manifest");
 }
 
+Status CommandLine::open_folders() {
+  left_out.clear();
+  if (form_ != Form::single || folder_endings_.empty()) return {};
+  for (CLI::Option* option : app_.get_options()) {
+    if (!option->get_positional() || option->get_items_expected_max() < 2) continue;
+    std::vector<std::string> files;
+    for (const std::string& value : option->results()) {
+      std::error_code unknown;
+      if (value == "-" || !std::filesystem::is_directory(value, unknown)) {
+        files.push_back(value);
+        continue;
+      }
+      auto found = find_files_below(value);
+      if (!found) return found.error();
+      for (Diagnostic& diagnostic : keep_inputs(value, folder_endings_, *found)) {
+        left_out.push_back(std::move(diagnostic));
+      }
+      if (found->empty()) {
+        return Error("folder-empty",
+                     fmt::format("the folder has no {} file", any_of_words(folder_endings_)))
+            .in_file(value);
+      }
+      files.insert(files.end(), found->begin(), found->end());
+    }
+    if (files == option->results()) continue;
+    option->clear();
+    option->add_result(std::move(files));
+    option->run_callback();
+  }
+  return {};
+}
+
 Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arguments) {
   given_.clear();
   fixed_positionals.clear();
@@ -337,7 +373,9 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     if (error.hint.empty()) error.hint = fmt::format("see {} --help", tool_);
     return error;
   }
+  if (form_ == Form::single && default_output_ && output.empty()) output = default_output_();
   if (form_ == Form::single && needs_output_ && output.empty()) return no_output();
+  if (Status status = open_folders(); !status) return status.error();
   // Those of a list stand in part on its lines.
   if (form_ == Form::single || form_ == Form::one_file) {
     if (Status status = options_.check_conditions(); !status) return status.error();

@@ -67,6 +67,9 @@ class CommandLine {
   std::vector<std::string> inputs;
   std::vector<std::string> fixed_positionals;
 
+  // What was left out of folders that were given as inputs.
+  Diagnostics left_out;
+
   // The common options.
   std::string output;
   std::string json_path;  // "-" is standard output
@@ -91,6 +94,7 @@ class CommandLine {
   void declare_common(const ToolSpec& spec);
   void declare_for_many();
   void note_given();
+  Status open_folders();
   Status check_use_of_batch_options() const;
   std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
 
@@ -103,7 +107,9 @@ class CommandLine {
   std::vector<CLI::Option*> own_options_;
   std::vector<GivenOption> given_;
   std::string tool_;
+  std::vector<std::string> folder_endings_;
   bool needs_output_ = false;
+  std::function<std::string()> default_output_;
   bool takes_many_ = false;
 };
 

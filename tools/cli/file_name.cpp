@@ -1,6 +1,8 @@
 #include "tools/cli/file_name.h"
 
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 
 #include "core/file.h"
 #include "core/text.h"
@@ -20,6 +22,16 @@ std::string file_name_of(const std::string& name) {
     result.resize(end);
   }
   return result;
+}
+
+std::string beside(const std::string& path, const std::string& ending) {
+  std::filesystem::path result = path;
+  if (!result.has_filename()) result = result.parent_path();
+  std::error_code unknown;
+  const bool folder = std::filesystem::is_directory(result, unknown);
+  if (path == "-" || !result.has_filename() || result.filename() == ".") return {};
+  if (!folder) result.replace_extension();
+  return result.string() + ending;
 }
 
 std::string name_of_input(const std::string& path) {

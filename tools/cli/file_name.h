@@ -9,6 +9,10 @@ namespace krok::cli {
 // at most 100 bytes.
 std::string file_name_of(const std::string& name);
 
+// The same path with another ending: "takes/walk.html" for "takes/walk.bvh", "takes.html" for the
+// folder "takes/"; empty for "-".
+std::string beside(const std::string& path, const std::string& ending);
+
 // Display name of an input: the base name, "walk.bvh", or "standard input" for "-".
 std::string name_of_input(const std::string& path);
 

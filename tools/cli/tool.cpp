@@ -133,6 +133,7 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
   const auto console = console_progress(silent ? ProgressStyle::none : line.style);
   context.console = console.get();
   context.progress = console.get();
+  for (const Diagnostic& diagnostic : line.left_out) context.diagnose(diagnostic);
   const Status status = spec.check ? spec.check() : Status();
   const Result<int> done = status ? run_guarded(spec, context) : Result<int>(status.error());
   console->end();
@@ -262,6 +263,11 @@ Result<int> run_guarded(const ToolSpec& spec, ToolContext& context) {
   if (spec.writes) {
     Status status = check_output_kind(context.output, "-o", *spec.writes);
     if (!status) return status.error();
+  }
+  if (!spec.output_endings.empty()) {
+    if (const auto named = output(spec.output_endings).read(context.output); !named) {
+      return usage("-o: " + named.error().message, named.error().hint);
+    }
   }
   try {
     return spec.run(context);

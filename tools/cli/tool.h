@@ -144,15 +144,21 @@ struct ToolSpec {
   std::string summary;  // in a line of 75 characters, no full stop; krok --help has it, too
   std::string details;  // sentences that follow it in the help, or empty
   std::string inputs;   // for the usage line: "IN.bvh"
-  std::vector<Example> examples;         // at least two
-  std::string exit_done = "done";        // meaning of exit code 0
-  std::string exit_no;                   // meaning of exit code 1; empty if never returned
-  std::string exit_partly;               // meaning of exit code 3 without a Batch, or empty
-  std::string report_name;               // alias of --json, "--report", or empty
-  bool has_output = true;                // has -o
-  bool needs_output = true;              // -o is required
-  std::optional<registry::Kind> writes;  // what -o is, if it is always the same
+  std::vector<Example> examples;            // at least two
+  std::string exit_done = "done";           // meaning of exit code 0
+  std::string exit_no;                      // meaning of exit code 1; empty if never returned
+  std::string exit_partly;                  // meaning of exit code 3 without a Batch, or empty
+  std::string report_name;                  // alias of --json, "--report", or empty
+  bool has_output = true;                   // has -o
+  bool needs_output = true;                 // -o is required
+  std::optional<registry::Kind> writes;     // what -o is, if it is always the same
+  std::vector<std::string> output_endings;  // that -o may have, of what is no Kind; none: any
+  // Where the output goes without -o, after the options are parsed: "" for nowhere. May be empty.
+  std::function<std::string()> default_output;
   std::optional<Batch> batch;
+  // In a list of inputs, and without a Batch, a folder stands for all its files with one of these
+  // endings, sub-folders included. None: it is a file that cannot be read.
+  std::vector<std::string> folder_endings;
 
   // Adds the tool's own options and positionals.
   std::function<void(CommandOptions&)> declare;

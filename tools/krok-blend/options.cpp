@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "tools/krok-blend/run.h"
 #include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/shared_options.h"
 

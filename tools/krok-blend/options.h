@@ -32,4 +32,6 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::blend

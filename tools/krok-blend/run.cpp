@@ -1,4 +1,4 @@
-#include "tools/krok-blend/run.h"
+#include "tools/krok-blend/options.h"
 
 #include <fmt/format.h>
 
@@ -38,13 +38,21 @@ struct Motion {
 Result<std::vector<Motion>> read_motions(const Options& options, const io::FindRoles& find_roles,
                                          ToolContext& context) {
   std::vector<Motion> motions;
+  const auto shares = static_cast<std::size_t>(
+      std::ranges::count_if(options.inputs, &WeightedInput::is_equal_share));
+  if (shares > 0 && shares < options.inputs.size()) {
+    return Error("usage", "some motions have a weight and some do not",
+                 "give each one, walk.anim:0.5, or none for equal shares");
+  }
   for (const WeightedInput& input : options.inputs) {
     auto clip = io::open_motion(input.path, context);
     if (!clip) return clip.error();
     Motion motion;
     motion.name = name_of_input(input.path);
     motion.clip = std::move(*clip);
-    if (input.weight) {
+    if (input.is_equal_share()) {
+      motion.weight = krok::blend::WeightCurve::constant(1.0 / static_cast<double>(shares));
+    } else if (input.weight) {
       motion.weight = krok::blend::WeightCurve::constant(*input.weight);
     } else {
       auto curve = read_weight_curve(input.curve, context);

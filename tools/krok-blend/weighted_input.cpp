@@ -17,10 +17,12 @@ Result<WeightedInput> parse_weighted_input(const std::string& word) {
                  "give each motion a weight: walk.anim:0.5 or "
                  "walk.anim:@weights.csv");
   };
-  if (colon == std::string::npos || colon == 0) {
-    return wrong(fmt::format("'{}' has no weight", word));
-  }
   WeightedInput input;
+  if (colon == std::string::npos) {
+    input.path = word;
+    return input;
+  }
+  if (colon == 0) return wrong(fmt::format("'{}' names no motion", word));
   input.path = word.substr(0, colon);
   const std::string weight = word.substr(colon + 1);
   if (weight.size() > 1 && weight[0] == '@') {

@@ -9,14 +9,15 @@
 
 namespace krok::cli::blend {
 
-// "walks/slow.anim:0.3" or "slow.anim:@weights.csv".
+// "walks/slow.anim:0.3", "slow.anim:@weights.csv", or "slow.anim" for an equal share.
 struct WeightedInput {
   std::string path;
   std::optional<double> weight;
-  std::string curve;  // path of a weight curve; empty if the weight is a number
+  bool is_equal_share() const { return !weight && curve.empty(); }
+  std::string curve;  // path of a weight curve; empty if the weight is a number or an equal share
 };
 
-// Code: usage for a word without a weight, or with an invalid one.
+// Code: usage for an invalid weight.
 Result<WeightedInput> parse_weighted_input(const std::string& word);
 
 // Reads a table with the columns "generic", rising, and "weight". Codes, with line and column:

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "core/text.h"
-#include "tools/krok-body/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::body {

@@ -24,4 +24,7 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads a skeleton, generates the body and writes it.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::body

@@ -1,4 +1,4 @@
-#include "tools/krok-body/run.h"
+#include "tools/krok-body/options.h"
 
 #include <fmt/format.h>
 

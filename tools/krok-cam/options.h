@@ -70,4 +70,8 @@ std::string ending(const Options& options);
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Makes or reads the camera and writes it. Codes cam-input, cam-format, cam-joint, and those of the
+// functions it calls.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::cam

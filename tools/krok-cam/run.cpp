@@ -1,4 +1,4 @@
-#include "tools/krok-cam/run.h"
+#include "tools/krok-cam/options.h"
 
 #include <fmt/format.h>
 

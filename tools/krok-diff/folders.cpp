@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <optional>
@@ -196,7 +197,10 @@ class Comparison {
     context.progress = &no_progress;
     context.one_of_many = &one_of_many;
     context.destinations = context_.destinations;
+    const auto begin = std::chrono::steady_clock::now();
     auto outcome = outcome_of(one, context);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    compared.result.seconds = taken.count();
     if (!outcome) {
       Error error = outcome.error();
       if (error.where.file.empty()) error.where.file = one.second;
@@ -208,7 +212,7 @@ class Comparison {
     } else {
       compared.result.status = FileStatus::differs;
       compared.result.what = worst_of(*outcome);
-      if (!options_.summary.empty()) {
+      if (!options_.summaries.empty()) {
         compared.result.detail = detail_of(*outcome, options_.tolerance);
       }
       if (!context_.report_path.empty()) {

@@ -51,9 +51,10 @@ FileDetail detail_of(Outcome outcome, const compare::Tolerance& tolerance);
 struct FileResult {
   std::string path;  // relative to both folders; for two files, the second's name
   FileStatus status = FileStatus::not_compared;
-  std::string what;   // the largest difference, or why the file cannot be read; a message
-  Json outcome;       // metrics of files that differ, if a report is requested
-  FileDetail detail;  // of files that differ, if a summary is requested
+  std::string what;    // the largest difference, or why the file cannot be read; a message
+  Json outcome;        // metrics of files that differ, if a report is requested
+  FileDetail detail;   // of files that differ, if a summary is requested
+  double seconds = 0;  // that the comparison took
 };
 
 struct FolderOutcome {

@@ -1,9 +1,9 @@
 #include "tools/krok-diff/options.h"
 
+#include <algorithm>
 #include <memory>
 
 #include "core/file.h"
-#include "tools/krok-diff/run.h"
 #include "tools/krok-diff/tolerance_options.h"
 
 namespace krok::cli::diff {
@@ -34,17 +34,24 @@ void declare(CommandOptions& command, Options& o) {
   command.add("--heatmap OUT.glb", o.heatmap, output({".glb", ".gltf"}),
               "A's mesh in the pose of the max difference, with each vertex coloured by its max "
               "distance over all times; for glTF and models");
-  command.add("--summary OUT.html", o.summary, output({".html", ".htm", ".md", ".xml"}),
-              "A page of the files that are not the same, the worst first, with pictures of both "
-              "and of their difference; Markdown without pictures if called .md; for CI servers a "
-              "test case for each file (JUnit) if called .xml");
+  command
+      .add("--summary OUT.html", o.summaries, output({".html", ".htm", ".md", ".xml"}),
+           "A page of the files that are not the same, the worst first, with pictures of both and "
+           "of their difference; Markdown without pictures if called .md or without an ending, as "
+           "$GITHUB_STEP_SUMMARY is; for CI servers a test case for each file (JUnit) if called "
+           ".xml. May be repeated")
+      .one_each_time();
   declare_folder_options(command, o.folders);
 }
 
 }  // namespace
 
+bool is_page(const std::string& summary) {
+  return summary == "-" || extension(summary) == ".html" || extension(summary) == ".htm";
+}
+
 bool Options::has_page() const {
-  return !summary.empty() && extension(summary) != ".md" && extension(summary) != ".xml";
+  return std::ranges::any_of(summaries, is_page);
 }
 
 ToolSpec make_spec() {

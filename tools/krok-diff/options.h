@@ -11,6 +11,9 @@
 
 namespace krok::cli::diff {
 
+// Whether a summary of that name is HTML.
+bool is_page(const std::string& summary);
+
 struct Options {
   std::string first, second;  // paths
   compare::Matching matching = compare::Matching::automatic;
@@ -19,16 +22,19 @@ struct Options {
   std::vector<double>
       joints;  // those of joints: metres and maybe radians; into `tolerance` by run()
   SheetOptions sheet;
-  std::string plot;     // path; empty for none
-  std::string heatmap;  // path; empty for none
-  std::string summary;  // path of a page, .html or .md; empty for none
+  std::string plot;                    // path; empty for none
+  std::string heatmap;                 // path; empty for none
+  std::vector<std::string> summaries;  // paths of pages: .html, .xml, else Markdown
   FolderOptions folders;
 
-  // Whether the summary shows pictures and charts.
+  // Whether a summary shows pictures and charts.
   bool has_page() const;
 };
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Compares two files or two folders, prints and reports the differences.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::diff

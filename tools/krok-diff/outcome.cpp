@@ -1,6 +1,7 @@
 #include "tools/krok-diff/outcome.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,17 +16,16 @@ namespace {
 constexpr int kDigits = 3;
 constexpr const char* kHandedness = "handedness of tangents";
 
+// One unit for each quantity, so that values in a table compare.
 std::string in_unit(double value, Unit unit) {
   if (!std::isfinite(value)) return "not a number";
   switch (unit) {
     case Unit::length:
-      return value < 1.0 ? readable(value * 1000, kDigits) + " mm"
-                         : readable(value, kDigits) + " m";
+      return readable(value * 1000, kDigits) + " mm";
     case Unit::angle:
       return readable(value / kRadiansPerDegree, kDigits) + " deg";
     case Unit::time:
-      return value < 1.0 ? readable(value * 1000, kDigits) + " ms"
-                         : readable(value, kDigits) + " s";
+      return readable(value * 1000, kDigits) + " ms";
     case Unit::side:
       return value > 0 ? "flipped" : "equal";
     case Unit::ratio:
@@ -174,6 +174,27 @@ double excess_of(const compare::Measure& measure) {
   return measure.within() ? 0.0 : measure.largest / std::max(measure.tolerance, 1e-12);
 }
 
+// What is farthest beyond its tolerance; null if nothing measured is.
+const Row* worst_row(const Outcome& outcome) {
+  const Row* worst = nullptr;
+  for (const Row& row : outcome.rows) {
+    if (row.measure.within()) continue;
+    if (worst == nullptr || excess_of(row.measure) > excess_of(worst->measure)) worst = &row;
+  }
+  return worst;
+}
+
+// "positions 28.6 mm (286 x the tolerance) at vertex 12 of body, frame 32 (1.067 s)"
+std::string to_text(const Row& row, const Outcome& outcome) {
+  const compare::Measure& measure = row.measure;
+  const std::string excess =
+      measure.tolerance > 0
+          ? fmt::format(" ({} x the tolerance)", readable(excess_of(measure), kDigits))
+          : "";
+  return fmt::format("{} {}{} at {}", row.what, in_unit(measure.largest, row.unit), excess,
+                     to_text(measure.where, outcome.names));
+}
+
 // The largest of an item.
 double excess_of(const Item& item) {
   double most = 0;
@@ -275,6 +296,8 @@ void Outcome::add_joints(const std::vector<compare::JointDifference>& found) {
 std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance) {
   std::string text;
   for (const std::string& line : outcome.summary) text += (text.empty() ? "" : "  ") + line + "\n";
+  const Row* const worst = worst_row(outcome);
+  if (worst != nullptr) text += "  differs: " + to_text(*worst, outcome) + "\n";
   for (const std::string& line : outcome.structure) text += "  differs: " + line + "\n";
   for (const std::string& line : outcome.notes) text += "  note: " + line + "\n";
   bool measured_over = false;
@@ -295,20 +318,20 @@ std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance)
 }
 
 double excess_of(const Outcome& outcome) {
-  if (!outcome.structure.empty()) return std::numeric_limits<double>::infinity();
-  double most = 0;
-  for (const Row& row : outcome.rows) most = std::max(most, excess_of(row.measure));
-  return most;
+  const Row* const worst = worst_row(outcome);
+  if (worst != nullptr) return excess_of(worst->measure);
+  return outcome.structure.empty() ? 0 : std::numeric_limits<double>::infinity();
 }
 
 std::string worst_of(const Outcome& outcome) {
-  if (!outcome.structure.empty()) return outcome.structure.front();
-  const auto worst = std::max_element(
-      outcome.rows.begin(), outcome.rows.end(),
-      [](const Row& a, const Row& b) { return excess_of(a.measure) < excess_of(b.measure); });
-  if (worst == outcome.rows.end()) return {};
-  return fmt::format("{} {} at {}", worst->what, in_unit(worst->measure.largest, worst->unit),
-                     to_text(worst->measure.where, outcome.names));
+  const Row* const worst = worst_row(outcome);
+  std::vector<std::string> parts;
+  if (worst != nullptr) parts.push_back(to_text(*worst, outcome));
+  if (!outcome.structure.empty()) parts.push_back(outcome.structure.front());
+  if (outcome.structure.size() > 1) {
+    parts.push_back(fmt::format("{} more", outcome.structure.size() - 1));
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 Json to_json(const compare::Tolerance& tolerance) {

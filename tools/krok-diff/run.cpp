@@ -1,4 +1,6 @@
-#include "tools/krok-diff/run.h"
+#include "tools/krok-diff/options.h"
+
+#include <chrono>
 
 #include "core/file.h"
 #include "tools/krok-diff/compare_files.h"
@@ -13,15 +15,18 @@ Result<int> run(const Options& given, ToolContext& context) {
   const auto folders = are_folders(options);
   if (!folders) return folders.error();
   if (*folders) return run_folders(options, context);
+  const auto begin = std::chrono::steady_clock::now();
   const auto outcome = compare_files(options, context);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   if (!outcome) return outcome.error();
   context.report.result = to_json(*outcome, options.tolerance);
   if (!context.quiet) context.print(to_text(*outcome, options.tolerance));
-  if (!options.summary.empty()) {
+  if (!options.summaries.empty()) {
     FileResult file;
     file.path = base_name(options.second);
     file.status = outcome->same ? FileStatus::same : FileStatus::differs;
     file.what = worst_of(*outcome);
+    file.seconds = taken.count();
     file.detail = detail_of(*outcome, options.tolerance);
     FolderOutcome pair;
     pair.files.push_back(std::move(file));

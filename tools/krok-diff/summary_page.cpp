@@ -39,12 +39,6 @@ struct PageRow {
   bool has_detail() const { return file != nullptr && file->status == FileStatus::differs; }
 };
 
-// "278", or nothing where no number says how bad it is.
-std::string excess_text(const PageRow& row) {
-  if (!row.has_detail() || !std::isfinite(row.file->detail.excess)) return {};
-  return readable(row.file->detail.excess, 3);
-}
-
 // What needs attention first: files that cannot be read, then by how bad the difference is.
 std::vector<PageRow> page_rows(const FolderOutcome& outcome, const FolderUpdate& update,
                                const Options& options) {
@@ -77,10 +71,10 @@ std::string markdown(const FolderOutcome& outcome, const std::vector<PageRow>& r
   for (const auto& [words, count] : counts_of(outcome, options)) {
     text += fmt::format("| {} | {} |\n", escaped(words), count);
   }
-  if (!rows.empty()) text += "\n| file | | what | × tolerance |\n|---|---|---|--:|\n";
+  if (!rows.empty()) text += "\n| file | | what |\n|---|---|---|\n";
   for (const PageRow& row : rows) {
-    text += fmt::format("| <code>{}</code> | {} | {} | {} |\n", escaped(row.path),
-                        escaped(row.status), escaped(row.what), excess_text(row));
+    text += fmt::format("| <code>{}</code> | {} | {} |\n", escaped(row.path), escaped(row.status),
+                        escaped(row.what));
   }
   return text;
 }
@@ -186,11 +180,11 @@ std::string figure(const std::string& words, const std::string& png, const Pictu
 }
 
 std::string html_of_pictures(const PageRow& row, const std::string& first,
-                             const std::string& second, const Options& options) {
+                             const std::string& second, const std::string& page) {
   const Pictures& pictures = *row.file->detail.pictures;
   const auto link = [&](const char* words, const std::string& path) {
-    return fmt::format("{}: <a href=\"{}\"><code>{}</code></a>", words,
-                       link_to(path, options.summary), escaped(path));
+    return fmt::format("{}: <a href=\"{}\"><code>{}</code></a>", words, link_to(path, page),
+                       escaped(path));
   };
   const std::string difference =
       pictures.key
@@ -208,19 +202,17 @@ std::string html_of_pictures(const PageRow& row, const std::string& first,
 }
 
 std::string html_of_detail(const PageRow& row, std::size_t number, const Options& options,
-                           bool folders) {
+                           bool folders, const std::string& page) {
   const FileDetail& detail = row.file->detail;
   const std::string first = folders ? below(options.first, row.path) : options.first;
   const std::string second = folders ? below(options.second, row.path) : options.second;
-  const std::string excess = excess_text(row);
-  std::string text = fmt::format("<article id=\"file-{}\"><h2><code>{}</code></h2>\n<p>{}{}</p>\n",
-                                 number, escaped(row.path), escaped(row.what),
-                                 excess.empty() ? "" : fmt::format(", {} × the tolerance", excess));
+  std::string text = fmt::format("<article id=\"file-{}\"><h2><code>{}</code></h2>\n<p>{}</p>\n",
+                                 number, escaped(row.path), escaped(row.what));
   if (detail.pictures) {
-    text += html_of_pictures(row, first, second, options);
+    text += html_of_pictures(row, first, second, page);
   } else {
     text += fmt::format("<p><a href=\"{}\">before</a> <a href=\"{}\">after</a></p>\n",
-                        link_to(first, options.summary), link_to(second, options.summary));
+                        link_to(first, page), link_to(second, page));
   }
   text += "<details><summary>All measures</summary><pre>";
   std::istringstream lines(detail.text);
@@ -243,22 +235,19 @@ std::string html_of_table(const FolderOutcome& outcome, const std::vector<PageRo
   }
   text += "</table>\n";
   if (rows.empty()) return text;
-  text +=
-      "<table>\n<thead><tr><th>File</th><th>Status</th><th>What</th><th class=\"n\">× "
-      "tolerance</th>"
-      "</tr></thead>\n<tbody>\n";
+  text += "<table>\n<thead><tr><th>File</th><th>Status</th><th>What</th></tr></thead>\n<tbody>\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const PageRow& row = rows[i];
     std::string name = fmt::format("<code>{}</code>", escaped(row.path));
     if (row.has_detail()) name = fmt::format("<a href=\"#file-{}\">{}</a>", i + 1, name);
-    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td></tr>\n", name,
-                        escaped(row.status), escaped(row.what), excess_text(row));
+    text += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", name, escaped(row.status),
+                        escaped(row.what));
   }
   return text + "</tbody></table>\n";
 }
 
 std::string html(const FolderOutcome& outcome, const std::vector<PageRow>& rows,
-                 const Options& options) {
+                 const Options& options, const std::string& page) {
   std::error_code unknown;
   const bool folders = fs::is_directory(options.second, unknown);
   const std::string title = escaped(title_of(options));
@@ -273,7 +262,7 @@ std::string html(const FolderOutcome& outcome, const std::vector<PageRow>& rows,
   bool pictures = false;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!rows[i].has_detail()) continue;
-    text += html_of_detail(rows[i], i + 1, options, folders);
+    text += html_of_detail(rows[i], i + 1, options, folders, page);
     pictures = pictures || rows[i].file->detail.pictures.has_value();
   }
   text += "</main>";
@@ -287,7 +276,7 @@ std::string html(const FolderOutcome& outcome, const std::vector<PageRow>& rows,
 }
 
 // A test case for each file, in the form of JUnit that CI servers read (Jenkins, GitLab, GitHub's
-// reporters).
+// reporters). The times that the comparisons took are its only values that differ from run to run.
 std::string junit(const FolderOutcome& outcome, const Options& options) {
   const auto element_of = [](FileStatus status) {
     return status == FileStatus::same           ? ""
@@ -305,7 +294,8 @@ std::string junit(const FolderOutcome& outcome, const Options& options) {
       escaped(title_of(options)), outcome.files.size(), count_of("failure"), count_of("error"),
       count_of("skipped"));
   for (const FileResult& file : outcome.files) {
-    text += fmt::format("<testcase classname=\"krok-diff\" name=\"{}\"", escaped(file.path));
+    text += fmt::format("<testcase classname=\"krok-diff\" name=\"{}\" time=\"{:.3f}\"",
+                        escaped(file.path), file.seconds);
     const std::string_view element = element_of(file.status);
     if (element.empty()) {
       text += "/>\n";
@@ -322,12 +312,16 @@ std::string junit(const FolderOutcome& outcome, const Options& options) {
 
 Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
                      const Options& options, ToolContext& context) {
-  if (options.summary.empty()) return {};
   const auto rows = page_rows(outcome, update, options);
-  const std::string text = extension(options.summary) == ".xml" ? junit(outcome, options)
-                           : options.has_page()                 ? html(outcome, rows, options)
-                                                                : markdown(outcome, rows, options);
-  return write_output(context, options.summary, [&](OutputFile& file) { return file.write(text); });
+  for (const std::string& path : options.summaries) {
+    const std::string text = extension(path) == ".xml" ? junit(outcome, options)
+                             : is_page(path)           ? html(outcome, rows, options, path)
+                                                       : markdown(outcome, rows, options);
+    const Status status =
+        write_output(context, path, [&](OutputFile& file) { return file.write(text); });
+    if (!status) return status;
+  }
+  return {};
 }
 
 }  // namespace krok::cli::diff

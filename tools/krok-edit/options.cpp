@@ -5,7 +5,6 @@
 #include "core/numbers.h"
 #include "formats/io/formats.h"
 #include "tools/krok-edit/event_time.h"
-#include "tools/krok-edit/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::edit {

@@ -82,4 +82,7 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads the motion, applies the requested steps in the order of the help, and writes it.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::edit

@@ -1,4 +1,4 @@
-#include "tools/krok-edit/run.h"
+#include "tools/krok-edit/options.h"
 
 #include <fmt/format.h>
 

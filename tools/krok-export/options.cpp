@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "formats/io/formats.h"
-#include "tools/krok-export/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::exporting {

@@ -46,4 +46,7 @@ Status check_for(ExportFormat format, const Options& options);
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads a motion and writes it in the given format, or in that of the output's extension.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::exporting

@@ -1,4 +1,4 @@
-#include "tools/krok-export/run.h"
+#include "tools/krok-export/options.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +31,6 @@
 #include "skin/bone_mesh.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-export/options.h"
 #include "tools/shared/keys_choice.h"
 
 namespace krok::cli::exporting {

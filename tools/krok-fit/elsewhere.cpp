@@ -1,4 +1,4 @@
-#include "tools/krok-fit/run.h"
+#include "tools/krok-fit/options.h"
 
 namespace krok::cli::fit {
 

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "tools/cli/option_kinds.h"
-#include "tools/krok-fit/run.h"
 
 namespace krok::cli::fit {
 

@@ -34,4 +34,7 @@ inline constexpr int kMaxRefined = 4000;
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads, fits, writes, reports.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::fit

@@ -1,4 +1,4 @@
-#include "tools/krok-fit/run.h"
+#include "tools/krok-fit/options.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -16,7 +16,6 @@
 #include "tools/krok-fit/fit_plots.h"
 #include "tools/krok-fit/fit_report.h"
 #include "tools/krok-fit/library_input.h"
-#include "tools/krok-fit/options.h"
 
 namespace krok::cli::fit {
 

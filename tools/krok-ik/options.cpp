@@ -7,7 +7,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-ik/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::ik {

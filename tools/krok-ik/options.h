@@ -8,6 +8,7 @@
 #include "formats/container/packed_orientation.h"
 #include "ik/goal_motion.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::ik {
 
@@ -30,7 +31,7 @@ struct Options {
   std::string goals;                     // a goal file, or empty
   std::vector<PointGoal> points, looks;  // of --reach and --look-at
   double fade = 0;                       // seconds
-  std::string ground;                    // what heights of goals are over; empty: the origin
+  GroundChoice ground;                   // what heights of goals are over; empty: the origin
   bool plant = false;
   std::string contacts;
   std::string limits;                 // a file, auto, or empty
@@ -49,5 +50,10 @@ struct Options {
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Reads the motion, its goals and limits; writes the motion with the goals brought about. Goals
+// that are missed are warnings (ik-missed). Codes: those of the readers, of formats/goals,
+// formats/limits and lib/ik; ik-joint for a joint of an option that the motion has not.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::ik

@@ -1,4 +1,4 @@
-#include "tools/krok-ik/run.h"
+#include "tools/krok-ik/options.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,6 @@
 #include "formats/goals/goals.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
-#include "formats/io/open_terrain.h"
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
 #include "ik/learn_limits.h"
@@ -290,7 +289,7 @@ Status Run::read_goals() {
 // With --ground heights of goals in the world are over the ground.
 Status Run::raise_goals() {
   if (options_.ground.empty()) return {};
-  const auto ground = io::open_terrain(options_.ground, {}, context_);
+  const auto ground = options_.ground.open(context_);
   if (!ground) return ground.error();
   for (krok::ik::KeyedGoal& goal : goals_) {
     if (goal.relative_to >= 0) continue;

@@ -7,7 +7,6 @@
 #include "formats/io/formats.h"
 #include "positions/position_skeleton.h"
 #include "tools/cli/output_kind.h"
-#include "tools/krok-import/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::import {

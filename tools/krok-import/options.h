@@ -46,4 +46,7 @@ io::CaptureReading read_options(const Options& options);
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads the capture and writes the motion and, if requested, the model; both appear or neither.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::import

@@ -1,4 +1,4 @@
-#include "tools/krok-import/run.h"
+#include "tools/krok-import/options.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,6 @@
 #include "tools/cli/tool.h"
 #include "tools/krok-import/clips.h"
 #include "tools/krok-import/facts.h"
-#include "tools/krok-import/options.h"
 #include "tools/krok-import/scene_importer.h"
 #include "tools/shared/keys_choice.h"
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "tools/krok-info/run.h"
+#include "formats/io/formats.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::info {
@@ -27,6 +27,7 @@ ToolSpec make_spec() {
       "(.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5), "
       "captures (.bvh, .asf, .amc).";
   spec.inputs = "FILE...";
+  spec.folder_endings = io::endings([](const io::Format& format) { return !format.companion; });
   spec.examples = {
       {"krok-info walk.anim", "frames, rate, duration, size, provenance and joint roles"},
       {"krok-info -v capture.bvh", "also each joint with its role, and the reader's notes"},

@@ -15,4 +15,8 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Describes each file on standard output and in the report. Continues after a file that cannot be
+// read; the exit code is then kExitTrouble.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::info

@@ -1,4 +1,4 @@
-#include "tools/krok-info/run.h"
+#include "tools/krok-info/options.h"
 
 #include "formats/io/formats.h"
 #include "formats/io/open_role_map.h"

@@ -6,7 +6,6 @@
 
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-keys/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::keys {
@@ -119,6 +118,7 @@ ToolSpec make_spec() {
       {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"}};
   spec.exit_no = "--find steps was given and no step was found";
   spec.needs_output = false;
+  spec.output_endings = {".json"};
   spec.batch = {io::motion_endings(), always(".keys.json")};
   return spec;
 }

@@ -1,5 +1,4 @@
-#include "tools/krok-keys/run.h"
-#include "tools/cli/usage.h"
+#include "tools/krok-keys/options.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "tools/krok-mix/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::mix {

@@ -1,4 +1,4 @@
-#include "tools/krok-mix/run.h"
+#include "tools/krok-mix/options.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +19,6 @@
 #include "formats/timeline/timeline_file.h"
 #include "timeline/mix.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-mix/options.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/plant_result.h"
 

@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "core/numbers.h"
-#include "tools/krok-morph/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::morph {

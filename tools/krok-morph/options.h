@@ -48,4 +48,7 @@ struct Options {
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Runs the chosen action; see actions.h.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::morph

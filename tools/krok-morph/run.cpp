@@ -1,4 +1,4 @@
-#include "tools/krok-morph/run.h"
+#include "tools/krok-morph/options.h"
 
 #include "tools/krok-morph/actions.h"
 

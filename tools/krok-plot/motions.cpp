@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
-#include "formats/io/open_terrain.h"
 #include "terrain/level.h"
 #include "tools/cli/file_name.h"
 #include "tools/shared/keys_sidecar.h"
@@ -63,8 +62,7 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
 Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Motions& motions,
                                         ToolContext& context) {
   draw::ChartedGround charted;
-  auto opened =
-      options.ground.empty() ? terrain::level() : io::open_terrain(options.ground, {}, context);
+  auto opened = options.ground.empty() ? terrain::level() : options.ground.open(context);
   if (!opened) return opened.error();
   const std::shared_ptr<const Terrain> ground = *std::move(opened);
   if (!options.ground.empty()) {

@@ -11,7 +11,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-plot/run.h"
+#include "tools/cli/file_name.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::plot {
@@ -224,6 +224,11 @@ ToolSpec make_spec() {
        "an animated character with the colours and textures of its materials; without "
        "a motion, in its reference pose"}};
   spec.needs_output = false;  // --sheet and --strip have their own output files
+  spec.folder_endings = io::motion_endings();
+  spec.output_endings = {".svg"};
+  spec.default_output = [options] {
+    return options->sheet.wanted() ? "" : beside(options->inputs.front(), ".svg");
+  };
   spec.batch = {io::motion_endings(), always(".svg")};
   return spec;
 }

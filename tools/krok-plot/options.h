@@ -14,6 +14,7 @@
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-plot/sheet.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::plot {
 
@@ -27,8 +28,8 @@ struct MotionOptions {
   std::optional<ClipTime> from, to;
   std::string keys = "auto";  // "auto", "none" or a file
   std::string map;
-  std::string ground;  // what io::open_terrain() takes; empty: level at 0
-  std::string prints;  // a file of footprints, or empty
+  GroundChoice ground;  // empty: level at 0
+  std::string prints;   // a file of footprints, or empty
 
   // In order, each once; empty for the default charts.
   std::vector<ChartKind> charts() const;
@@ -69,5 +70,8 @@ Status check_inputs(const Options& options);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Reads motions or tables and writes one chart of them.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::plot

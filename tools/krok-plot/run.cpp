@@ -1,4 +1,4 @@
-#include "tools/krok-plot/run.h"
+#include "tools/krok-plot/options.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/registry/registry.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-plot/charts.h"
@@ -22,15 +21,6 @@ namespace {
 // Sizes at which text is legible on A4 paper with two panels per row.
 constexpr double kPanelWidth = 340, kPanelHeight = 170;
 constexpr double kSingleWidth = 640, kSingleHeight = 260;
-
-Status check_output(const std::string& path) {
-  const std::string ending = extension(path);
-  const bool other = registry::kind_of_name(path) != registry::Kind::unknown || ending == ".png" ||
-                     ending == ".pdf" || ending == ".csv" || ending == ".html";
-  if (!other) return {};
-  return Error("usage", fmt::format("-o {}: the output is SVG, not {}", path, ending),
-               "use the extension .svg");
-}
 
 void lay_out(const Options& options, draw::Chart& chart) {
   const bool single = chart.panels.size() == 1;
@@ -102,7 +92,6 @@ Result<draw::Chart> make_chart(const Options& options, ToolContext& context) {
 
 Status add_charts(const Options& options, ToolContext& context, OutputSet& outputs,
                   std::vector<std::string>& done) {
-  if (Status status = check_output(context.output); !status) return status;
   auto chart = make_chart(options, context);
   if (!chart) return chart.error();
   chart->title = options.title.empty() ? usual_title(options.inputs) : options.title;

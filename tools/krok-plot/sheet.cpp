@@ -221,7 +221,7 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 
 }  // namespace
 
-void declare_sheet(CommandOptions& command, SheetOptions& options, std::string& ground) {
+void declare_sheet(CommandOptions& command, SheetOptions& options, GroundChoice& ground) {
   command.add("--sheet OUT.png", options.sheet, output({".png"}),
               "Contact sheet as PNG: characters at several times, in rows by file and side; "
               "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out where "

@@ -7,6 +7,7 @@
 #include "tools/cli/tool.h"
 #include "tools/shared/image.h"
 #include "tools/shared/moving_actor.h"
+#include "tools/shared/ground_choice.h"
 
 // Rendered images: contact sheets and motion strips.
 
@@ -22,7 +23,7 @@ struct SheetOptions {
   std::string sheet, strip;  // paths; empty for none
   ImageOptions image;
   std::optional<ClipTime> from, to;
-  std::string ground;  // what io::open_terrain() takes; empty: level at 0
+  GroundChoice ground;  // empty: level at 0
   std::string prints;  // a file of footprints on it, or empty
   bool whole_ground = false;
   Front front = Front::actor;
@@ -34,7 +35,7 @@ struct SheetOptions {
 };
 
 // Declares --sheet, --strip, --ground and their options, except --from and --to.
-void declare_sheet(CommandOptions& command, SheetOptions& options, std::string& ground);
+void declare_sheet(CommandOptions& command, SheetOptions& options, GroundChoice& ground);
 
 // Renders the characters of all inputs, adds the requested images to the outputs and the report,
 // and a line for each to `done`.

@@ -9,6 +9,7 @@
 #include "math/types.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/follow.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::ragdoll {
 
@@ -30,7 +31,7 @@ struct Options {
   std::vector<PushAt> pushes;
   std::string push_table;
   std::vector<std::string> rises;
-  std::string ground;
+  GroundChoice ground;
   std::string limits = "auto";
   FollowOptions follow;
   double friction = 0, restitution = 0;
@@ -40,5 +41,11 @@ struct Options {
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Reads the motion, model, limits and ground; writes the motion with its fall. A character that
+// does not come to rest is a warning (ragdoll-moving). Codes: those of the readers, formats/limits
+// and lib/ragdoll; ragdoll-joint for a joint of an option that the motion has not, ragdoll-time for
+// times outside it.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::ragdoll

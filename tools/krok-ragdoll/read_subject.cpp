@@ -8,7 +8,6 @@
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
-#include "formats/io/open_terrain.h"
 #include "formats/limits/limits_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/anatomical_limits.h"
@@ -141,7 +140,7 @@ Status SubjectReader::read_rises() {
     subject_.rise_names.push_back(name_of_input(path));
   }
   if (subject_.rises.empty()) return {};
-  auto terrain = io::open_terrain(options_.ground, {}, context_);
+  auto terrain = options_.ground.open(context_);
   if (!terrain) return terrain.error();
   subject_.terrain = std::move(*terrain);
   return {};

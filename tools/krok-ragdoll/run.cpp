@@ -1,4 +1,4 @@
-#include "tools/krok-ragdoll/run.h"
+#include "tools/krok-ragdoll/options.h"
 
 #include <fmt/format.h>
 
@@ -56,12 +56,12 @@ Result<std::vector<std::array<Vec3, 3>>> triangles_of(const Terrain& terrain, co
 // The ground that --ground names, as io::open_terrain() opens it. What is not level becomes
 // triangles within 10 m of `centre`, to 1 mm (terrain::surface_of()). Codes: those of
 // open_terrain(); ragdoll-ground if there is none within that.
-Result<krok::ragdoll::Surroundings> open_surroundings(const std::string& ground, const Vec3& centre,
-                                                      ToolContext& context) {
-  const auto terrain = io::open_terrain(ground, {}, context);
+Result<krok::ragdoll::Surroundings> open_surroundings(const GroundChoice& ground,
+                                                      const Vec3& centre, ToolContext& context) {
+  const auto terrain = ground.open(context);
   if (!terrain) return terrain.error();
   krok::ragdoll::Surroundings surroundings;
-  if (ground == "level" || ground.starts_with("level:")) {
+  if (ground.text == "level" || ground.text.starts_with("level:")) {
     surroundings.level = true;
     const auto point = (*terrain)->at(centre.x(), centre.z());
     surroundings.height = point ? point->height : 0;
@@ -71,7 +71,7 @@ Result<krok::ragdoll::Surroundings> open_surroundings(const std::string& ground,
   if (!triangles) {
     return Error("ragdoll-ground", "there is no ground within 10 m of where the fall begins",
                  "krok-edit moves motions")
-        .in_file(ground);
+        .in_file(ground.text);
   }
   surroundings.triangles = *std::move(triangles);
   return surroundings;

@@ -9,7 +9,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/krok-render/run.h"
+#include "tools/cli/file_name.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::film {
@@ -110,12 +110,36 @@ Result<Format> format_of(const Options& options, const std::string& output) {
                "use .mp4, .gif or .webp, or 'frame_%04d.png' for a file per frame");
 }
 
+namespace {
+
+// Of an output that is not named.
+const char* ending_of(Format format) {
+  switch (format) {
+    case Format::gif:
+      return ".gif";
+    case Format::webp:
+      return ".webp";
+    case Format::png:
+      return "_%04d.png";
+    case Format::mp4:
+    case Format::from_extension:
+      break;
+  }
+  return ".mp4";
+}
+
+}  // namespace
+
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-render", options, declare, check, run);
   spec.summary = "Renders films of motions and characters: mp4, gif, webp, PNG frames";
   spec.details = "ffmpeg makes mp4, gif and webp.";
   spec.inputs = "IN...";
+  spec.folder_endings = io::motion_endings();
+  spec.default_output = [options] {
+    return beside(options->inputs.front(), ending_of(options->format));
+  };
   spec.examples = {
       {"krok-render walk.anim -o walk.mp4", "a generated body, followed by the camera"},
       {"krok-render hero.character walk.anim --view front,left -o walk.gif",
@@ -127,18 +151,7 @@ ToolSpec make_spec() {
       {"krok-render captures --out-dir films --format webp --keep-going",
        "a film of each capture in a folder"}};
   spec.batch = {io::motion_endings(), [options]() -> Result<std::string> {
-                  switch (options->format) {
-                    case Format::gif:
-                      return std::string(".gif");
-                    case Format::webp:
-                      return std::string(".webp");
-                    case Format::png:
-                      return std::string("_%04d.png");
-                    case Format::mp4:
-                    case Format::from_extension:
-                      break;
-                  }
-                  return std::string(".mp4");
+                  return std::string(ending_of(options->format));
                 }};
   return spec;
 }

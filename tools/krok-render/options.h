@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 #include "tools/shared/image.h"
 #include "tools/shared/moving_actor.h"
 
@@ -25,7 +26,8 @@ struct Options {
   ImageOptions image;  // its sides and elevation
   bool still = false;
   std::string camera;
-  std::string ground, prints;
+  GroundChoice ground;
+  std::string prints;
   ActorOptions actors;
 };
 
@@ -34,5 +36,8 @@ Result<Format> format_of(const Options& options, const std::string& output);
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Renders and writes the film. Returns an exit code.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::film

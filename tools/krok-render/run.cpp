@@ -1,4 +1,4 @@
-#include "tools/krok-render/run.h"
+#include "tools/krok-render/options.h"
 
 #include <fmt/format.h>
 

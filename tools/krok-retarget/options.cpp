@@ -7,7 +7,6 @@
 #include "core/text.h"
 #include "formats/io/formats.h"
 #include "terrain/spec.h"
-#include "tools/krok-retarget/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::retarget {

@@ -7,6 +7,7 @@
 #include "formats/container/packed_orientation.h"
 #include "retarget/retarget.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::retarget {
 
@@ -28,12 +29,16 @@ struct Options {
   std::vector<std::string> takes;  // of the input's actor: files, folders, patterns
   std::string alignment;           // of the two skeletons; empty: none
   std::string save_alignment;      // empty: none
-  std::string ground;              // what io::open_terrain() takes; empty: none
+  GroundChoice ground;             // empty: none
   std::string contacts = "auto";   // of the input's feet, for `ground`
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Reads the motion and the target, and writes the motion on the target's skeleton. Codes: those of
+// the readers, of formats/role_map and of lib/retarget.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::retarget

@@ -1,5 +1,4 @@
-#include "tools/krok-retarget/run.h"
-#include "tools/cli/usage.h"
+#include "tools/krok-retarget/options.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +10,6 @@
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
-#include "formats/io/open_terrain.h"
 #include "formats/keys/keys.h"
 #include "formats/registry/registry.h"
 #include "gait/shown_prints.h"
@@ -149,7 +147,7 @@ Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
                                      const RoleMap& source_roles, const RoleMap& target_roles,
                                      const krok::retarget::Retargeted& retargeted,
                                      ToolContext& context) {
-  const auto ground = io::open_terrain(options.ground, {}, context);
+  const auto ground = options.ground.open(context);
   if (!ground) return ground.error();
   const auto contacts = read_planting_contacts(options.contacts, options.input, source, context);
   if (!contacts) return contacts.error();

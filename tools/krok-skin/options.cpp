@@ -7,7 +7,7 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/krok-skin/run.h"
+#include "formats/io/formats.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::skin {
@@ -186,6 +186,7 @@ ToolSpec make_spec() {
   spec.summary = "Skins a mesh with a motion; writes glTF, a point cache or OBJ files";
   spec.exit_no = "the file is written, but its error is larger than --reduce allows";
   spec.inputs = "IN.model IN.anim...";
+  spec.folder_endings = io::motion_endings();
   spec.examples = {
       {"krok-skin body.model walk.anim -o walk.glb", "a rig for a game engine or Blender"},
       {"krok-skin hero.character walk.anim run.anim idle.anim -o hero.glb",

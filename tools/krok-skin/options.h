@@ -56,4 +56,7 @@ Result<double> pose_time(const Options& options, const Clip& clip);
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
 
+// Reads the subject and its motion, skins it, and writes the output.
+Result<int> run(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::skin

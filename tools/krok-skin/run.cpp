@@ -1,4 +1,4 @@
-#include "tools/krok-skin/run.h"
+#include "tools/krok-skin/options.h"
 
 #include <fmt/format.h>
 

@@ -54,6 +54,9 @@ std::vector<NamedParameter> parameters_of(const steps::StepsFile& file) {
     parameter.unit = unit_of(library.parameters[d]);
     parameter.least = bounds.lower[d];
     parameter.most = bounds.upper[d];
+    for (const parametric::Example& example : library.examples) {
+      parameter.mean += example.parameters[d] / static_cast<double>(library.examples.size());
+    }
     parameters.push_back(std::move(parameter));
   }
   return parameters;
@@ -72,7 +75,8 @@ std::string in_words(const std::vector<NamedParameter>& parameters) {
 }
 
 Result<std::vector<double>> parse_settings(const std::vector<std::string>& words,
-                                           const std::vector<NamedParameter>& parameters) {
+                                           const std::vector<NamedParameter>& parameters,
+                                           ToolContext& context) {
   std::vector<std::optional<double>> values(parameters.size());
   for (const std::string& word : words) {
     const std::size_t sign = word.rfind('=');
@@ -96,12 +100,13 @@ Result<std::vector<double>> parse_settings(const std::vector<std::string>& words
   }
   std::vector<double> point;
   for (std::size_t d = 0; d < values.size(); ++d) {
-    if (!values[d]) {
-      return misfit(
-          fmt::format("no value for {}: --set {}=", parameters[d].name, parameters[d].name),
-          parameters);
-    }
-    point.push_back(*values[d]);
+    point.push_back(values[d].value_or(parameters[d].mean));
+    if (values[d]) continue;
+    const bool angle = parameters[d].unit == "rad";
+    context.log(fmt::format("{}: {} {}, the mean of the examples; --set {}= sets it",
+                            parameters[d].name,
+                            readable(point[d] / (angle ? kRadiansPerDegree : 1), 3),
+                            angle ? "degrees" : parameters[d].unit, parameters[d].name));
   }
   return point;
 }

@@ -16,7 +16,7 @@ struct NamedParameter {
   std::string name;            // "length"
   std::string measures;        // "step.length"
   std::string_view unit;       // "m", "rad" or "s"
-  double least = 0, most = 0;  // over the examples
+  double least = 0, most = 0, mean = 0;  // over the examples
 };
 
 std::vector<NamedParameter> parameters_of(const steps::StepsFile& file);
@@ -24,10 +24,12 @@ std::vector<NamedParameter> parameters_of(const steps::StepsFile& file);
 // For messages: "length 0.45 to 0.8 m, turn -10 to 30 degrees".
 std::string in_words(const std::vector<NamedParameter>& parameters);
 
-// Parses NAME=VALUE words, one per parameter; quantities with or without a unit. Code: usage,
-// listing the library's parameters, if a name is unknown, missing or repeated.
+// Parses NAME=VALUE words; quantities with or without a unit. Parameters that are not among them
+// have the examples' mean, which is printed. Code: usage, listing the library's parameters, if a
+// name is unknown or repeated.
 Result<std::vector<double>> parse_settings(const std::vector<std::string>& words,
-                                           const std::vector<NamedParameter>& parameters);
+                                           const std::vector<NamedParameter>& parameters,
+                                           ToolContext& context);
 
 // Reads a table with a column per parameter; headers may name a unit, as in "length [cm]". Codes:
 // those of csv::Table, with line and column; synth-table for a missing value or an unsuitable unit.

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "tools/krok-synth/asked_parameters.h"
-#include "tools/krok-synth/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::synth {
@@ -41,17 +40,11 @@ void declare(CommandOptions& command, Options& options) {
   add_orientation_option(command, options.orientation);
 }
 
-Status check(const Options& options) {
-  if (!options.set.empty() || !options.table.empty()) return {};
-  return usage("no parameters given",
-               "give each parameter with --set NAME=VALUE, or a table with --table IN.csv");
-}
-
 }  // namespace
 
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
-  ToolSpec spec = spec_of("krok-synth", options, declare, check, run);
+  ToolSpec spec = spec_of<Options>("krok-synth", options, declare, nullptr, run);
   spec.exit_no = "with --strict: a motion differs from what was asked by more than the tolerance";
   spec.summary = "Makes motions for given parameters from a step library";
   spec.inputs = "IN.steps";

@@ -1,4 +1,4 @@
-#include "tools/krok-synth/run.h"
+#include "tools/krok-synth/options.h"
 
 #include <fmt/format.h>
 
@@ -256,7 +256,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto parameters = parameters_of(*steps);
   std::vector<Motion> motions;
   if (options.table.empty()) {
-    auto point = parse_settings(options.set, parameters);
+    auto point = parse_settings(options.set, parameters, context);
     if (!point) return point.error();
     motions.push_back({.path = context.output, .asked = *std::move(point)});
   } else {

@@ -10,16 +10,13 @@
 
 #include "body/body.h"
 #include "character/sampling.h"
-#include "core/glob.h"
 #include "core/text.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/pack_glb.h"
-#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/registry/registry.h"
 #include "nodes/animation_choice.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/folder_inputs.h"
 #include "tools/krok-view/goals.h"
 #include "tools/krok-view/ragdoll_bodies.h"
 #include "tools/shared/keys_sidecar.h"
@@ -38,20 +35,6 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-// The motions and characters in a folder and its sub-folders, by name.
-Result<std::vector<std::string>> files_in(const std::string& folder, ToolContext& context) {
-  auto found = find_files_below(folder);
-  if (!found) return found.error();
-  const auto wanted = io::endings([](const io::Format& format) {
-    return format.reads_motion() || format.kind == Kind::character;
-  });
-  context.diagnose(keep_inputs(folder, wanted, *found));
-  if (!found->empty()) return found;
-  return Error("view-input", "the folder contains no motion or character",
-               fmt::format("supported: {} files", any_of_words(wanted)))
-      .in_file(folder);
-}
-
 // Contacts and keytimes: from the sidecar of the motion, or detected.
 Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice choice,
                            ToolContext& context) {
@@ -68,7 +51,7 @@ Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice
 // animations.
 Status add_glb(const std::string& path, std::vector<std::byte> bytes, Files& files) {
   gltf::ReadOptions as_is;
-  as_is.unpack = false;
+  as_is.draco = false;
   const auto scene = gltf::read(bytes, as_is);
   if (!scene) return Error(scene.error()).in_file(path);
   Files::Glb glb{path, name_of_input(path), std::move(bytes), {}, {}, 0};
@@ -97,7 +80,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       // A page cannot open external files, so buffers and images are packed.
       gltf::ReadOptions packing;
       packing.folder = folder_of(path);
-      packing.unpack = false;
+      packing.draco = false;
       auto packed = gltf::pack_glb(input->bytes(), packing);
       if (!packed) return std::move(packed).error().in_file(path);
       for (Diagnostic& diagnostic : packed->diagnostics) context.diagnose(std::move(diagnostic));
@@ -237,16 +220,8 @@ Status add_goals(const Options& options, ToolContext& context, Files& files) {
 Result<Files> read_files(const Options& options, ToolContext& context) {
   Files files;
   for (const std::string& path : options.inputs) {
-    std::vector<std::string> paths = {path};
-    std::error_code unknown;
-    if (path != "-" && fs::is_directory(path, unknown)) {
-      auto found = files_in(path, context);
-      if (!found) return found.error();
-      paths = std::move(*found);
-    }
-    for (const std::string& each : paths) {
-      if (Status status = add_file(each, options.keys, context, files); !status)
-        return status.error();
+    if (Status status = add_file(path, options.keys, context, files); !status) {
+      return status.error();
     }
   }
   share_models(files);

@@ -2,8 +2,9 @@
 
 #include <memory>
 
+#include "formats/io/formats.h"
 #include "terrain/spec.h"
-#include "tools/krok-view/run.h"
+#include "tools/cli/file_name.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::view {
@@ -71,6 +72,11 @@ ToolSpec make_spec() {
   spec.summary = "Makes an HTML page that plays motions offline in any browser";
   spec.details = "It shows characters and cameras, too, on any ground with footprints.";
   spec.inputs = "IN...";
+  spec.folder_endings = io::endings([](const io::Format& format) {
+    return format.reads_motion() || format.kind == registry::Kind::character;
+  });
+  spec.output_endings = {".html", ".htm"};
+  spec.default_output = [options] { return beside(options->inputs.front(), ".html"); };
   spec.examples = {{"krok-view walk.bvh -o walk.html", "a capture, with a generated body"},
                    {"krok-view before.anim after.anim --difference -o change.html",
                     "two motions at the same position, the first coloured by its "

@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/body_choice.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::view {
 
@@ -18,15 +19,18 @@ struct Options {
   BodyChoice body = BodyChoice::automatic;
   KeysChoice keys = KeysChoice::automatic;
   bool difference = false;
-  std::string clip;    // an animation of glTF files; empty: best_animation()
-  std::string goals;   // a goal file, or empty
-  std::string ground;  // what io::open_terrain() takes; empty: none
-  std::string prints;  // a file of footprints, or empty
-  std::string bodies;  // rigid bodies to show, or empty
+  std::string clip;     // an animation of glTF files; empty: best_animation()
+  std::string goals;    // a goal file, or empty
+  GroundChoice ground;  // empty: none
+  std::string prints;   // a file of footprints, or empty
+  std::string bodies;   // rigid bodies to show, or empty
   std::string title;
 };
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+// Reads the files and writes one viewer page.
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::view

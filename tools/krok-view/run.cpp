@@ -1,4 +1,4 @@
-#include "tools/krok-view/run.h"
+#include "tools/krok-view/options.h"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 
 #include "core/numbers.h"
 #include "draw/viewer_page.h"
-#include "formats/io/open_terrain.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-view/files.h"
+#include "tools/krok-view/glb_difference.h"
 #include "tools/shared/shown_ground.h"
 #include "tools/shared/walk_page.h"
 
@@ -80,7 +80,7 @@ Status check_layout(const Options& options, const Files& files) {
 Status add_walk(const Options& options, ToolContext& context, draw::ViewerPage& page) {
   std::unique_ptr<Terrain> ground;
   if (!options.ground.empty()) {
-    auto opened = io::open_terrain(options.ground, {}, context);
+    auto opened = options.ground.open(context);
     if (!opened) return opened.error();
     ground = *std::move(opened);
   }
@@ -115,6 +115,11 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   draw::ViewerPage page = page_of(*files, options, layout);
   if (Status status = add_walk(options, context, page); !status) return status.error();
+  if (options.difference && files->motions.size() < 2) {
+    auto difference = difference_of(files->glbs[0], files->glbs[1], context);
+    if (!difference) return difference.error();
+    page.files[1].difference = *std::move(difference);
+  }
   auto html = draw::write_viewer_page(page);
   if (!html) return html.error();
   const Status status =

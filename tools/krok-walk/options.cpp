@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/krok-walk/run.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::walk {
@@ -49,11 +48,6 @@ void declare_ground(CommandOptions& command, Options& o) {
                         std::string(terrain::kSpecForms) +
                         "; stairs and slopes begin 1 m ahead along +Z",
                     "level");
-  command.add("--ground-size WIDTHxDEPTH", o.placement.size, lengths<std::array<double, 2>>('x'),
-              "Size of a height field along X and Z; otherwise from its sidecar "
-              "NAME.ground.json (formats/height_field/SPEC.md)");
-  command.add("--ground-range LOW,HIGH", o.placement.range, lengths<std::array<double, 2>>(),
-              "Heights of black and white of a height field, or of 0 and 1: 0,1.5m");
 }
 
 void declare_steps(CommandOptions& command, Options& o) {
@@ -79,6 +73,11 @@ void declare_steps(CommandOptions& command, Options& o) {
                    "Allow steps outside the range of the examples, where they are unproven");
   command.add("--clearance", o.clearance, length({0, 0.5}),
               "Least height of the swing foot over the ground", "15mm");
+  command.add_flag(
+      "--strict", o.strict,
+      "Exit with 1 if a step is not as it should be: a foot misses its print or is lower "
+      "than --clearance, the hips are beside the feet, an ankle bends too far (otherwise a "
+      "warning)");
   command.add("--stretch", o.stretch, length({0, 0.1}),
               "Length by which a leg may grow rather than its knee snap straight", "0");
   add_map_option(command, o.map);
@@ -116,6 +115,7 @@ ToolSpec make_spec() {
   spec.summary = "Walks a character along footprints, a path or to goals, on any ground";
   spec.inputs = "IN.steps...";
   spec.writes = registry::Kind::anim;
+  spec.exit_no = "with --strict: a step is not as it should be";
   spec.examples = {
       {"krok-walk walking.steps --goal 2m,6m -o walk.anim", "to a place on level ground"},
       {"krok-walk walking.steps --path way.svg --ground hills.exr --save-prints prints.csv "

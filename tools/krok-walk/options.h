@@ -8,9 +8,9 @@
 #include "contacts/sole_points.h"
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
-#include "formats/height_field/height_image.h"
 #include "math/types.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 
 namespace krok::cli::walk {
 
@@ -23,19 +23,20 @@ struct Options {
   std::string prints;
   std::vector<Vec2> goals;          // x, z, metres
   std::array<double, 3> from = {};  // x, z, metres, and the heading there, radians
-  std::string ground;
-  height_field::Placement placement;
+  GroundChoice ground;
   std::string save_prints;
   std::string view;                               // a page to write, or empty
   std::optional<double> step_length, step_width;  // metres
   FootSide first = FootSide::left;
   double speed = 1, rate = 0;  // 0: the library's
-  bool adapt = false, extrapolate = false;
+  bool adapt = false, extrapolate = false, strict = false;
   double stretch = 0, clearance = 0;  // metres
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 
 // The tool. Each call has options of its own.
 ToolSpec make_spec();
+
+Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::walk

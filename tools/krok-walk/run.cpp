@@ -1,4 +1,4 @@
-#include "tools/krok-walk/run.h"
+#include "tools/krok-walk/options.h"
 
 #include <fmt/format.h>
 
@@ -17,7 +17,6 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
-#include "formats/io/open_terrain.h"
 #include "formats/keys/keys.h"
 #include "formats/path/path_format.h"
 #include "formats/prints/prints.h"
@@ -35,7 +34,6 @@
 #include "terrain/terrain.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-walk/options.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/walk_page.h"
 
@@ -348,7 +346,7 @@ void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prin
 Result<int> run(const Options& options, ToolContext& context) {
   const auto libraries = open_libraries(options, context);
   if (!libraries) return libraries.error();
-  const auto ground = io::open_terrain(options.ground, options.placement, context);
+  const auto ground = options.ground.open(context);
   if (!ground) return ground.error();
   const auto prints = choose_prints(options, *libraries, **ground, context);
   if (!prints) return prints.error();
@@ -365,7 +363,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     return status.error();
   }
   report_walk(walk->frames(), *prints, context);
-  return kExitDone;
+  return options.strict && !walk->details().warnings.empty() ? kExitNo : kExitDone;
 }
 
 }  // namespace krok::cli::walk

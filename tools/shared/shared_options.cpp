@@ -1,5 +1,6 @@
 #include "tools/shared/shared_options.h"
 
+#include <array>
 #include <filesystem>
 
 #include "terrain/spec.h"
@@ -71,9 +72,16 @@ CommandOption add_keys_option(CommandOptions& command, KeysChoice& which) {
       "auto");
 }
 
-CommandOption add_ground_option(CommandOptions& command, std::string& ground,
+CommandOption add_ground_option(CommandOptions& command, GroundChoice& ground,
                                 const std::string& help, const std::string& preset) {
-  return command.add("--ground IN", ground, ground_text(), help, preset);
+  const CommandOption option = command.add("--ground IN", ground.text, ground_text(), help, preset);
+  command.add("--ground-size WIDTHxDEPTH", ground.placement.size,
+              lengths<std::array<double, 2>>('x'),
+              "Size of a height field along X and Z; otherwise from its sidecar "
+              "NAME.ground.json (formats/height_field/SPEC.md)");
+  command.add("--ground-range LOW,HIGH", ground.placement.range, lengths<std::array<double, 2>>(),
+              "Heights of black and white of a height field, or of 0 and 1: 0,1.5m");
+  return option;
 }
 
 CommandOption add_prints_option(CommandOptions& command, std::string& path,

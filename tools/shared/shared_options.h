@@ -7,6 +7,7 @@
 #include "skin/skin.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/shared/body_choice.h"
+#include "tools/shared/ground_choice.h"
 #include "tools/shared/keys_choice.h"
 
 // Options that several tools have, each declared here alone. `help` is what differs between tools.
@@ -48,8 +49,9 @@ CommandOption add_contacts_option(CommandOptions& command, std::string& contacts
 CommandOption add_keys_option(CommandOptions& command, KeysChoice& choice);
 
 // --ground: a file, or a made ground, whose text must be right: codes of terrain::from_spec().
-// Whether a file is there and holds a ground shows when it is opened.
-CommandOption add_ground_option(CommandOptions& command, std::string& ground,
+// Whether a file is there and holds a ground shows when it is opened. --ground-size and
+// --ground-range place a height field.
+CommandOption add_ground_option(CommandOptions& command, GroundChoice& ground,
                                 const std::string& help, const std::string& preset = {});
 
 // --prints: footprints.

@@ -6,7 +6,6 @@
 #include <memory>
 
 #include "draw/sole_outline.h"
-#include "formats/io/open_terrain.h"
 #include "terrain/surface.h"
 #include "tools/shared/shown_ground.h"
 
@@ -85,11 +84,11 @@ GroundPart around(const Eigen::AlignedBox3d& box, double metres) {
 
 }  // namespace
 
-Result<SheetGround> open_sheet_ground(const std::string& ground, const std::string& prints,
+Result<SheetGround> open_sheet_ground(const GroundChoice& ground, const std::string& prints,
                                       ToolContext& context) {
   SheetGround result;
   if (ground.empty()) return result;
-  auto opened = io::open_terrain(ground, {}, context);
+  auto opened = ground.open(context);
   if (!opened) return opened.error();
   result.terrain = *std::move(opened);
   if (prints.empty()) return result;

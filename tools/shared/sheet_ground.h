@@ -8,6 +8,7 @@
 #include "draw/viewer_page.h"
 #include "render/actor.h"
 #include "terrain/terrain.h"
+#include "tools/shared/ground_choice.h"
 #include "tools/shared/moving_actor.h"
 
 // The ground and the footprints in images.
@@ -21,7 +22,7 @@ struct SheetGround {
 };
 
 // Reads --ground and --prints; both may be empty.
-Result<SheetGround> open_sheet_ground(const std::string& ground, const std::string& prints,
+Result<SheetGround> open_sheet_ground(const GroundChoice& ground, const std::string& prints,
                                       ToolContext& context);
 
 // The part of a ground that an image shows.

@@ -111,12 +111,24 @@ TEST_F(KrokBlend, SumsOtherThanOneAreRefusedWithAHint) {
 }
 
 TEST_F(KrokBlend, WordsWithoutAWeightAreToldBeforeAnythingIsRead) {
-  for (const std::string& word : {path("gone.anim"), path("gone.anim:x"), path("gone.anim:"),
-                                  path("gone.anim:0x1"), std::string(":1")}) {
+  for (const std::string& word :
+       {path("gone.anim:x"), path("gone.anim:"), path("gone.anim:0x1"), std::string(":1")}) {
     const ToolRun run = blend({word});
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_TRUE(has_code(run.err, "usage")) << word << run.err;
   }
+}
+
+TEST_F(KrokBlend, MotionsWithoutWeightsHaveEqualShares) {
+  const std::string given = path("given.anim"), equal = path("equal.anim");
+  ASSERT_EQ(run_tool("krok-blend", {walk("0.5"), quick("0.5"), "-o", given}).exit_code, 0);
+  const auto bare = [](std::string word) { return word.substr(0, word.rfind(':')); };
+  ASSERT_EQ(run_tool("krok-blend", {bare(walk("0.5")), bare(quick("0.5")), "-o", equal}).exit_code,
+            0);
+  EXPECT_EQ(run_tool("krok-diff", {given, equal}).exit_code, 0);
+  const ToolRun mixed = blend({bare(walk("0.5")), quick("0.5")});
+  EXPECT_EQ(mixed.exit_code, 2);
+  EXPECT_THAT(mixed.err, HasSubstr("some motions have a weight"));
 }
 
 TEST_F(KrokBlend, OtherSkeletonsAreRefused) {

@@ -127,7 +127,7 @@ TEST_F(KrokDiffAsPlayed, TurnsTheOtherWayRoundAreFound) {
   write("more.glb", turned(180.1));
   const auto found = diff({"less.glb", "more.glb", "--tolerance", "1cm", "--angle", "1deg"});
   EXPECT_EQ(found.exit_code, 1);
-  EXPECT_THAT(found.out, HasSubstr("positions: largest 2 m"));
+  EXPECT_THAT(found.out, HasSubstr("positions: largest 2000 mm"));
 }
 
 // Frames are those of the first file, whatever keys the second has.

@@ -77,8 +77,8 @@ TEST_F(KrokDiffFolders, NamesWhatDiffersHowFarAndWhere) {
   put_motion("b/walks/walk.anim", 3.2e-4F);
   const ToolRun run = diff({"a", "b", "--json=report.json"});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_THAT(run.out, HasSubstr("differs: walks/walk.anim: positions 0.32 mm at joint LeftHand, "
-                                 "frame 3 (0.3 s)\n"));
+  EXPECT_THAT(run.out, HasSubstr("differs: walks/walk.anim: positions 0.32 mm (32 x the tolerance) "
+                                 "at joint LeftHand, frame 3 (0.3 s)\n"));
   EXPECT_EQ(diff({"a", "b", "--tolerance", "0.4mm"}).exit_code, 0);
   const json result = json::parse(get(path("report.json")))["result"];
   EXPECT_EQ(result["same"], false);
@@ -170,7 +170,9 @@ TEST_F(KrokDiffFolders, WhatAGltfRefersToIsComparedWithIt) {
   put_gltf("b", 1e-2F);
   const ToolRun beyond = diff({"a", "b"});
   EXPECT_EQ(beyond.exit_code, 1);
-  EXPECT_THAT(beyond.out, HasSubstr("differs: square.gltf: positions 10 mm at vertex 0"));
+  EXPECT_THAT(
+      beyond.out,
+      HasSubstr("differs: square.gltf: positions 10 mm (1000 x the tolerance) at vertex 0"));
   EXPECT_THAT(beyond.out, Not(HasSubstr("data.bin")));
 }
 
@@ -314,13 +316,18 @@ TEST_F(KrokDiffFolders, ThePageHasARowForEachFileThatIsNotTheSame) {
   const std::string html = get(path("page.html"));
   EXPECT_THAT(html, HasSubstr("<title>a against b</title>"));
   EXPECT_THAT(html, HasSubstr("<tr><td><a href=\"#file-1\"><code>walk.anim</code></a></td>"
-                              "<td>differs</td><td>positions 10 mm at joint LeftHand, frame 3 "
-                              "(0.3 s)</td><td class=\"n\">1000</td></tr>"));
+                              "<td>differs</td><td>positions 10 mm (1000 x the tolerance) at joint "
+                              "LeftHand, frame 3 (0.3 s)</td></tr>"));
   EXPECT_THAT(html, HasSubstr("<a href=\"a/walk.anim\">")) << "relative to the page";
   EXPECT_THAT(html, HasSubstr("<code>&lt;b&gt;&amp;&#124;.txt</code>"));
   EXPECT_THAT(html, Not(HasSubstr("same.anim")));
-  ASSERT_EQ(diff({"a", "b", "--summary", "page.md"}).exit_code, 1);
+  const std::string named = get(path("page.html"));
+  ASSERT_EQ(diff({"a", "b", "--summary", "page.md", "--summary", "again.html", "--summary", "step"})
+                .exit_code,
+            1);
   EXPECT_THAT(get(path("page.md")), HasSubstr("| <code>walk.anim</code> | differs | positions"));
+  EXPECT_EQ(get(path("again.html")), named) << "as alone";
+  EXPECT_EQ(get(path("step")), get(path("page.md"))) << "a name without ending is Markdown";
 }
 
 // Would fail if a CI server counted a file that differs as passed.
@@ -336,10 +343,15 @@ TEST_F(KrokDiffFolders, JUnitHasATestCaseForEachFile) {
   const std::string xml = get(path("out.xml"));
   EXPECT_THAT(xml, HasSubstr("<testsuite name=\"a against b\" tests=\"4\" failures=\"2\" "
                              "errors=\"1\" skipped=\"0\">"));
-  EXPECT_THAT(xml, HasSubstr("name=\"same.anim\"/>"));
-  EXPECT_THAT(xml, HasSubstr("name=\"walk.anim\"><failure message=\"differs: positions 10 mm"));
-  EXPECT_THAT(xml, HasSubstr("name=\"broken.anim\"><error message=\"cannot be read: "));
-  EXPECT_THAT(xml, HasSubstr("name=\"&lt;b&gt;&amp;.txt\"><failure message=\"only in b\"/>"));
+  EXPECT_THAT(xml, testing::ContainsRegex("name=\"same.anim\" time=\"[0-9]+[.][0-9]+\"/>"));
+  EXPECT_THAT(
+      xml, testing::ContainsRegex("name=\"walk.anim\" time=\"[0-9.]+\"><failure message=\"differs: "
+                                  "positions 10 mm .1000 x the tolerance."));
+  EXPECT_THAT(xml, testing::ContainsRegex(
+                       "name=\"broken.anim\" time=\"[0-9.]+\"><error message=\"cannot be read: "));
+  EXPECT_THAT(
+      xml,
+      HasSubstr("name=\"&lt;b&gt;&amp;.txt\" time=\"0.000\"><failure message=\"only in b\"/>"));
   EXPECT_EQ(diff({"a", "b", "--summary", "out.pdf"}).exit_code, 2);
 }
 

@@ -252,6 +252,13 @@ TEST_F(KrokDiffMatching, RenamedClipsMeshesAndMaterialsAreTold) {
   const auto clip = diff({"a.glb", "clip.glb"});
   EXPECT_EQ(clip.exit_code, 1) << clip.out << clip.err;
   EXPECT_THAT(clip.out, HasSubstr("differs: animation walk is named stroll in the second"));
+  test::GlbBuilder moved = named_rig("stroll", "skin");
+  const auto root = moved.json["skins"][0]["joints"][0].get<std::size_t>();
+  moved.json["nodes"][root]["translation"] = {0.1, 0, 0};
+  write("moved.glb", moved);
+  const auto both = diff({"a.glb", "moved.glb"});
+  const std::size_t distance = both.out.find("  differs: positions 100 mm (10000 x the tolerance)");
+  EXPECT_LT(distance, both.out.find("  differs: animation walk is named stroll")) << both.out;
   EXPECT_EQ(diff({"a.glb", "clip.glb", "--match", "order"}).exit_code, 0);
   EXPECT_EQ(diff({"a.glb", "material.glb"}).exit_code, 0);
   const auto material = diff({"a.glb", "material.glb", "--materials"});

@@ -220,7 +220,7 @@ TEST_F(KrokInfo, BadFilesGetAMessageAndExitCode2) {
   const std::pair<std::string, const char*> cases[] = {
       {path("cut.anim"), "[container-truncated]"},
       {path("damaged.anim"), "[container-checksum]"},
-      {path("folder.anim"), "[file-directory]"},
+      {path("folder.anim"), "[folder-empty]"},
       {make("empty.anim", ""), "is an empty file, not a .anim file"},
       {make("cut.bvh", "HIERARCHY\nROOT Hips\n{\n"), "cut.bvh:"},
       {make("cut.glb", "glTF\2"), "[gltf-"},

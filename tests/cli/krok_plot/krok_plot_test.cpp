@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
@@ -225,11 +226,14 @@ TEST_F(KrokPlot, SaysWhatIsWrongWithATable) {
 TEST_F(KrokPlot, RefusesNamesOfOtherKindsOfFiles) {
   const ToolRun run = run_tool("krok-plot", {kWalk, "-o", path("out.png")});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("the output is SVG"));
+  EXPECT_THAT(run.err, HasSubstr("the output is a .svg file"));
   EXPECT_THAT(listing(), IsEmpty());
-  const ToolRun none = run_tool("krok-plot", {kWalk});
-  EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("no output given"));
+}
+
+TEST_F(KrokPlot, WithoutAnOutputTheChartIsBesideTheInput) {
+  std::filesystem::copy_file(kWalk, path("take.bvh"));
+  ASSERT_EQ(run_tool("krok-plot", {path("take.bvh")}).exit_code, 0);
+  EXPECT_THAT(listing(), testing::ElementsAre("take.bvh", "take.svg"));
 }
 
 TEST_F(KrokPlot, FitsThePaper) {

@@ -38,6 +38,17 @@ TEST_F(SkinClips, SeveralMotionsAreClipsOfOneRigNamedAfterTheirFiles) {
   EXPECT_EQ(clips[1]["frames"], 12);
 }
 
+TEST_F(SkinClips, AFolderIsAllMotionsInIt) {
+  std::filesystem::copy(path("in.anim"), path("more/in.anim"));
+  ASSERT_EQ(tool("krok-skin", {"hero.character", "more", "-o", "folder.gltf"}).exit_code, 0);
+  EXPECT_THAT(names(gltf("folder.gltf")["animations"]), ElementsAre("in", "run"));
+  std::filesystem::create_directory(path("none"));
+  const ToolRun none =
+      run_tool("krok-skin", {path("hero.character"), path("none"), "-o", path("x.glb")});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("folder-empty"), std::string::npos) << none.err;
+}
+
 // By what the file says to a reader.
 TEST_F(SkinClips, EachClipIsItsMotion) {
   tool("krok-skin", {"in.model", "in.anim", "run.anim", "-o", "two.glb"});

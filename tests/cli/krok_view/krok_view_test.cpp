@@ -212,10 +212,15 @@ TEST_F(KrokView, AFolderIsAListOfWhatMovesInIt) {
   ASSERT_EQ(items.size(), 3U);
   EXPECT_EQ(items[0]["name"], "a.bvh");
   EXPECT_EQ(items[2]["name"], "c.bvh");
+  put("takes/mark.cam", "x");
+  const ToolRun again = run_tool("krok-view", {path("takes"), "--body", "none", "-v"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(has_code(again.err, "folder-left-out")) << again.err;
+  EXPECT_TRUE(std::filesystem::exists(path("takes.html"))) << "beside the folder";
   put("empty/notes.txt", "none");
   const ToolRun empty = view({path("empty")});
   EXPECT_EQ(empty.exit_code, 2);
-  EXPECT_TRUE(has_code(empty.err, "view-input")) << empty.err;
+  EXPECT_TRUE(has_code(empty.err, "folder-empty")) << empty.err;
 }
 
 }  // namespace

@@ -170,6 +170,19 @@ TEST_F(KrokWalk, RefusesOrAdaptsWhatIsTooFar) {
   EXPECT_LT(prints("near.csv")[3].z, 2);
 }
 
+// Would fail if ground that ankles cannot stand on were walked without a word.
+TEST_F(KrokWalk, SaysWhereTheGroundIsTooSteep) {
+  refused({"--goal", "0,4m", "--ground", "slope:40deg"}, "walk-too-steep", "print ");
+  const std::vector<std::string> steep = {"--goal", "0,4m", "--ground", "slope:30deg"};
+  const ToolRun warned = walk(steep);
+  EXPECT_EQ(warned.exit_code, 0) << warned.err;
+  EXPECT_THAT(warned.err, HasSubstr("[walk-ankle]"));
+  std::vector<std::string> strict = steep;
+  strict.emplace_back("--strict");
+  EXPECT_EQ(walk(strict).exit_code, 1);
+  EXPECT_EQ(walk({"--goal", "0,4m", "--strict"}).exit_code, 0);
+}
+
 TEST_F(KrokWalk, RefusesWrongInput) {
   refused({}, "usage", "no path is given");
   refused({"--goal", "1,2", "--path", "x.svg"}, "usage", "exclude each other");

@@ -36,6 +36,17 @@ TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   EXPECT_LT(measures.height, 0.001);
   EXPECT_LT(measures.stretch, 5e-6);
   EXPECT_EQ(feet->out_of_reach, 0);
+  // Twice is once, with the same contacts and with contacts found anew.
+  const auto again = plant_feet(feet->clip, roles);
+  ASSERT_TRUE(again.ok());
+  EXPECT_LT(test::apart(feet->clip, again->clip), 0.00005);
+  const auto found = find_contacts(clip, roles);
+  ASSERT_TRUE(found.ok());
+  const auto given = plant_feet(clip, roles, found->contacts);
+  ASSERT_TRUE(given.ok());
+  const auto given_again = plant_feet(given->clip, roles, found->contacts);
+  ASSERT_TRUE(given_again.ok());
+  EXPECT_LT(test::apart(given->clip, given_again->clip), 0.00005);
   // In this one single frames of the feet jump by 4 mm while they stand and the rest of the leg
   // does not: the knee has to take that up.
   const bool jumps = name == "optitrack_arena_bvh-matlab/walk.bvh";

@@ -11,6 +11,7 @@
 #include "plant/plant_feet.h"
 #include "samples/generator/gesture.h"
 #include "support/foot_skate.h"
+#include "support/planted_measures.h"
 
 namespace krok {
 namespace {
@@ -25,19 +26,6 @@ PlantedFeet planted(const Clip& clip, std::optional<std::span<const Contact>> co
   auto result = plant_feet(clip, find_roles(clip.skeleton), contacts);
   EXPECT_TRUE(result.ok());
   return result.ok() ? std::move(*result) : PlantedFeet{};
-}
-
-// The largest distance of the same joints, `offset` joints on in b.
-double apart(const Clip& a, const Clip& b, int offset = 0) {
-  double most = 0;
-  for (int f = 0; f < a.frame_count(); ++f) {
-    for (int j = 0; j < a.joint_count(); ++j) {
-      most = std::max<double>(most, (a.frame_positions(f)[static_cast<std::size_t>(j)] -
-                                     b.frame_positions(f)[static_cast<std::size_t>(j + offset)])
-                                        .norm());
-    }
-  }
-  return most;
 }
 
 // With another root above the hips: on the ground below them, or one that never moves.
@@ -64,7 +52,8 @@ Clip with_root(const Clip& clip, bool moves) {
 }
 
 constexpr unsigned kWalks = 8;
-constexpr double kSame = 0.0001;  // metres
+constexpr double kSame = 0.0001;    // metres
+constexpr double kTwice = 0.00005;  // metres
 
 TEST(PlantedFeet, RootDoesNotMatter) {
   for (unsigned seed = 0; seed < kWalks; ++seed) {
@@ -73,7 +62,7 @@ TEST(PlantedFeet, RootDoesNotMatter) {
     for (const bool moves : {false, true}) {
       const Clip other = with_root(walk, moves);
       const Clip result = planted(other).clip;
-      EXPECT_LT(apart(expected, result, 1), kSame) << seed;
+      EXPECT_LT(test::apart(expected, result, 1), kSame) << seed;
       for (int f = 0; f < other.frame_count(); ++f) {
         EXPECT_EQ(other.frame_positions(f)[0], result.frame_positions(f)[0]);
       }
@@ -87,7 +76,7 @@ TEST(PlantedFeet, ReferencePoseDoesNotMatter) {
     Clip lying = walk;
     const Transform turn{Vec3::Zero(), from_rotation_vector(Vec3(-kPi / 2, 0, 0))};
     for (Transform& joint : lying.skeleton.reference) joint = turn * joint;
-    EXPECT_LT(apart(planted(walk).clip, planted(lying).clip), kSame) << seed;
+    EXPECT_LT(test::apart(planted(walk).clip, planted(lying).clip), kSame) << seed;
   }
 }
 
@@ -101,7 +90,8 @@ TEST(PlantedFeet, TurnedInputGivesTurnedOutput) {
     move_clip(turn, turned);
     Clip expected = planted(walk).clip;
     move_clip(turn, expected);
-    EXPECT_LT(apart(expected, planted(turned).clip), kSame) << seed;
+    // What is still by less than 0.0004 of a leg may be corrected or not.
+    EXPECT_LT(test::apart(expected, planted(turned).clip), 0.0004) << seed;
   }
 }
 
@@ -111,28 +101,21 @@ TEST(PlantedFeet, WhoStandsStaysAsHeIs) {
     samples::GestureOptions options;
     options.gesture = gesture;
     const Clip clip = samples::make_gesture(options).value();
-    EXPECT_LT(apart(clip, planted(clip).clip), kSame);
+    EXPECT_LT(test::apart(clip, planted(clip).clip), kSame);
   }
 }
 
+// A second pass finds nothing to correct, with the same contacts and with contacts found anew. If
+// this fails, a motion changes whenever a pipeline runs over its own results.
 TEST(PlantedFeet, PlantedTwiceIsPlantedOnce) {
   for (unsigned seed = 0; seed < kWalks; ++seed) {
     const Clip walk = sliding_walk(seed);
-    const RoleMap roles = find_roles(walk.skeleton);
-    const auto found = find_contacts(walk, roles);
+    const auto found = find_contacts(walk, find_roles(walk.skeleton));
     ASSERT_TRUE(found.ok());
     const Clip once = planted(walk, found->contacts).clip;
-    EXPECT_LT(apart(once, planted(once, found->contacts).clip), kSame) << seed;
-  }
-}
-
-// Contacts found anew begin and end some frames elsewhere, for feet now come to rest smoothly. What
-// is left to do is less.
-TEST(PlantedFeet, LittleIsLeftForContactsFoundAnew) {
-  for (unsigned seed = 0; seed < kWalks; ++seed) {
-    const PlantedFeet once = planted(sliding_walk(seed));
-    const PlantedFeet again = planted(once.clip);
-    EXPECT_LT(again.drift_before, 0.4 * once.drift_before) << seed;
+    EXPECT_LT(test::apart(once, planted(once, found->contacts).clip), kTwice) << seed;
+    const Clip anew = planted(walk).clip;
+    EXPECT_LT(test::apart(anew, planted(anew).clip), kTwice) << seed;
   }
 }
 

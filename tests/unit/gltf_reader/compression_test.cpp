@@ -88,7 +88,12 @@ GlbBuilder meshopt_packed(bool filters) {
     std::string filter = "NONE";
     if (filters && v == 0) {
       filter = "EXPONENTIAL";
+#if MESHOPTIMIZER_VERSION >= 190
+      meshopt_encodeFilterExp(bytes.data(), sheet.vertices(), 12, 20, sheet.positions.data(),
+                              meshopt_EncodeExpSharedVector);
+#else
       meshopt_encodeFilterExp(bytes.data(), sheet.vertices(), 12, 20, sheet.positions.data());
+#endif
     } else if (filters && v == 1) {
       filter = "OCTAHEDRAL";
       std::vector<float> four;

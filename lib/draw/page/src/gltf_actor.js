@@ -1,6 +1,7 @@
 // A glTF file with its own meshes, played by three.js's AnimationMixer.
 
 import { AnimationMixer, Box3, Quaternion, SkeletonHelper, Vector3 } from 'three';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { reachBeyond, widen } from './reach.js';
 import { ShownActor } from './shown_actor.js';
@@ -11,7 +12,7 @@ const DEGREES = 180 / Math.PI;
 export class GltfActor extends ShownActor {
   static async load(item, bytes) {
     const buffer = bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength);
-    const file = await new GLTFLoader().parseAsync(buffer, '');
+    const file = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).parseAsync(buffer, '');
     return new GltfActor(item, file);
   }
 

@@ -115,7 +115,7 @@ export class Player {
     const glbs = actors.filter(({ meshes }) => meshes);
     const [other, one] = motions.length > 1 ? motions : glbs;
     const wanted = this.shown.difference && one && other;
-    if (this.difference && !(wanted && this.difference.one === one && this.difference.other === other)) {
+    if (this.difference && !(wanted && this.difference.compares(one, other))) {
       this.difference.release();
       this.difference = null;
     }
