@@ -20,7 +20,7 @@ namespace {
 constexpr std::string_view kMagic("\x93NUMPY", 6);
 constexpr std::size_t kMaxHeader = 65535;
 constexpr std::size_t kMaxDimensions = 32;  // as numpy
-constexpr std::uint64_t kSmallArray = std::uint64_t{256} << 20;
+constexpr std::uint64_t kSmallArray = std::uint64_t{32} << 20;
 
 Error damaged(std::string what) {
   return Error("npy-damaged", std::move(what), "save the array anew with numpy.save");

@@ -54,7 +54,7 @@ class Arrays {
   bool has(const std::string& name) const;
 
   // Codes: those of parse(), zip-damaged, file-too-large: a compressed array may be a thousand
-  // times the file, as one of zeros is, if it has less than 256 MB, 100 times otherwise.
+  // times the file, as one of zeros is, if it has less than 32 MB, 100 times otherwise.
   Result<Array> read(const std::string& name) const;
 
  private:

@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "math/quaternion.h"
+#include "math/smoother_step.h"
 #include "roles/limbs.h"
 
 namespace krok {
@@ -87,26 +88,27 @@ class Solver {
         placed_(joints_ * frames_),
         turns_(joints_ * frames_, Quat::Identity()),
         offsets_(joints_, Vec3::Zero()),
-        weights_(joints_, 1) {
+        weights_(joints_, 1),
+        targets_(joints_),
+        shapes_(joints_),
+        twisted_(joints_, false) {
     for (std::size_t f = 0; f < frames_; ++f) {
       for (std::size_t j = 0; j < joints_; ++j) {
         measured_[j * frames_ + f] = input.positions[f * joints_ + j];
       }
-    }
-    for (std::size_t j = 0; j < joints_; ++j) {
-      if (parents_[j] < 0) continue;
-      offsets_[j] =
-          input.skeleton.reference[j].position - input.skeleton.reference[at(parents_[j])].position;
     }
   }
 
   PoseFromPositions solve() {
     find_noise();
     if (frames_ > 0) {
+      find_targets();
       place(true);
       if (shift_root()) place(false);
       twist_limbs();
+      follow();
       spread_twists();
+      follow();
     }
     finish();
     return std::move(result_);
@@ -120,9 +122,9 @@ class Solver {
   }
 
   void find_noise() {
-    const std::vector<double> noise = noise_of(parents_, measured_);
+    noise_ = noise_of(parents_, measured_);
     double squares = 0, worst = 0;
-    for (const double n : noise) {
+    for (const double n : noise_) {
       squares += n * n / static_cast<double>(joints_);
       worst = std::max(worst, n);
     }
@@ -131,31 +133,93 @@ class Solver {
     std::vector<char> changed(joints_, 0);
     parallel_for(joints_, 1, input_.jobs, [&](std::size_t begin, std::size_t end) {
       for (std::size_t j = begin; j < end; ++j) {
-        changed[j] = smooth_track(measured_of(j), noise[j], input_.rate) ? 1 : 0;
+        changed[j] = smooth_track(measured_of(j), noise_[j], input_.rate) ? 1 : 0;
       }
     });
     result_.smoothed = std::ranges::find(changed, 1) != changed.end();
     for (std::size_t j = 0; j < joints_ && result_.smoothed; ++j) {
-      const double trust = std::max(noise[j] / result_.noise, 0.1);
+      const double trust = std::max(noise_[j] / result_.noise, 0.1);
       weights_[j] = 1 / (trust * trust);
     }
+  }
+
+  // Metres, over a part of the frames.
+  double usual_length(std::size_t from, std::size_t to) const {
+    double sum = 0, count = 0;
+    for (std::size_t f = 0; f < frames_; f += sample_step()) {
+      sum += way(from, to, f).norm();
+      ++count;
+    }
+    return sum / count;
+  }
+  std::size_t sample_step() const { return (frames_ + 49) / 50; }
+
+  // The joints that show a joint's rotation: its children, and beyond those at its own place their
+  // children, if it needs them.
+  void find_targets() {
+    for (std::size_t j = joints_; j-- > 0;) {
+      std::vector<int>& targets = targets_[j];
+      std::vector<int> near;
+      for (const int child : children_[j]) {
+        const double noise = 2.5 * std::hypot(noise_[j], noise_[at(child)]);
+        const bool away = usual_length(j, at(child)) > std::max(kNoLength, noise);
+        (away ? targets : near).push_back(child);
+      }
+      const bool few = targets.size() < 2;
+      for (std::size_t i = 0; few && i < near.size(); ++i) {
+        const std::vector<int>& beyond = targets_[at(near[i])];
+        targets.insert(targets.end(), beyond.begin(), beyond.end());
+      }
+      if (const int only = only_target(j); only >= 0) targets = {only};
+      for (const int target : targets) {
+        shapes_[j].push_back(input_.skeleton.reference[at(target)].position -
+                             input_.skeleton.reference[j].position);
+      }
+    }
+  }
+
+  // The farthest target if all are in one line; otherwise -1.
+  int only_target(std::size_t j) const {
+    int farthest = -1;
+    double length = 0, aside = 0, count = 0;
+    for (const int target : targets_[j]) {
+      const double here = usual_length(j, at(target));
+      if (here <= length) continue;
+      length = here;
+      farthest = target;
+    }
+    if (farthest < 0) return farthest;
+    for (std::size_t f = 0; f < frames_; f += sample_step(), ++count) {
+      const Vec3 along = way(j, at(farthest), f).stableNormalized();
+      double most = 0;
+      for (const int target : targets_[j]) {
+        most = std::max(most, along.cross(way(j, at(target), f)).norm());
+      }
+      aside += most;
+    }
+    return aside / count <= std::max(0.03 * length, 3 * result_.noise) ? farthest : -1;
   }
 
   // Rotations and places from the root down. With `measure`, offsets are measured first.
   void place(bool measure) {
     for (std::size_t j = 0; j < joints_; ++j) {
       if (parents_[j] < 0 && measure) std::ranges::copy(measured_of(j), &placed_[j * frames_]);
-      const std::vector<int>& children = children_[j];
-      if (children.size() == 1) {
-        if (measure) measure_bone(j, at(children[0]));
-        point(j, at(children[0]));
-      } else if (children.size() > 1) {
+      if (targets_[j].size() == 1) {
+        if (measure) measure_bone(j);
+        point(j);
+      } else if (!targets_[j].empty()) {
         if (measure) measure_shape(j);
         fit(j);
       } else if (parents_[j] >= 0) {
         std::ranges::copy(turns_of(at(parents_[j])), turns_of(j).begin());
       }
-      for (const int child : children) {
+      for (const int child : children_[j]) {
+        const auto target = std::ranges::find(targets_[j], child);
+        if (target != targets_[j].end()) {
+          offsets_[at(child)] = shapes_[j][static_cast<std::size_t>(target - targets_[j].begin())];
+        } else if (measure) {
+          measure_aside(j, at(child));
+        }
         for (std::size_t f = 0; f < frames_; ++f) {
           placed_[at(child) * frames_ + f] =
               placed_[j * frames_ + f] + turns_[j * frames_ + f] * offsets_[at(child)];
@@ -171,60 +235,65 @@ class Solver {
     return measured_[child * frames_ + frame] - measured_[joint * frames_ + frame];
   }
 
-  void measure_bone(std::size_t j, std::size_t child) {
+  void measure_bone(std::size_t j) {
+    const std::size_t target = at(targets_[j][0]);
     double length = 0;
     Vec3 mean = Vec3::Zero();
     for (std::size_t f = 0; f < frames_; ++f) {
-      length += way(j, child, f).norm();
-      mean += turn_above(j, f).conjugate() * way(j, child, f);
+      length += way(j, target, f).norm();
+      mean += turn_above(j, f).conjugate() * way(j, target, f);
     }
-    const Vec3& direction = offsets_[child].norm() > kNoLength ? offsets_[child] : mean;
-    offsets_[child] = length / static_cast<double>(frames_) * direction.stableNormalized();
+    const Vec3 direction = shapes_[j][0].norm() > kNoLength ? shapes_[j][0] : mean;
+    shapes_[j][0] = length / static_cast<double>(frames_) * direction.stableNormalized();
+  }
+
+  void measure_aside(std::size_t j, std::size_t child) {
+    offsets_[child].setZero();
+    for (std::size_t f = 0; f < frames_; ++f) {
+      offsets_[child] += turns_[j * frames_ + f].conjugate() * way(j, child, f);
+    }
+    offsets_[child] /= static_cast<double>(frames_);
   }
 
   Mat3 products(std::size_t j, std::size_t frame, const Vec3& from) const {
     Mat3 sum = Mat3::Zero();
     double size = 0;
-    for (const int child : children_[j]) {
-      const Vec3 weighted = weights_[at(child)] * offsets_[at(child)];
-      sum += (measured_[at(child) * frames_ + frame] - from) * weighted.transpose();
-      size += weighted.dot(offsets_[at(child)]);
+    for (std::size_t i = 0; i < targets_[j].size(); ++i) {
+      const std::size_t target = at(targets_[j][i]);
+      const Vec3 weighted = weights_[target] * shapes_[j][i];
+      sum += (measured_[target * frames_ + frame] - from) * weighted.transpose();
+      size += weighted.dot(shapes_[j][i]);
     }
     // The parent's rotation decides what the children leave open.
     return sum + 1e-6 * std::max(size, 1e-12) * turn_above(j, frame).toRotationMatrix();
   }
 
-  // The mean offsets of several children in their joint's frame.
+  // The mean offsets of several targets in their joint's frame.
   void measure_shape(std::size_t j) {
     const std::size_t step = (frames_ + kFramesOfShape - 1) / kFramesOfShape;
-    bool none = true;
-    for (const int child : children_[j]) none = none && offsets_[at(child)].norm() <= kNoLength;
-    if (none) {
-      for (const int child : children_[j]) {
-        offsets_[at(child)] = turn_above(j, 0).conjugate() * way(j, at(child), 0);
+    std::vector<Vec3>& shape = shapes_[j];
+    if (std::ranges::all_of(shape, [](const Vec3& v) { return v.norm() <= kNoLength; })) {
+      for (std::size_t i = 0; i < shape.size(); ++i) {
+        shape[i] = turn_above(j, 0).conjugate() * way(j, at(targets_[j][i]), 0);
       }
     }
-    std::vector<Vec3> reference;
-    for (const int child : children_[j]) reference.push_back(offsets_[at(child)]);
+    const std::vector<Vec3> reference = shape;
     for (int iteration = 0; iteration < 3; ++iteration) {
-      std::vector<Vec3> sums(children_[j].size(), Vec3::Zero());
+      std::vector<Vec3> sums(shape.size(), Vec3::Zero());
       double count = 0;
-      for (std::size_t f = 0; f < frames_; f += step) {
+      for (std::size_t f = 0; f < frames_; f += step, ++count) {
         const Quat back = nearest_rotation(products(j, f, measured_[j * frames_ + f])).conjugate();
-        for (std::size_t c = 0; c < sums.size(); ++c) {
-          sums[c] += back * way(j, at(children_[j][c]), f);
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+          sums[i] += back * way(j, at(targets_[j][i]), f);
         }
-        ++count;
       }
-      for (std::size_t c = 0; c < sums.size(); ++c) offsets_[at(children_[j][c])] = sums[c] / count;
+      for (std::size_t i = 0; i < sums.size(); ++i) shape[i] = sums[i] / count;
     }
     // As the reference pose stands, as nearly as the shape allows.
     Mat3 sum = 1e-9 * Mat3::Identity();
-    for (std::size_t c = 0; c < reference.size(); ++c) {
-      sum += reference[c] * offsets_[at(children_[j][c])].transpose();
-    }
+    for (std::size_t i = 0; i < shape.size(); ++i) sum += reference[i] * shape[i].transpose();
     const Quat turn = nearest_rotation(sum);
-    for (const int child : children_[j]) offsets_[at(child)] = turn * offsets_[at(child)];
+    for (Vec3& offset : shape) offset = turn * offset;
   }
 
   void fit(std::size_t j) {
@@ -235,15 +304,16 @@ class Solver {
     });
   }
 
-  void point(std::size_t j, std::size_t child) {
-    const bool known = offsets_[child].norm() > kNoLength;
+  void point(std::size_t j) {
+    const std::size_t target = at(targets_[j][0]);
+    const Vec3& bone = shapes_[j][0];
     for (std::size_t f = 0; f < frames_; ++f) {
       const Quat above = turn_above(j, f);
       Quat& turn = turns_[j * frames_ + f];
       turn = above;
-      const Vec3 to = measured_[child * frames_ + f] - placed_[j * frames_ + f];
-      if (!known || to.norm() < kNoLength) continue;
-      turn = (shortest_arc(above * offsets_[child], to) * above).normalized();
+      const Vec3 to = measured_[target * frames_ + f] - placed_[j * frames_ + f];
+      if (bone.norm() < kNoLength || to.norm() < kNoLength) continue;
+      turn = (shortest_arc(above * bone, to) * above).normalized();
     }
   }
 
@@ -263,27 +333,26 @@ class Solver {
     return largest > 1e-7;
   }
 
-  // Turns a joint with one child about its bone.
+  // Turns a joint with one target about its bone.
   void twist(std::size_t j, std::size_t frame, double angle) {
     Quat& turn = turns_[j * frames_ + frame];
     turn = (turn * Quat(Eigen::AngleAxisd(angle, bone(j)))).normalized();
   }
-  Vec3 bone(std::size_t j) const { return offsets_[at(children_[j][0])].stableNormalized(); }
+  Vec3 bone(std::size_t j) const { return shapes_[j][0].stableNormalized(); }
 
   bool has_bone(int joint) const {
-    return joint >= 0 && children_[at(joint)].size() == 1 &&
-           offsets_[at(children_[at(joint)][0])].norm() > kNoLength;
+    return joint >= 0 && targets_[at(joint)].size() == 1 &&
+           shapes_[at(joint)][0].norm() > kNoLength;
   }
 
-  // The chain's joints below `from` down to the first that is no link, with the rotations that
-  // follow from that of `from`.
-  void point_below(std::size_t from) {
-    for (std::size_t j = from; children_[j].size() == 1;) {
-      j = at(children_[j][0]);
-      if (children_[j].size() == 1) {
-        point(j, at(children_[j][0]));
-      } else if (children_[j].empty()) {
+  // Joints of which the children do not show the twist take it from their parents, from the root
+  // down.
+  void follow() {
+    for (std::size_t j = 1; j < joints_; ++j) {
+      if (targets_[j].empty()) {
         std::ranges::copy(turns_of(at(parents_[j])), turns_of(j).begin());
+      } else if (targets_[j].size() == 1 && !twisted_[j]) {
+        point(j);
       }
     }
   }
@@ -300,7 +369,7 @@ class Solver {
     hinge -= hinge.dot(bone(u)) * bone(u);
     if (hinge.norm() < 1e-9) return;
     hinge.normalize();
-    std::vector<double> angles(frames_), weights(frames_);
+    std::vector<double> angles(frames_), weights(frames_), clear(frames_);
     for (std::size_t f = 0; f < frames_; ++f) {
       const Vec3 along = way(u, at(lower), f), beyond = way(at(lower), at(end), f);
       const double size = along.norm() * beyond.norm();
@@ -309,11 +378,18 @@ class Solver {
       const Vec3 local = turns_[u * frames_ + f].conjugate() * normal;
       angles[f] = std::atan2(bone(u).dot(hinge.cross(local)), hinge.dot(local));
       weights[f] = normal.squaredNorm() / (size * size);
+      clear[f] = weights[f] * smoother_step(2 * std::sqrt(weights[f]) - 0.5);
     }
-    const double steps = 0.05 * input_.rate;
-    const auto found = angles_over_time(angles, weights, 0.003 * steps * steps, 1e-5);
+    // A limb that is nearly straight may be bent the other way: it follows frames that are clearly
+    // bent.
+    const double steps = 0.05 * input_.rate, smoothness = 0.003 * steps * steps;
+    auto found = angles_over_time(angles, clear, smoothness, 1e-4);
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (std::cos(angles[f] - found[f]) < 0) angles[f] += kPi;
+    }
+    found = angles_over_time(angles, weights, smoothness, 1e-5);
     for (std::size_t f = 0; f < frames_; ++f) twist(u, f, found[f]);
-    point_below(u);
+    twisted_[u] = true;
   }
 
   void twist_limbs() {
@@ -330,11 +406,12 @@ class Solver {
   // The share of the twist between the ends of a chain that a link and those above it take.
   double share_of(std::size_t joint, std::size_t place, std::size_t links) const {
     switch (joint < input_.roles.roles.size() ? input_.roles.roles[joint] : Role::none) {
-      case Role::left_lower_arm:
-      case Role::right_lower_arm:
-        return 1;
+      case Role::left_collar:
+      case Role::right_collar:
       case Role::left_upper_arm:
       case Role::right_upper_arm:
+      case Role::left_lower_arm:
+      case Role::right_lower_arm:
       case Role::left_upper_leg:
       case Role::right_upper_leg:
       case Role::left_lower_leg:
@@ -347,9 +424,12 @@ class Solver {
 
   void spread_twists() {
     for (std::size_t end = 0; end < joints_; ++end) {
-      if (children_[end].size() < 2) continue;
+      if (targets_[end].size() < 2) continue;
       std::vector<std::size_t> links;
-      for (int j = parents_[end]; has_bone(j); j = parents_[at(j)]) links.push_back(at(j));
+      for (int j = parents_[end], below = static_cast<int>(end);
+           has_bone(j) && targets_[at(j)][0] == below; below = j, j = parents_[at(j)]) {
+        links.push_back(at(j));
+      }
       // From a joint known in full to the next.
       if (links.empty() || parents_[links.back()] < 0) continue;
       std::ranges::reverse(links);
@@ -361,6 +441,7 @@ class Solver {
       unwrap(angles);
       for (std::size_t i = 0; i < links.size(); ++i) {
         const double share = share_of(links[i], i, links.size());
+        if (share > 0) twisted_[links[i]] = true;
         for (std::size_t f = 0; share > 0 && f < frames_; ++f) {
           twist(links[i], f, share * angles[f]);
         }
@@ -423,6 +504,10 @@ class Solver {
   std::vector<Quat> turns_;              // [joints x frames] from the reference pose, in world axes
   std::vector<Vec3> offsets_;            // [joints] from the parent, in the reference pose
   std::vector<double> weights_;          // [joints] by noise
+  std::vector<double> noise_;            // [joints]
+  std::vector<std::vector<int>> targets_;
+  std::vector<std::vector<Vec3>> shapes_;  // of the targets from the joint, in the reference pose
+  std::vector<bool> twisted_;              // a twist of its own was found
   PoseFromPositions result_;
 };
 

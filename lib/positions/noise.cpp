@@ -83,8 +83,24 @@ std::vector<double> noise_of(std::span<const int> parents, std::span<const Vec3>
   return noise;
 }
 
-bool smooth_track(std::span<Vec3> track, double noise, double rate) {
-  if (track.size() < 5 || !(noise > 0)) return false;
+namespace {
+
+// Where a track jumps to another place, as after a rest pose in the first frame.
+std::vector<std::size_t> jumps_of(std::span<const Vec3> track, double noise) {
+  std::vector<double> steps;
+  for (std::size_t t = 1; t < track.size(); ++t) steps.push_back((track[t] - track[t - 1]).norm());
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  std::vector<std::size_t> jumps;
+  for (std::size_t t = 0; t < steps.size(); ++t) {
+    if (steps[t] > std::max(10 * *middle, 20 * noise)) jumps.push_back(t + 1);
+  }
+  return jumps;
+}
+
+bool smooth_part(std::span<Vec3> track, double noise, double rate) {
+  if (track.size() < 5) return false;
   // How much the movement accelerates, over as long a step as shows it beyond the noise.
   const double of_noise = 3 * 6 * noise * noise;
   const std::size_t longest =
@@ -102,6 +118,19 @@ bool smooth_track(std::span<Vec3> track, double noise, double rate) {
   if (weight < 1e-4) return false;
   smooth_by(weight, track);
   return true;
+}
+
+}  // namespace
+
+bool smooth_track(std::span<Vec3> track, double noise, double rate) {
+  if (track.size() < 5 || !(noise > 0)) return false;
+  bool changed = false;
+  std::size_t begin = 0;
+  for (const std::size_t end : jumps_of(track, noise)) {
+    changed = smooth_part(track.subspan(begin, end - begin), noise, rate) || changed;
+    begin = end;
+  }
+  return smooth_part(track.subspan(begin), noise, rate) || changed;
 }
 
 }  // namespace krok
