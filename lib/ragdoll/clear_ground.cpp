@@ -8,13 +8,15 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "math/smoother_step.h"
+#include "math/window.h"
 
 namespace krok::ragdoll {
 
 namespace {
 
-constexpr double kLeft = 0.005, kDone = 0.008;  // metres that may stay in the ground
-constexpr double kFadeIn = 0.25;                // seconds
+constexpr double kLeft = 0.003, kDone = 0.005;     // metres that may stay in the ground
+constexpr double kStays = 0.003;                   // metres that a lift leaves
+constexpr double kFadeIn = 0.25, kLiftSpan = 0.2;  // seconds
 constexpr int kRounds = 50;
 constexpr double kGain = 1.5;      // of a round: smoothing takes some of it away
 constexpr double kMaxTurn = 0.35;  // radians in a round
@@ -105,6 +107,8 @@ class GroundClearer {
   // What each body lacks, [bodies][frames]; the largest depth.
   double find_turns();
   void apply(double smoothing);
+  // Lifts the whole body by what turns have left in the ground.
+  void lift();
 
  private:
   Transform place(std::span<const Transform> pose, int joint, int frame) const {
@@ -164,14 +168,33 @@ void GroundClearer::apply(double smoothing) {
     for (int f = begin_; f < motion_.frames; ++f) {
       const double fade = smoother_step((f - begin_) / rate_ / kFadeIn);
       const Vec3 turn = kGain * fade * turns_[b][at(f - begin_)];
-      Transform local = motion_.at(bodies_[b].joint, f);
+      const int joint = b == 0 ? 0 : bodies_[b].joint;  // the root is in the world's frame
+      Transform local = motion_.at(joint, f);
       if (b == 0) {
         local.position += turn;
       } else {
         local.orientation = (from_rotation_vector(turn) * local.orientation).normalized();
       }
-      motion_.set(bodies_[b].joint, f, local);
+      motion_.set(joint, f, local);
     }
+  }
+}
+
+void GroundClearer::lift() {
+  std::vector<double> needs;
+  std::vector<Transform> pose(skeleton_.names.size());
+  for (int f = begin_; f < motion_.frames; ++f) {
+    for (int j = 0; j < skeleton_.joint_count(); ++j) pose[at(j)] = place(pose, j, f);
+    needs.push_back(std::max(0.0, depth_in_ground(bodies_, pose, ground_) - kStays));
+  }
+  // The mean of a maximum over the same span is nowhere less.
+  const int reach = std::max(1, static_cast<int>(std::lround(kLiftSpan * rate_ / 2)));
+  needs = max_within(needs, 2 * reach);
+  for (int round = 0; round < 2; ++round) needs = mean_within(needs, reach);
+  for (int f = begin_; f < motion_.frames; ++f) {
+    Transform root = motion_.at(0, f);
+    root.position.y() += smoother_step((f - begin_) / rate_ / kFadeIn) * needs[at(f - begin_)];
+    motion_.set(0, f, root);
   }
 }
 
@@ -197,6 +220,7 @@ void clear_ground(const Skeleton& skeleton, const std::vector<Body>& bodies,
   for (int round = 0; round < kRounds && clearer.find_turns() > kDone; ++round) {
     clearer.apply(smoothing);
   }
+  clearer.lift();
 }
 
 }  // namespace krok::ragdoll

@@ -24,9 +24,10 @@ double depth_in_ground(const std::vector<Body>& bodies, std::span<const Transfor
                        const GroundHeight& ground);
 
 // Lifts bodies out of the ground from frame `begin` on: moves the root up and turns other bodies
-// about their joints, smoothed over time (a Gaussian of `smoothing` seconds) against jerks. The
-// correction fades in over the first frames from `begin`. A motion with nothing deeper than 8 mm
-// stays as it is. `rate` is frames per second.
+// about their joints, smoothed over time (a Gaussian of `smoothing` seconds) against jerks; what
+// that leaves deeper than 3 mm lifts the whole body. The correction fades in over the first frames
+// from `begin`. A motion with nothing deeper than 3 mm stays as it is. `rate` is frames per second.
+// The root is the joint that carries the body, as of clips rooted at the hips (HipsRoot).
 void clear_ground(const Skeleton& skeleton, const std::vector<Body>& bodies,
                   const GroundHeight& ground, int begin, double rate, double smoothing,
                   LocalMotion& motion);

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/index.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "math/smoother_step.h"
+#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/local_motion.h"
 #include "motion/mirror.h"
 #include "motion/place.h"
@@ -20,7 +24,9 @@ namespace {
 
 constexpr double kOverlap = 0.5;         // seconds in which the motion begins, at most
 constexpr double kShortest = 0.35;       // seconds of the way there
-constexpr double kLongestWay = 12;       // seconds
+constexpr double kLongestWay = 4;        // seconds
+constexpr double kHelps = 0.95;          // of the acceleration of the try before
+constexpr double kTooDeep = 0.3;         // metres in the ground
 constexpr double kTravel = 0.6;          // metres/s of the root, at most
 constexpr double kQuinticPeak = 5.7735;  // of its acceleration, for a way and time of 1
 constexpr int kTries = 16;
@@ -112,10 +118,11 @@ std::vector<Transform> pose_of(const Clip& clip, int frame) {
   return pose;
 }
 
-// Angular accelerations of the joints relative to their parents, of frames [begin, end).
-std::vector<double> accelerations(const LocalMotion& motion, int begin, int end, double rate) {
+// Angular accelerations of the first `joints` relative to their parents, of frames [begin, end).
+std::vector<double> accelerations(const LocalMotion& motion, int joints, int begin, int end,
+                                  double rate) {
   std::vector<double> found;
-  for (int j = 0; j < motion.joints; ++j) {
+  for (int j = 0; j < joints; ++j) {
     const auto turns = motion.joint_orientations(j);
     const auto step = [&](int f) {
       return rotation_vector(turns[at(f)].conjugate() * turns[at(f + 1)]);
@@ -142,9 +149,15 @@ double eased_time(double u) {
 
 class Riser {
  public:
-  Riser(const Clip& fall, int frame, Clip motion, const std::vector<Body>& bodies,
+  // Both clips are rooted at the hips (HipsRoot), which may append joints after the first `joints`.
+  Riser(const Clip& fall, int joints, int frame, Clip motion, const std::vector<Body>& bodies,
         const GetUpOptions& options)
-      : fall_(fall), frame_(frame), motion_(std::move(motion)), bodies_(bodies), options_(options) {
+      : fall_(fall),
+        joints_(joints),
+        frame_(frame),
+        motion_(std::move(motion)),
+        bodies_(bodies),
+        options_(options) {
     if (!options_.ground) {
       options_.ground = [](double, double) { return std::optional<double>(0.0); };
     }
@@ -158,7 +171,7 @@ class Riser {
   LocalMotion way(int frames, int overlap) const;
 
   const Clip& fall_;
-  int frame_;
+  int joints_, frame_;
   Clip motion_;
   const std::vector<Body>& bodies_;
   GetUpOptions options_;
@@ -184,7 +197,7 @@ void Riser::place() {
 // Seconds for the way there, from the largest turn and the root's way.
 double Riser::first_duration() const {
   double turn = 0;
-  for (int j = 0; j < local_.joints; ++j) {
+  for (int j = 0; j < joints_; ++j) {
     turn = std::max(turn, angle_between(locals_[at(j)].orientation, local_.at(j, 0).orientation));
   }
   const double travel = (locals_[0].position - local_.at(0, 0).position).norm();
@@ -227,13 +240,14 @@ LocalMotion Riser::way(int frames, int overlap) const {
 
 void Riser::run(RisenClip& risen) {
   const double rate = fall_.rate;
-  const double typical = percentile_99(accelerations(local_, 0, local_.frames, rate));
+  const double typical = percentile_99(accelerations(local_, joints_, 0, local_.frames, rate));
   // A motion that stands still gives no measure.
   risen.motion_acceleration = std::max(typical, 1.0);
   limit_ = options_.max_acceleration * risen.motion_acceleration;
   double duration = first_duration();
   LocalMotion motion;
   int frames = 0;
+  double before = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < kTries; ++attempt) {
     frames = std::max(2, static_cast<int>(std::ceil(duration * rate)));
     int overlap = std::min(static_cast<int>(kOverlap * rate), frames / 2);
@@ -241,10 +255,12 @@ void Riser::run(RisenClip& risen) {
     overlap -= overlap % 2;
     motion = way(frames, overlap);
     clear_ground(fall_.skeleton, bodies_, options_.ground, 0, rate, 0.08 * duration + 0.05, motion);
-    const auto found = accelerations(motion, 0, frames + 1, rate);
+    const auto found = accelerations(motion, joints_, 0, frames + 1, rate);
     risen.acceleration = found.empty() ? 0 : *std::ranges::max_element(found);
-    if (risen.acceleration <= limit_ || duration > kLongestWay) break;
-    // Accelerations fall with the square of the time.
+    // Accelerations fall with the square of the time, but for those that the motion begins with.
+    const bool helps = risen.acceleration < kHelps * before;
+    if (risen.acceleration <= limit_ || duration > kLongestWay || !helps) break;
+    before = risen.acceleration;
     duration *= std::clamp(std::sqrt(risen.acceleration / limit_), 1.08, 1.4);
   }
   risen.first_frame = frame_;
@@ -266,6 +282,16 @@ void Riser::run(RisenClip& risen) {
     const double depth = depth_in_ground(bodies_, pose_of(after, own), options_.ground);
     risen.depth = f == frame_ ? depth : std::max(risen.depth, depth);
   }
+}
+
+// What is beyond them is not a person who gets up.
+Status check_bounds(const RisenClip& risen) {
+  if (check(risen.clip) && risen.depth <= kTooDeep) return {};
+  return Error("ragdoll-rise",
+               fmt::format("getting up takes a body {:.1f} m into the ground, so that there is no "
+                           "motion to write",
+                           risen.depth),
+               "another --get-up, which begins more as the body lies");
 }
 
 }  // namespace
@@ -315,9 +341,19 @@ Result<RisenClip> get_up(const Clip& fall, int frame, std::span<const Clip> moti
   auto motion = resample(motions[at(risen.choice.motion)], fall.rate);
   if (!motion) return motion.error();
   if (risen.choice.mirrored) *motion = mirror(*motion, find_mirror_pairs(fall.skeleton, roles));
-  Riser riser(fall, frame, std::move(*motion), bodies, options);
+  // A turn below a root that is elsewhere would carry the body away.
+  const std::array<const Clip*, 2> clips = {&fall, &*motion};
+  const HipsRoot hips_root(clips, carrying_joint(roles));
+  const Clip lying = hips_root.rooted(fall);
+  Riser riser(lying, fall.joint_count(), frame, hips_root.rooted(*motion), bodies, options);
   riser.place();
   riser.run(risen);
+  risen.clip = hips_root.restored(risen.clip, fall.skeleton);
+  for (int f = 0; f < frame; ++f) {
+    std::ranges::copy(fall.frame_positions(f), risen.clip.frame_positions(f).begin());
+    std::ranges::copy(fall.frame_orientations(f), risen.clip.frame_orientations(f).begin());
+  }
+  if (Status status = check_bounds(risen); !status) return std::move(status).error();
   return risen;
 }
 

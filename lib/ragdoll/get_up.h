@@ -52,10 +52,13 @@ Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
 // begin lying and stand on y = 0. The motion is placed where its first pose is nearest; the
 // remaining difference is removed joint by joint along a quintic in time (the smoothest way from
 // rest to rest, Flash and Hogan 1985), while the motion begins slowly, so that neither speeds nor
-// accelerations jump. How long that takes follows from how far it is and how fast the motion moves.
-// Bodies that come into the ground are lifted out of it (clear_ground()).
+// accelerations jump. How long that takes follows from how far it is and how fast the motion moves,
+// 5.6 s at most. Bodies that come into the ground are lifted out of it (clear_ground()).
 //
-// Codes: those of choose_rise().
+// Poses are summed with the root at the hips (HipsRoot), so that a root above them does not matter.
+//
+// Codes: those of choose_rise(); ragdoll-rise for a result that is not finite or takes a body more
+// than 0.3 m into the ground.
 Result<RisenClip> get_up(const Clip& fall, int frame, std::span<const Clip> motions,
                          const RoleMap& roles, const std::vector<Body>& bodies,
                          const GetUpOptions& options);

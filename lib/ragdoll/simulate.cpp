@@ -19,6 +19,7 @@ constexpr double kLongest = 600;                // seconds
 constexpr double kStill = 0.025, kTurn = 0.15;  // metres, radians
 constexpr double kRest = 0.5;                   // seconds
 
+constexpr double kFarthest = 1e4;  // metres from where the fall begins
 constexpr double kSettling = 0.2;  // seconds
 constexpr double kBlend = 0.5;     // seconds from the simulation to the motion that goes on
 
@@ -45,7 +46,7 @@ class FallMaker {
   bool step(int number);
   void measure_off();
   Pose pose() const;
-  bool is_finite() const;
+  bool is_in_bounds() const;
   void copy_animated();
   void add_frames(double from, double to, const Pose& before, const Pose& after);
 
@@ -259,10 +260,12 @@ bool FallMaker::step(int number) {
   return false;
 }
 
-bool FallMaker::is_finite() const {
+bool FallMaker::is_in_bounds() const {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const BodyState state = world_.state(static_cast<int>(b));
-    if (!state.to_world.position.allFinite() || !state.to_world.orientation.coeffs().allFinite()) {
+    // Comparisons with what is not a number are false.
+    if (!(state.to_world.position.norm() <= kFarthest) ||
+        !state.to_world.orientation.coeffs().allFinite()) {
       return false;
     }
   }
@@ -279,9 +282,11 @@ Status FallMaker::run() {
     const Pose before = has_frame ? pose() : Pose();
     apply_pushes(number);
     const bool moves = step(number);
-    if (!is_finite()) {
-      return Error("ragdoll-value", "the simulation left the finite numbers",
-                   "weaker pushes, shapes that do not overlap, or a begin where the motion does "
+    if (!is_in_bounds()) {
+      return Error("ragdoll-value",
+                   "the simulation left its bounds, 10 km around the begin of the fall",
+                   "a shorter --duration if it falls off the ground; weaker pushes, shapes that do "
+                   "not overlap, or a begin where the motion does "
                    "not jump (after a rest frame)");
     }
     if (has_frame) add_frames(time, next, before, pose());

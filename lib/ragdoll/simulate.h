@@ -64,8 +64,8 @@ std::vector<Transform> pose_at(const Clip& clip, double time);
 //
 // `bodies` are make_bodies()', `limits` as for make_joints(). Codes: ragdoll-time for times outside
 // the motion or the ranges, ragdoll-value for pushes at bodies that are not there or not finite,
-// and for a simulation that leaves the finite numbers, ragdoll-mode for an animated body below one
-// that is not.
+// and for a simulation that leaves 10 km around the begin of the fall, ragdoll-mode for an animated
+// body below one that is not.
 Result<Fall> simulate_fall(const Clip& motion, const RoleMap& roles,
                            const std::vector<Body>& bodies, const ik::Limits& limits,
                            const FallOptions& options);

@@ -10,7 +10,7 @@ namespace krok {
 // that differs between two runs on the same input: base names only, no timestamps.
 struct Provenance {
   std::string tool;     // "krok-import"
-  std::string version;  // "0.1.0"
+  std::string version;  // "0.2.0"
   struct Source {
     std::string name;  // base name of the file
     std::string xxh3;  // sixteen hexadecimal digits

@@ -17,7 +17,7 @@
 // folder, TOOL.journal.jsonl (for a shard TOOL.2-of-4.journal.jsonl), with one JSON object per line
 // and output:
 //
-//   {"output": "a/walk.anim", "made_with": "16 digits", "version": "0.1.0", "input":
+//   {"output": "a/walk.anim", "made_with": "16 digits", "version": "0.2.0", "input":
 //   "takes/walk.bvh",
 //    "inputs": [{"path", "xxh3"}], "choices": [{"folder", "ending", "xxh3"}],
 //    "outputs": [{"path", "size", "xxh3"}], "issues": [], "result": {}}

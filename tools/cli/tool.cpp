@@ -197,7 +197,7 @@ int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>&
   if (expanded != arguments) wish = line.parse(expanded);
   if (!wish) return fail_usage(spec, arguments, many, wish.error());
   if (*wish == CommandLine::Wish::version) {
-    return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version()));
+    return print_and_end(spec.name, fmt::format("{} {}\n", spec.name, version_of_build()));
   }
   // The help is that of single-file mode, whatever else was given.
   if (*wish == CommandLine::Wish::help) {
@@ -250,10 +250,6 @@ void install_out_of_memory_handler(const char* path) {
 }
 
 }  // namespace
-
-std::string version() {
-  return KROK_VERSION;
-}
 
 std::function<Result<std::string>()> always(std::string ending) {
   return [ending = std::move(ending)] { return ending; };

@@ -206,7 +206,9 @@ int print_and_end(const std::string& tool, const std::string& text);
 // Calls spec.run and turns exceptions into Errors (out-of-memory, internal).
 Result<int> run_guarded(const ToolSpec& spec, ToolContext& context);
 
-// The version of the project, "0.1.0".
+// The version of the project, "0.2.0".
 std::string version();
+// The same for people: "0.2.0 (5599e605 with uncommitted changes)".
+std::string version_of_build();
 
 }  // namespace krok::cli

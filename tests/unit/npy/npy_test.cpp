@@ -128,7 +128,8 @@ TEST(Npy, published_orders_make_people) {
     const auto arranged = krok::arrange(*krok::named_skeleton(name));
     ASSERT_TRUE(arranged.ok()) << name << ": " << arranged.error().message;
     EXPECT_TRUE(check(arranged->skeleton).ok()) << name;
-    EXPECT_TRUE(arranged->roles.humanoid) << name;
+    // The robot has no head.
+    EXPECT_EQ(arranged->roles.humanoid, name != "g1_34") << name;
   }
 }
 

@@ -118,6 +118,49 @@ TEST_F(GetUp, NothingJumpsOrSinks) {
   }
 }
 
+// The same with a root above the hips that stands elsewhere and has another up axis, as many sets
+// have: a lift along that root's axes would take the body out of the world.
+TEST_F(GetUp, ARootAboveTheHipsDoesNotMatter) {
+  const auto with_root = [](const Clip& clip, double turn) {
+    const Transform root{Vec3(20, 1, -5), axis_rotation(Axis::y, turn) * axis_rotation(Axis::x, 2)};
+    Clip result;
+    result.rate = clip.rate;
+    result.skeleton.add("Reference", -1, root);
+    for (std::size_t j = 0; j < clip.skeleton.names.size(); ++j) {
+      result.skeleton.add(clip.skeleton.names[j], clip.skeleton.parents[j] + 1,
+                          clip.skeleton.reference[j], clip.skeleton.end_sites[j] != 0);
+    }
+    result.resize(clip.frame_count());
+    std::vector<Transform> pose(clip.skeleton.names.size());
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      clip.get_pose(f, pose);
+      std::vector<Transform> all = {root};
+      all.insert(all.end(), pose.begin(), pose.end());
+      result.set_pose(f, all);
+    }
+    return result;
+  };
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    const Clip fall = lying(m, 2.2, 0.5);
+    const Clip expected = up(fall).clip;
+    std::vector<Clip> motions;
+    for (const Clip& motion : motions_) motions.push_back(with_root(motion, 3));
+    const Clip other = with_root(fall, 0);
+    const RoleMap roles = find_roles(other.skeleton);
+    const auto bodies = *make_bodies(other.skeleton, roles);
+    const auto risen = get_up(other, 20, motions, roles, bodies, {});
+    ASSERT_TRUE(risen.ok());
+    ASSERT_EQ(risen->clip.frame_count(), expected.frame_count()) << m;
+    for (int f = 0; f < expected.frame_count(); ++f) {
+      for (std::size_t j = 0; j < expected.skeleton.names.size(); ++j) {
+        ASSERT_LT((risen->clip.frame_positions(f)[j + 1] - expected.frame_positions(f)[j]).norm(),
+                  1e-3f)
+            << m << " " << f;
+      }
+    }
+  }
+}
+
 // Up to the first frame it is the fall, from the handover on the motion, moved and turned.
 TEST_F(GetUp, FallAndMotionStayWhatTheyAre) {
   const Clip fall = lying(1, 0.8, 0.2);
