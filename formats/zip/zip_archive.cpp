@@ -79,13 +79,13 @@ Result<std::vector<std::byte>> Archive::read(const std::string& name,
     return damaged(fmt::format("{} cannot be unpacked: {}", shown(name), zip_strerror(archive)));
   }
   // By what comes out, as the archive may say anything.
-  constexpr std::size_t kStep = std::size_t{1} << 20;
+  const std::size_t step = std::clamp<std::uint64_t>(facts.size + 1, 1024, std::uint64_t{1} << 20);
   std::vector<std::byte> bytes;
   zip_int64_t got = 0;
   do {
     const std::size_t before = bytes.size();
-    bytes.resize(before + kStep);
-    got = zip_fread(file, bytes.data() + before, kStep);
+    bytes.resize(before + step);
+    got = zip_fread(file, bytes.data() + before, step);
     bytes.resize(before + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
   } while (got > 0 && bytes.size() <= most_bytes);
   const bool whole = zip_fclose(file) == 0 && got == 0;  // checks the checksum, too
