@@ -19,14 +19,14 @@ import os
 import struct
 import subprocess
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Iterable, NamedTuple, Union
 
 import numpy as np
 
 __all__ = ["Camera", "Contact", "Error", "FormatError", "Keytime", "Model", "Motion", "Part", "Report", "Skeleton",
-           "StepLibrary", "read", "run", "write"]
+           "StepLibrary", "from_positions", "read", "run", "write"]
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -512,3 +512,16 @@ def run(verb: str, *inputs: Path, **options: Any) -> Report:
     if done.returncode not in (0, 1) or report is None:
         raise Error(done.returncode, done.stderr, report)
     return report
+
+
+def from_positions(positions: Any, skeleton: Path, rate: float, **options: Any) -> Motion:
+    """The motion of joint positions, (frames, joints, 3), with rotations found by `krok-import`.
+
+    `skeleton` says what the joints are: "humanml22", "smpl24", "coco17" and so on, or a file as --skeleton takes it;
+    `options` are those of `krok-import`, such as unit="mm", up="z". Error if the array is no motion.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        array, clip = os.path.join(folder, "positions.npy"), os.path.join(folder, "motion.anim")
+        np.save(array, np.asarray(positions), allow_pickle=False)
+        run("import", array, skeleton=skeleton, fps=rate, output=clip, orientation="xyzw", **options)
+        return replace(read(clip), path=None)  # the file is gone, its map stays
