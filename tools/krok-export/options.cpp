@@ -33,6 +33,26 @@ Result<std::string> extension_of(ExportFormat format) {
                "use --format bvh, glb, gltf, csv, npz, mot or sto");
 }
 
+// Words that one tries first have other homes.
+ValueKind<What> series_kind() {
+  ValueKind<What> kind = choice<What>({{"positions", What::positions},
+                                       {"local", What::local},
+                                       {"angles", What::angles},
+                                       {"quaternions", What::quaternions},
+                                       {"velocities", What::velocities},
+                                       {"contacts", What::contacts}});
+  kind.read = [known = kind.read](const std::string& text) -> Result<What> {
+    auto read = known(text);
+    if (read) return read;
+    Error error = std::move(read).error();
+    if (text == "speed" || text == "gait")
+      error.hint = "krok-keys --table OUT.csv has speed and gait";
+    if (text == "events") error.hint = "krok-keys -o NAME.keys.json has gait events";
+    return error;
+  };
+  return kind;
+}
+
 Status check(const Options& options) {
   // Without a format, the output's extension determines it.
   if (options.format == ExportFormat::from_extension) return {};
@@ -93,13 +113,7 @@ void declare(CommandOptions& command, Options& options) {
       "sto; default: the "
       "output's extension");
   command.add(
-      "--what SERIES", options.what,
-      choice<What>({{"positions", What::positions},
-                    {"local", What::local},
-                    {"angles", What::angles},
-                    {"quaternions", What::quaternions},
-                    {"velocities", What::velocities},
-                    {"contacts", What::contacts}}),
+      "--what SERIES", options.what, series_kind(),
       "Tables: positions (world, m), velocities (world, m/s), quaternions (world: qx, qy, "
       "qz, qw), local (position in m and quaternion relative to the parent), angles (of "
       "hips, knees, ankles, shoulders, elbows in degrees, those that krok-plot draws, see "
