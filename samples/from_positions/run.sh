@@ -8,7 +8,7 @@
 . "$(dirname "${BASH_SOURCE[0]}")/../story.sh"
 
 check_arguments 1 "$@"
-need_tools body diff edit export import plot skin
+need_tools body edit export import plot skin
 need_generators make-walk
 python=python3
 "$python" -c 'import numpy' 2>/dev/null || python=/usr/bin/python3
