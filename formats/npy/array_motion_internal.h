@@ -17,6 +17,7 @@ struct ArrayMotion {
   std::vector<Vec3> positions;     // [frames x joints], in the file's unit and axes
   std::vector<Quat> orientations;  // [frames x joints], joint to world; empty: to be found
   bool is_krok = false;            // in Krok's unit and axes
+  bool upright = false;            // the reference pose is +Y up and faces +Z, whatever the motion
   double usual_rate = 0;           // 0: unknown
   MotionKeys keys;
   std::size_t motions = 1;

@@ -68,6 +68,7 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
   auto array = file.arrays.read(name);
   if (!array) return array.error();
   ArrayMotion motion;
+  motion.upright = true;
   std::vector<std::size_t>& shape = array->shape;
   const std::string text = shape_text(shape);
   const std::string what = name.empty() ? "the array" : name;
@@ -169,6 +170,7 @@ Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string
       motion->orientations[f * joints + j] = turn.normalized();
     }
   }
+  motion->upright = false;
   // Bones as the rotations have them: the mean in their parents' frames.
   double worst = 0;
   for (std::size_t j = 1; j < joints; ++j) {
@@ -225,6 +227,23 @@ Result<ArrayMotion> motion_of(const ArrayFile& file) {
                fmt::format("none of the arrays is known as a motion: {}",
                            shown(fmt::format("{}", fmt::join(names, ", ")))),
                "name the positions \"positions\"; formats/npy/SPEC.md lists the names");
+}
+
+// Where +Z goes as +Y is turned to the axis that is up; of -Y as if about X.
+Direction forward_below(Direction up) {
+  switch (up) {
+    case Direction::plus_z:
+      return Direction::minus_y;
+    case Direction::minus_z:
+      return Direction::plus_y;
+    case Direction::minus_y:
+      return Direction::minus_z;
+    case Direction::plus_x:
+    case Direction::minus_x:
+    case Direction::plus_y:
+      break;
+  }
+  return Direction::plus_z;
 }
 
 // Lengths of bones for the reference pose, by a few frames, in the file's unit.
@@ -334,7 +353,16 @@ class Reader {
                        &motion_.positions[f * joints] + joints);
       }
       conventions = detect_conventions(motion_.skeleton, motion_.roles, samples);
+      if (motion_.upright) {
+        conventions.forward = forward_below(conventions.up);
+        conventions.forward_confidence = Confidence::certain;
+        conventions.forward_reason = "the reference pose is made so";
+      }
       apply_given(options_, conventions);
+      if (motion_.upright) {
+        conventions.reference_up = Direction::plus_y;
+        conventions.reference_forward = Direction::plus_z;
+      }
       report_conventions(conventions, options_, "npy", file_.name, capture_.diagnostics);
     }
     const auto conversion = Conversion::make(conventions);

@@ -58,13 +58,25 @@ Result<std::vector<Vec3>> joints_of_body(const ArrayFile& file, std::size_t join
   return places;
 }
 
-// Those of a skeleton: by names, or else in its order.
+constexpr std::size_t kBodyJoints = 22;  // others are of hands and face
+
+// Those of a skeleton: in its order, or by names. Hands and face that it lacks are the usual ones.
 Result<std::vector<Vec3>> joints_of_skeleton(const Skeleton& given, const Skeleton& smpl) {
   std::vector<Vec3> places;
-  const bool ordered = given.joint_count() >= smpl.joint_count() &&
-                       std::equal(smpl.parents.begin(), smpl.parents.end(), given.parents.begin());
+  const std::size_t common = std::min(given.parents.size(), smpl.parents.size());
+  const bool ordered =
+      common >= kBodyJoints &&
+      std::equal(smpl.parents.begin(), smpl.parents.begin() + std::ptrdiff_t(common),
+                 given.parents.begin());
   for (std::size_t j = 0; j < smpl.names.size(); ++j) {
-    const int found = ordered ? static_cast<int>(j) : given.find(smpl.names[j]);
+    const bool listed = ordered && at(given.joint_count()) > j;
+    const int found = listed ? static_cast<int>(j) : given.find(smpl.names[j]);
+    if (found < 0 && j >= kBodyJoints) {
+      const std::size_t parent = at(smpl.parents[j]);
+      places.push_back(places[parent] + smpl.reference[j].position -
+                       smpl.reference[parent].position);
+      continue;
+    }
     if (found < 0) {
       return Error("npy-skeleton",
                    fmt::format("the skeleton has no joint {}, and others than SMPL in its order",
@@ -156,6 +168,7 @@ Result<ArrayMotion> read_smpl(const ArrayFile& file) {
   auto arranged = arrange(*named_skeleton(kind));
   if (!arranged) return arranged.error();
   ArrayMotion motion;
+  motion.upright = true;
   motion.skeleton = std::move(arranged->skeleton);
   motion.roles = std::move(arranged->roles);
   std::vector<Vec3> roots(frames, Vec3::Zero());

@@ -40,6 +40,13 @@ def degrees(a, b):
     return np.degrees(2 * np.arcsin(np.clip(np.linalg.norm(a - b, axis=(-1, -2)) / np.sqrt(8), 0, 1)))
 
 
+def without_offset(found, truth):
+    """`found` times the constant rotation that brings it nearest to `truth`: which way a rig's rest pose twists a bone
+    does not show in positions."""
+    u, _, v = np.linalg.svd(np.einsum("tji,tjk->ik", found, truth))
+    return found @ (u @ np.diag([1, 1, np.linalg.det(u @ v)]) @ v)
+
+
 def rodrigues(vectors):
     angle = np.linalg.norm(vectors, axis=-1)[..., None, None]
     x, y, z = np.moveaxis(vectors / np.maximum(angle[..., 0], 1e-12), -1, 0)
@@ -108,6 +115,51 @@ class Arrays(unittest.TestCase):
             self.assertLess(np.abs(found["positions"] - places).max(), 1e-6)
             self.assertLess(degrees(matrices(found["quaternions"]), turns).max(), 0.1)
             self.assertEqual(found["rate"], 60)
+
+    def test_a_body_in_a_world_with_z_up(self):
+        walk = self.walk()
+        order = ["Hips", "LeftUpLeg", "RightUpLeg", "Spine", "LeftLeg", "RightLeg", "Spine1", "LeftFoot", "RightFoot",
+                 "Spine2", "LeftToeBase", "RightToeBase", "Neck", "LeftShoulder", "RightShoulder", "Head", "LeftArm",
+                 "RightArm", "LeftForeArm", "RightForeArm", "LeftHand", "RightHand"]
+        places = walk["positions"][:, [list(walk["names"]).index(name) for name in order]]
+        upright = self.imported("y.npy", places, skeleton="humanml22", fps=60)
+        self.assertLess(np.abs(upright["positions"] - places).max(), 1e-4)
+        lying = self.imported("z.npy", 1000 * places @ [[1, 0, 0], [0, 0, 1], [0, -1, 0]], skeleton="humanml22",
+                              fps=60)
+        self.assertLess(np.abs(lying["positions"] - places).max(), 1e-4)
+        self.assertLess(degrees(matrices(lying["quaternions"]), matrices(upright["quaternions"])).max(), 0.1)
+        feet = [lying["names"].tolist().index(name) for name in ("left_foot", "left_ankle")]
+        toes, ankle = lying["reference_positions"][feet]
+        self.assertGreater((toes - ankle)[2], 0.05)  # the reference pose faces +Z
+
+    def test_captures_come_back_from_their_positions(self):
+        corpus = SOURCE.parent / "shared" / "corpus" / "bvh"
+        off = {"arm": [], "leg": [], "hand": []}
+        for folder in sorted(corpus.glob("*"))[::3]:
+            for capture in [path for path in sorted(folder.glob("*.bvh")) if path.stat().st_size < 400_000][:1]:
+                try:
+                    krok.run("import", capture, output=self.folder / "c.anim")
+                    krok.run("export", self.folder / "c.anim", output=self.folder / "c.npz")
+                    roles = krok.read(self.folder / "c.anim").roles
+                except krok.Error:
+                    continue  # not a person, or damaged
+                truth = np.load(self.folder / "c.npz")
+                if len(truth["positions"]) < 20:
+                    continue
+                found = self.imported("p.npy", truth["positions"], skeleton=self.folder / "c.npz", fps=truth["rate"],
+                                      up="y", forward="z", unit="m")
+                bones = np.linalg.norm(np.diff(found["positions"][:, [0, 1]], axis=1), axis=-1)
+                self.assertLess(np.ptp(bones), 1e-5, capture)
+                turns = [matrices(motion["quaternions"]) for motion in (found, truth)]
+                for role, kind in (("left_lower_arm", "arm"), ("right_lower_arm", "arm"), ("left_lower_leg", "leg"),
+                                   ("right_lower_leg", "leg"), ("left_hand", "hand"), ("right_hand", "hand")):
+                    joint = list(truth["names"]).index(roles[role]) if role in roles else -1
+                    if joint >= 0 and (kind != "hand" or (truth["parents"] == joint).sum() > 2):
+                        own = without_offset(turns[0][:, joint], turns[1][:, joint])
+                        off[kind].append(np.median(degrees(own, turns[1][:, joint])))
+        for kind, angles in off.items():
+            if len(angles) > 3:
+                self.assertLess(np.median(angles), 3, kind)
 
     def test_rotations_with_positions(self):
         walk = self.walk()
