@@ -23,10 +23,10 @@ namespace {
 #define KROK_SMPL_FINGER(side, finger)                                                          \
   side "_" finger "1<" side "_wrist " side "_" finger "2<" side "_" finger "1 " side "_" finger \
        "3<" side "_" finger "2 "
-#define KROK_SMPL_HAND(side)                                                                      \
-  KROK_SMPL_FINGER(side, "index")                                                                 \
-  KROK_SMPL_FINGER(side, "middle") KROK_SMPL_FINGER(side, "pinky") KROK_SMPL_FINGER(side, "ring") \
-      KROK_SMPL_FINGER(side, "thumb")
+#define KROK_SMPL_HAND(side)       \
+  KROK_SMPL_FINGER(side, "index")  \
+  KROK_SMPL_FINGER(side, "middle") \
+  KROK_SMPL_FINGER(side, "pinky") KROK_SMPL_FINGER(side, "ring") KROK_SMPL_FINGER(side, "thumb")
 #define KROK_SOMA_FINGER(side, finger)                                                       \
   side "Hand" finger "1<" side "Hand " side "Hand" finger "2<" side "Hand" finger "1 " side  \
        "Hand" finger "3<" side "Hand" finger "2 " side "Hand" finger "4<" side "Hand" finger \
@@ -63,108 +63,100 @@ struct Named {
   std::string_view joints;
 };
 
-constexpr Named
-    kNamed
-        [] =
-            {
-                // smplx's joint_names.py (vchoutas/smplx): SMPL-H's order is that of SMPL without
-                // the hands'
-                // joints 22 and 23, then the fingers.
-                {"smpl22", 0, KROK_SMPL_BODY},
-                {"smpl24", 0, KROK_SMPL_BODY "left_hand<left_wrist right_hand<right_wrist"},
-                {"smplh52", 0, KROK_SMPL_BODY KROK_SMPL_HAND("left") KROK_SMPL_HAND("right")},
-                {"smplx55", 0,
-                 KROK_SMPL_BODY
-                 "jaw<head@helper left_eye<head@helper right_eye<head@helper " KROK_SMPL_HAND(
-                     "left") KROK_SMPL_HAND("right")},
-                // EricGuo5513/HumanML3D: SMPL's body at 20 frames per second; README and
-                // paramUtil.py.
-                {"humanml22", 20, KROK_SMPL_BODY},
-                // KIT Motion-Language: the joints of the Master Motor Map, as in HumanML3D's
-                // paramUtil.py (tree)
-                // and Mathux/TEMOS (names).
-                {"kit21", 12.5,
-                 "root@hips BP<root@spine BT<BP@spine BLN<BT@chest BUN<BLN@head "
-                 "LS<BLN@left_upper_arm "
-                 "LE<LS@left_lower_arm LW<LE@left_hand RS<BLN@right_upper_arm "
-                 "RE<RS@right_lower_arm "
-                 "RW<RE@right_hand LH<root@left_upper_leg LK<LH@left_lower_leg LA<LK@left_foot "
-                 "LMrot<LA@left_toes LF<LMrot@left_toes RH<root@right_upper_leg "
-                 "RK<RH@right_lower_leg "
-                 "RA<RK@right_foot RMrot<RA@right_toes RF<RMrot@right_toes"},
-                // Human3.6M, the 17 joints of una-dinosauria/3d-pose-baseline,
-                // facebookresearch/VideoPose3D.
-                {"h36m17", 50,
-                 "hips right_hip<hips right_knee<right_hip right_ankle<right_knee left_hip<hips "
-                 "left_knee<left_hip left_ankle<left_knee spine<hips thorax<spine@chest "
-                 "neck<thorax head<neck "
-                 "left_shoulder<thorax left_elbow<left_shoulder left_wrist<left_elbow "
-                 "right_shoulder<thorax "
-                 "right_elbow<right_shoulder right_wrist<right_elbow"},
-                // COCO's keypoints (cocodataset.org). It has neither hips nor neck: means of both
-                // sides.
-                {"coco17", 0,
-                 "nose<neck@head left_eye<nose@helper right_eye<nose@helper left_ear<nose@helper "
-                 "right_ear<nose@helper left_shoulder<neck@left_upper_arm "
-                 "right_shoulder<neck@right_upper_arm "
-                 "left_elbow<left_shoulder right_elbow<right_shoulder left_wrist<left_elbow "
-                 "right_wrist<right_elbow left_hip<hips right_hip<hips left_knee<left_hip "
-                 "right_knee<right_hip "
-                 "left_ankle<left_knee right_ankle<right_knee hips=left_hip+right_hip "
-                 "neck<hips=left_shoulder+right_shoulder"},
-                // MediaPipe's BlazePose landmarks (ai.google.dev/edge/mediapipe, pose landmarker).
-                {"mediapipe33", 30,
-                 "nose<neck@head left_eye_inner<nose@helper left_eye<nose@helper "
-                 "left_eye_outer<nose@helper "
-                 "right_eye_inner<nose@helper right_eye<nose@helper right_eye_outer<nose@helper "
-                 "left_ear<nose@helper right_ear<nose@helper mouth_left<nose@helper "
-                 "mouth_right<nose@helper "
-                 "left_shoulder<neck@left_upper_arm right_shoulder<neck@right_upper_arm "
-                 "left_elbow<left_shoulder right_elbow<right_shoulder left_wrist<left_elbow "
-                 "right_wrist<right_elbow left_pinky<left_wrist@left_little_1 "
-                 "right_pinky<right_wrist@right_little_1 left_index<left_wrist@left_index_1 "
-                 "right_index<right_wrist@right_index_1 left_thumb<left_wrist@left_thumb_1 "
-                 "right_thumb<right_wrist@right_thumb_1 left_hip<hips right_hip<hips "
-                 "left_knee<left_hip "
-                 "right_knee<right_hip left_ankle<left_knee right_ankle<right_knee "
-                 "left_heel<left_ankle@helper "
-                 "right_heel<right_ankle@helper left_foot_index<left_ankle@left_toes "
-                 "right_foot_index<right_ankle@right_toes hips=left_hip+right_hip "
-                 "neck<hips=left_shoulder+right_shoulder"},
-                // OptiTrack Motive's skeleton of 21 bones as NatNet streams and exports it.
-                {"optitrack21", 120,
-                 "Hip@hips Ab<Hip@spine Chest<Ab Neck<Chest Head<Neck LShoulder<Chest@left_collar "
-                 "LUArm<LShoulder@left_upper_arm LFArm<LUArm@left_lower_arm LHand<LFArm@left_hand "
-                 "RShoulder<Chest@right_collar RUArm<RShoulder@right_upper_arm "
-                 "RFArm<RUArm@right_lower_arm "
-                 "RHand<RFArm@right_hand LThigh<Hip@left_upper_leg LShin<LThigh@left_lower_leg "
-                 "LFoot<LShin@left_foot RThigh<Hip@right_upper_leg RShin<RThigh@right_lower_leg "
-                 "RFoot<RShin@right_foot LToe<LFoot@left_toes RToe<RFoot@right_toes"},
-                // nv-tlabs/kimodo, kimodo/skeleton/definitions.py.
-                {
-                    "soma30", 30,
-                    KROK_SOMA_TRUNK
-                    "Jaw<Head@helper LeftEye<Head@helper RightEye<Head@helper " KROK_SOMA_ARM(
-                        "Left") "LeftHandThumbEnd<LeftHand "
-                                "LeftHandMiddleEnd<LeftHand " KROK_SOMA_ARM("Right") "RightHandThum"
-                                                                                     "bEnd<"
-                                                                                     "RightHand "
-                                                                                     "RightHandMidd"
-                                                                                     "leEnd<"
-                                                                                     "RightHand"
-                                                                                     " " KROK_SOMA_LEG("Left")
-                                                                                         KROK_SOMA_LEG(
-                                                                                             "Righ"
-                                                                                             "t")},
-                {"soma77", 30,
-                 KROK_SOMA_TRUNK "HeadEnd<Head@helper Jaw<Head@helper LeftEye<Head@helper "
-                                 "RightEye<Head@helper " KROK_SOMA_ARM("Left") KROK_SOMA_HAND(
-                                     "Left") KROK_SOMA_ARM("Right") KROK_SOMA_HAND("Right")
-                                     KROK_SOMA_LEG("Left") "LeftToeEnd<LeftToeBase " KROK_SOMA_LEG(
-                                         "Right") "RightToeEnd<RightToeBase"},
-                {"g1_34", 30,
-                 "pelvis_skel@hips " KROK_G1_LEG("left") KROK_G1_LEG(
-                     "right") "waist_yaw_skel<pelvis_skel@spine "
+constexpr Named kNamed[] = {
+    // smplx's joint_names.py (vchoutas/smplx): SMPL-H's order is that of SMPL without the hands'
+    // joints 22 and 23, then the fingers.
+    {"smpl22", 0, KROK_SMPL_BODY},
+    {"smpl24", 0, KROK_SMPL_BODY "left_hand<left_wrist right_hand<right_wrist"},
+    {"smplh52", 0, KROK_SMPL_BODY KROK_SMPL_HAND("left") KROK_SMPL_HAND("right")},
+    {"smplx55", 0,
+     KROK_SMPL_BODY "jaw<head@helper left_eye<head@helper right_eye<head@helper " KROK_SMPL_HAND(
+         "left") KROK_SMPL_HAND("right")},
+    // EricGuo5513/HumanML3D: SMPL's body at 20 frames per second; README and
+    // paramUtil.py.
+    {"humanml22", 20, KROK_SMPL_BODY},
+    // KIT Motion-Language: the joints of the Master Motor Map, as in HumanML3D's
+    // paramUtil.py (tree)
+    // and Mathux/TEMOS (names).
+    {"kit21", 12.5,
+     "root@hips BP<root@spine BT<BP@spine BLN<BT@chest BUN<BLN@head "
+     "LS<BLN@left_upper_arm "
+     "LE<LS@left_lower_arm LW<LE@left_hand RS<BLN@right_upper_arm "
+     "RE<RS@right_lower_arm "
+     "RW<RE@right_hand LH<root@left_upper_leg LK<LH@left_lower_leg LA<LK@left_foot "
+     "LMrot<LA@left_toes LF<LMrot@left_toes RH<root@right_upper_leg "
+     "RK<RH@right_lower_leg "
+     "RA<RK@right_foot RMrot<RA@right_toes RF<RMrot@right_toes"},
+    // Human3.6M, the 17 joints of una-dinosauria/3d-pose-baseline,
+    // facebookresearch/VideoPose3D.
+    {"h36m17", 50,
+     "hips right_hip<hips right_knee<right_hip right_ankle<right_knee left_hip<hips "
+     "left_knee<left_hip left_ankle<left_knee spine<hips thorax<spine@chest "
+     "neck<thorax head<neck "
+     "left_shoulder<thorax left_elbow<left_shoulder left_wrist<left_elbow "
+     "right_shoulder<thorax "
+     "right_elbow<right_shoulder right_wrist<right_elbow"},
+    // COCO's keypoints (cocodataset.org). It has neither hips nor neck: means of both
+    // sides.
+    {"coco17", 0,
+     "nose<neck@head left_eye<nose@helper right_eye<nose@helper left_ear<nose@helper "
+     "right_ear<nose@helper left_shoulder<neck@left_upper_arm "
+     "right_shoulder<neck@right_upper_arm "
+     "left_elbow<left_shoulder right_elbow<right_shoulder left_wrist<left_elbow "
+     "right_wrist<right_elbow left_hip<hips right_hip<hips left_knee<left_hip "
+     "right_knee<right_hip "
+     "left_ankle<left_knee right_ankle<right_knee hips=left_hip+right_hip "
+     "neck<hips=left_shoulder+right_shoulder"},
+    // MediaPipe's BlazePose landmarks (ai.google.dev/edge/mediapipe, pose landmarker).
+    {"mediapipe33", 30,
+     "nose<neck@head left_eye_inner<nose@helper left_eye<nose@helper "
+     "left_eye_outer<nose@helper "
+     "right_eye_inner<nose@helper right_eye<nose@helper right_eye_outer<nose@helper "
+     "left_ear<nose@helper right_ear<nose@helper mouth_left<nose@helper "
+     "mouth_right<nose@helper "
+     "left_shoulder<neck@left_upper_arm right_shoulder<neck@right_upper_arm "
+     "left_elbow<left_shoulder right_elbow<right_shoulder left_wrist<left_elbow "
+     "right_wrist<right_elbow left_pinky<left_wrist@left_little_1 "
+     "right_pinky<right_wrist@right_little_1 left_index<left_wrist@left_index_1 "
+     "right_index<right_wrist@right_index_1 left_thumb<left_wrist@left_thumb_1 "
+     "right_thumb<right_wrist@right_thumb_1 left_hip<hips right_hip<hips "
+     "left_knee<left_hip "
+     "right_knee<right_hip left_ankle<left_knee right_ankle<right_knee "
+     "left_heel<left_ankle@helper "
+     "right_heel<right_ankle@helper left_foot_index<left_ankle@left_toes "
+     "right_foot_index<right_ankle@right_toes hips=left_hip+right_hip "
+     "neck<hips=left_shoulder+right_shoulder"},
+    // OptiTrack Motive's skeleton of 21 bones as NatNet streams and exports it.
+    {"optitrack21", 120,
+     "Hip@hips Ab<Hip@spine Chest<Ab Neck<Chest Head<Neck LShoulder<Chest@left_collar "
+     "LUArm<LShoulder@left_upper_arm LFArm<LUArm@left_lower_arm LHand<LFArm@left_hand "
+     "RShoulder<Chest@right_collar RUArm<RShoulder@right_upper_arm "
+     "RFArm<RUArm@right_lower_arm "
+     "RHand<RFArm@right_hand LThigh<Hip@left_upper_leg LShin<LThigh@left_lower_leg "
+     "LFoot<LShin@left_foot RThigh<Hip@right_upper_leg RShin<RThigh@right_lower_leg "
+     "RFoot<RShin@right_foot LToe<LFoot@left_toes RToe<RFoot@right_toes"},
+    // nv-tlabs/kimodo, kimodo/skeleton/definitions.py.
+    {"soma30", 30,
+     KROK_SOMA_TRUNK "Jaw<Head@helper LeftEye<Head@helper RightEye<Head@helper " KROK_SOMA_ARM(
+         "Left") "LeftHandThumbEnd<LeftHand "
+                 "LeftHandMiddleEnd<LeftHand " KROK_SOMA_ARM("Right") "RightHandThum"
+                                                                      "bEnd<"
+                                                                      "RightHand "
+                                                                      "RightHandMidd"
+                                                                      "leEnd<"
+                                                                      "RightHand"
+                                                                      " " KROK_SOMA_LEG("Left")
+                                                                          KROK_SOMA_LEG("Righ"
+                                                                                        "t")},
+    {"soma77", 30,
+     KROK_SOMA_TRUNK "HeadEnd<Head@helper Jaw<Head@helper LeftEye<Head@helper "
+                     "RightEye<Head@helper " KROK_SOMA_ARM("Left") KROK_SOMA_HAND("Left")
+                         KROK_SOMA_ARM("Right") KROK_SOMA_HAND("Right")
+                             KROK_SOMA_LEG("Left") "LeftToeEnd<LeftToeBase " KROK_SOMA_LEG(
+                                 "Right") "RightToeEnd<RightToeBase"},
+    {"g1_34", 30,
+     "pelvis_skel@hips " KROK_G1_LEG("left")
+         KROK_G1_LEG("right") "waist_yaw_skel<pelvis_skel@spine "
                               "waist_roll_skel<waist_yaw_skel@spine "
                               "waist_pitch_skel<waist_roll_skel@chest " KROK_G1_ARM("left")
                                   KROK_G1_ARM("right")}};

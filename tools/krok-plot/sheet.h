@@ -5,9 +5,9 @@
 
 #include "core/result.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 #include "tools/shared/image.h"
 #include "tools/shared/moving_actor.h"
-#include "tools/shared/ground_choice.h"
 
 // Rendered images: contact sheets and motion strips.
 
@@ -24,7 +24,7 @@ struct SheetOptions {
   ImageOptions image;
   std::optional<ClipTime> from, to;
   GroundChoice ground;  // empty: level at 0
-  std::string prints;  // a file of footprints on it, or empty
+  std::string prints;   // a file of footprints on it, or empty
   bool whole_ground = false;
   Front front = Front::actor;
   BodyChoice body = BodyChoice::automatic;

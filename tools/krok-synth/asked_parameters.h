@@ -13,9 +13,9 @@
 namespace krok::cli::synth {
 
 struct NamedParameter {
-  std::string name;            // "length"
-  std::string measures;        // "step.length"
-  std::string_view unit;       // "m", "rad" or "s"
+  std::string name;                      // "length"
+  std::string measures;                  // "step.length"
+  std::string_view unit;                 // "m", "rad" or "s"
   double least = 0, most = 0, mean = 0;  // over the examples
 };
 

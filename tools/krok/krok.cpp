@@ -146,7 +146,8 @@ int run_krok(int argc, char** argv) {
   if (arguments.size() == 2 && is(1, "help")) arguments[1] = help.data();
   const std::string verb = arguments.empty() ? "" : arguments[0];
   if (verb == "--help" || verb == "-h" || verb == "help") return print_and_end("krok", krok_help());
-  if (verb == "--version") return print_and_end("krok", fmt::format("krok {}\n", version_of_build()));
+  if (verb == "--version")
+    return print_and_end("krok", fmt::format("krok {}\n", version_of_build()));
   if (verb == "completion") return complete(arguments.size() > 1 ? arguments[1] : "");
   const Command* command = find_command(verb);
   if (command == nullptr) return refuse_verb(verb, argc, argv);
