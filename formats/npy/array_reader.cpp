@@ -250,16 +250,17 @@ Direction forward_below(Direction up) {
 void take_lengths(ArrayMotion& motion) {
   const std::size_t joints = motion.skeleton.names.size();
   const std::size_t frames = motion.positions.size() / joints;
-  const std::size_t step = (frames + kMaxSamples - 1) / kMaxSamples;
+  const std::size_t step = std::max<std::size_t>((frames + kMaxSamples - 1) / kMaxSamples, 1);
   auto& reference = motion.skeleton.reference;
   const std::vector<Transform> usual = reference;
   for (std::size_t j = 1; j < joints; ++j) {
     const std::size_t parent = at(motion.skeleton.parents[j]);
     double sum = 0;
-    for (std::size_t f = 0; f < frames; f += step) {
+    std::size_t count = 0;
+    for (std::size_t f = 0; f < frames; f += step, ++count) {
       sum += (motion.positions[f * joints + j] - motion.positions[f * joints + parent]).norm();
     }
-    const double length = sum / static_cast<double>((frames + step - 1) / step);
+    const double length = sum / static_cast<double>(std::max<std::size_t>(count, 1));
     const Vec3 direction = (usual[j].position - usual[parent].position).stableNormalized();
     reference[j].position = reference[parent].position + length * direction;
   }

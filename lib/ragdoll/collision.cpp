@@ -285,7 +285,7 @@ void Collision::Inside::touch_faces(std::span<const BodyState> states, double st
       std::ranges::copy(edges.of_triangle(triangle), std::back_inserter(near));
     }
     std::ranges::sort(near);
-    near.erase(std::ranges::unique(near).begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
     touch_edges(b, pose, near, 0.01 + 2 * fall);
   }
   connect_edges();

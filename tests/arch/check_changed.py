@@ -143,7 +143,9 @@ def main():
         units = {}
         for path in changed:
             if path.endswith(".cpp") and path in options.by_file:
-                units.setdefault(str(pathlib.PurePath(path).parent).replace("/", "_"), []).append(path)
+                program = re.search(r"^int main\(", (folder / path).read_text(), re.M)  # one to a unit
+                unit = pathlib.PurePath(path).with_suffix("") if program else pathlib.PurePath(path).parent
+                units.setdefault(str(unit).replace("/", "_"), []).append(path)
         until, unreached = time.monotonic() + arguments.seconds, []
 
         def lint_in_time(unit):

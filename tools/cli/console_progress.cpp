@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <mutex>
@@ -174,7 +175,7 @@ std::string in_colours(const std::string& text) {
 }
 
 std::string time_left(double seconds) {
-  const auto whole = static_cast<long long>(std::clamp(seconds, 0.0, 360000.0) + 0.5);
+  const auto whole = std::llround(std::clamp(seconds, 0.0, 360000.0));
   if (whole < 60) return fmt::format("{} s left", whole);
   if (whole < 3600) return fmt::format("{}:{:02} min left", whole / 60, whole % 60);
   return fmt::format("{}:{:02} h left", whole / 3600, whole / 60 % 60);

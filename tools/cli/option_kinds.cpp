@@ -127,8 +127,8 @@ ValueKind<long long> whole(long long low, long long high) {
   return {"whole", "N", read, {}};
 }
 
-ValueKind<std::vector<double>> numbers(std::vector<ValueKind<double>> kinds, std::size_t least,
-                                       char between) {
+ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kinds,
+                                       std::size_t least, char between) {
   const auto read = [=](const std::string& text) -> Result<std::vector<double>> {
     std::vector<double> values;
     std::string_view rest = text;
@@ -152,7 +152,7 @@ std::string written(const ClipTime& time) {
   return readable(time.value) + (time.in_frames ? "f" : "s");
 }
 
-ValueKind<std::string> output(std::vector<std::string> endings) {
+ValueKind<std::string> output(const std::vector<std::string>& endings) {
   const auto read = [endings](const std::string& text) -> Result<std::string> {
     const std::string ending = extension(text);
     const auto ends_so = [&](const std::string& one) { return ascii_lower(text).ends_with(one); };
@@ -164,7 +164,7 @@ ValueKind<std::string> output(std::vector<std::string> endings) {
   return {"output", "OUT", read, {}};
 }
 
-ValueKind<std::string> words(std::vector<std::string> words) {
+ValueKind<std::string> words(const std::vector<std::string>& words) {
   const auto read = [words](const std::string& text) -> Result<std::string> {
     for (const std::string& word : words) {
       if (ascii_lower(text) == ascii_lower(word)) return word;

@@ -41,8 +41,8 @@ ValueKind<long long> whole(long long low, long long high);
 
 // Values separated by commas (or `between`): "1m,0,-20cm". `least` is how many there must be. Codes
 // usage, and those of the quantities.
-ValueKind<std::vector<double>> numbers(std::vector<ValueKind<double>> kinds, std::size_t least,
-                                       char between = ',');
+ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kinds,
+                                       std::size_t least, char between = ',');
 // The same for a T of fixed size, a Vec3 or a std::array; values that may be missing are 0.
 template <typename T>
 ValueKind<T> numbers_as(std::vector<ValueKind<double>> kinds, std::size_t least,
@@ -71,7 +71,7 @@ ValueKind<T> lengths(char between = ',') {
 std::string written(const ClipTime& time);
 
 // A file to write, of one of these extensions: ".svg". Code usage.
-ValueKind<std::string> output(std::vector<std::string> endings);
+ValueKind<std::string> output(const std::vector<std::string>& endings);
 
 // "a, b or c".
 std::string either_of(const std::vector<std::string>& words);
@@ -93,7 +93,7 @@ ValueKind<T> choice(std::vector<std::pair<std::string, T>> words) {
   return {"choice", "WORD", std::move(read), std::move(names)};
 }
 // The same for the word itself, in any case.
-ValueKind<std::string> words(std::vector<std::string> words);
+ValueKind<std::string> words(const std::vector<std::string>& words);
 
 // `word`, or a value of `kind`: read as none for the word, as by "auto|N".
 template <typename T>

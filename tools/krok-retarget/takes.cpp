@@ -37,8 +37,7 @@ Result<std::vector<std::string>> files_of(const std::vector<std::string>& takes,
     files.insert(files.end(), found->begin(), found->end());
   }
   std::ranges::sort(files);
-  const auto repeated = std::ranges::unique(files);
-  files.erase(repeated.begin(), repeated.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
