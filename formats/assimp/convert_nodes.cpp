@@ -132,7 +132,10 @@ void convert_nodes(Conversion& to) {
     const auto [node, parent] = pending.back();
     pending.pop_back();
     const Chain chain = follow_chain(node);
-    const Mat4 own = to_matrix(chain.end->mTransformation);
+    // From 5.4 on Assimp turns the root of FBX files by their axes; these are judged here as those
+    // of all formats are.
+    const bool turned = to.kind == registry::Kind::fbx && chain.end == to.source.mRootNode;
+    const Mat4 own = turned ? Mat4(Mat4::Identity()) : to_matrix(chain.end->mTransformation);
     const std::string name = to_text(chain.end->mName);
     const int index = add_node(to, name, parent, chain.node_to_parent * own);
     if (!chain.parts.empty()) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/numbers.h"
-#include "formats/csv/field_internal.h"
+#include "formats/csv/field.h"
 
 namespace krok::csv {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
-#include "formats/csv/field_internal.h"
+#include "formats/csv/field.h"
 
 namespace krok::csv {
 

@@ -66,18 +66,12 @@ Result<Companion> find_companion(const InputFile& motion, Inputs& inputs) {
   return Companion{found->path, found->reason};
 }
 
-Status check_bvh_choices(const CaptureReading& reading) {
-  if (reading.positions != bvh::Positions::automatic) {
-    return Error("usage", "--positions is for BVH; the Acclaim format has no such choice");
-  }
-  if (reading.angles != bvh::Angles::degrees) return Error("usage", "--angles is for BVH");
-  return {};
-}
-
 Status check_no_skeleton(const InputFile& file, const CaptureReading& reading) {
   if (reading.skeleton.empty()) return {};
-  return Error("usage", fmt::format("--skeleton is for an Acclaim motion (AMC), which {} is not",
-                                    file.path()));
+  return Error("usage",
+               fmt::format("--skeleton is for an Acclaim motion (AMC) and for arrays (.npy, .npz), "
+                           "which {} is not",
+                           file.path()));
 }
 
 acclaim::ReadOptions acclaim_options(const CaptureReading& reading) {
@@ -126,6 +120,14 @@ Result<OpenedCapture> open_bvh_with(const InputFile& file, const CaptureReading&
 }
 
 }  // namespace
+
+Status check_bvh_choices(const CaptureReading& reading) {
+  if (reading.positions != bvh::Positions::automatic) {
+    return Error("usage", "--positions is for BVH; other formats have no such choice");
+  }
+  if (reading.angles != bvh::Angles::degrees) return Error("usage", "--angles is for BVH");
+  return {};
+}
 
 Result<OpenedCapture> open_bvh(const InputFile& file, Inputs& inputs, const CaptureReading& reading,
                                bool stream) {

@@ -10,16 +10,18 @@
 #include "formats/io/inputs.h"
 #include "scene/frame_source.h"
 
-// Motion captures (BVH; AMC with its ASF; ASF alone) with the choices a user may make about them.
-// Reads sequentially where the format and the file allow it, so that a long capture is never held
-// in memory as a whole; companions are found here. open_motion() reads captures through this, with
-// all choices detected.
+// Motion captures (BVH; AMC with its ASF; ASF alone; arrays of numpy) with the choices a user may
+// make about them. Reads sequentially where the format and the file allow it, so that a long
+// capture is never held in memory as a whole; companions are found here. open_motion() reads
+// captures through this, with all choices detected.
 
 namespace krok::io {
 
 struct CaptureReading : CaptureOptions {
   RestFrame rest_frame = RestFrame::keep;
-  std::string skeleton;  // path of the ASF of an AMC; empty: found beside it, with a note
+  // Path of the ASF of an AMC; empty: found beside it, with a note. For arrays see open_arrays().
+  std::string skeleton;
+  std::optional<int> motion;  // of an array of several, from 0; empty: the first, with a warning
   // BVH only; other values are refused (code usage) for other formats.
   bvh::Positions positions = bvh::Positions::automatic;
   bvh::Angles angles = bvh::Angles::degrees;
@@ -41,6 +43,7 @@ struct CaptureDetails {
     std::string reason;
   };
   std::optional<Companion> skeleton;  // found beside the motion
+  int motions = 1;                    // in the file
 };
 
 struct OpenedCapture {

@@ -59,6 +59,13 @@ Result<OpenedCapture> open_amc(const InputFile& file, Inputs& inputs, const Capt
 Result<OpenedCapture> open_asf(const InputFile& file, Inputs& inputs, const CaptureReading& reading,
                                bool stream);
 
+// Arrays of numpy. `reading.skeleton`: the name of a published order of joints, or a file: a list
+// of columns (JSON), a model of SMPL, any motion. Codes: those of npy::read(), npy-skeleton.
+Result<OpenedCapture> open_arrays(const InputFile& file, Inputs& inputs,
+                                  const CaptureReading& reading, bool stream);
+// An Error for choices that only BVH has.
+Status check_bvh_choices(const CaptureReading& reading);
+
 Result<nodes::Scene> read_gltf(const InputFile& file, Inputs& inputs, bool with_materials);
 // The one glTF scene in a ZIP archive. Codes: those of zip::Archive and gltf::read, zip-scene.
 Result<nodes::Scene> read_zipped_gltf(const InputFile& file, Inputs& inputs, bool with_materials);

@@ -36,6 +36,9 @@
   ROW(ragdoll, own, "ragdoll.json", "Krok bodies and joints (.ragdoll.json)",                     \
       is_json<kRagdollSchema>)                                                                    \
   ROW(gltf, gltf, "gltf", "a glTF file (.gltf)", is_gltf, .read_scene = read_gltf)                \
+  ROW(npy, capture, "npy", "an array of numpy (.npy)", starts<"\x93NUMPY">,                       \
+      .open_capture = open_arrays)                                                                \
+  ROW(npz, capture, "npz", "arrays of numpy (.npz)", is_npz, .open_capture = open_arrays)         \
   ROW(zip, archive, "zip", "a ZIP archive", starts<"PK\x03\x04">, .read_scene = read_zipped_gltf) \
   ROW(fbx, scene, "fbx", "an FBX file", is_fbx, .read_scene = read_through_assimp)                \
   ROW(collada, scene, "dae", "a COLLADA file (.dae)", is_collada,                                 \

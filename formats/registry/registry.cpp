@@ -118,6 +118,13 @@ bool is_smd(std::string_view text) {
   text = text.substr(0, kWindow);
   return next_word(text) == "version" && next_word(text) == "1" && next_word(text) == "nodes";
 }
+// A ZIP archive whose first file is an array: bytes 26 and 27 are the length of its name, from 30.
+bool is_npz(std::string_view text) {
+  if (!text.starts_with("PK\x03\x04") || text.size() < 30) return false;
+  const auto length = static_cast<unsigned char>(text[26]) |
+                      static_cast<std::size_t>(static_cast<unsigned char>(text[27])) << 8;
+  return text.substr(30, length).ends_with(".npy");
+}
 bool is_ase(std::string_view text) {
   return same_word(word_at_start(text), "*3DSMAX_ASCIIEXPORT");
 }

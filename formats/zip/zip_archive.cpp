@@ -79,19 +79,55 @@ Result<std::vector<std::byte>> Archive::read(const std::string& name,
     return damaged(fmt::format("{} cannot be unpacked: {}", shown(name), zip_strerror(archive)));
   }
   // By what comes out, as the archive may say anything.
-  constexpr std::size_t kStep = std::size_t{1} << 20;
+  const std::size_t step = std::clamp<std::uint64_t>(facts.size + 1, 1024, std::uint64_t{1} << 20);
   std::vector<std::byte> bytes;
   zip_int64_t got = 0;
   do {
     const std::size_t before = bytes.size();
-    bytes.resize(before + kStep);
-    got = zip_fread(file, bytes.data() + before, kStep);
+    bytes.resize(before + step);
+    got = zip_fread(file, bytes.data() + before, step);
     bytes.resize(before + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
   } while (got > 0 && bytes.size() <= most_bytes);
   const bool whole = zip_fclose(file) == 0 && got == 0;  // checks the checksum, too
   if (bytes.size() > most_bytes) return too_large();
   if (!whole) return damaged(fmt::format("{} in the archive is damaged", shown(name)));
   return bytes;
+}
+
+Result<std::vector<std::byte>> pack(
+    std::span<const std::pair<std::string, std::vector<std::byte>>> files) {
+  constexpr zip_uint16_t kFirstDate = 1 << 5 | 1;  // 1980-01-01
+  zip_error_t error;
+  zip_error_init(&error);
+  zip_source_t* target = zip_source_buffer_create(nullptr, 0, 0, &error);
+  zip_t* archive = target == nullptr ? nullptr : zip_open_from_source(target, ZIP_TRUNCATE, &error);
+  if (archive == nullptr) {
+    if (target != nullptr) zip_source_free(target);
+    return damaged("the ZIP archive cannot be written");
+  }
+  zip_source_keep(target);
+  bool good = true;
+  for (const auto& [name, bytes] : files) {
+    zip_source_t* source = zip_source_buffer(archive, bytes.data(), bytes.size(), 0);
+    const zip_int64_t place =
+        source == nullptr ? -1 : zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
+    good = good && place >= 0 &&
+           zip_file_set_dostime(archive, static_cast<zip_uint64_t>(place), 0, kFirstDate, 0) == 0;
+  }
+  good = good && zip_close(archive) == 0;
+  if (!good) zip_discard(archive);
+  std::vector<std::byte> packed;
+  zip_stat_t facts;
+  zip_stat_init(&facts);
+  if (good && zip_source_stat(target, &facts) == 0 && zip_source_open(target) == 0) {
+    packed.resize(facts.size);
+    good = zip_source_read(target, packed.data(), packed.size()) ==
+           static_cast<zip_int64_t>(packed.size());
+    zip_source_close(target);
+  }
+  zip_source_free(target);
+  if (!good || packed.empty()) return damaged("the ZIP archive cannot be written");
+  return packed;
 }
 
 }  // namespace krok::zip

@@ -5,11 +5,13 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.h"
 
-// Reads ZIP archives from memory with libzip, as shops hand out scenes with their textures.
+// ZIP archives in memory, with libzip: scenes with their textures, as shops hand them out, and
+// archives of arrays.
 
 namespace krok::zip {
 
@@ -35,5 +37,10 @@ class Archive {
   std::unique_ptr<Handle> handle_;
   std::vector<std::string> names_;
 };
+
+// The bytes of an archive of files, by path and content; the same for the same files, as all have
+// the date of 1980-01-01. Code: zip-damaged if libzip fails.
+Result<std::vector<std::byte>> pack(
+    std::span<const std::pair<std::string, std::vector<std::byte>>> files);
 
 }  // namespace krok::zip

@@ -22,6 +22,8 @@ constexpr double kFarthest = 1e4;  // metres
 constexpr int kMaxTries = 500;
 constexpr double kCloseEnough = 0.999;  // fraction of a distance that works
 constexpr double kLargestMargin = 0.45;
+constexpr double kFastestTurn = 90 * kRadiansPerDegree;      // a second, with the actor's facing
+constexpr double kMoreSmoothing = 1.25, kMaxSmoothing = 20;  // factor, seconds
 
 Status check(const Clip& clip, const ActorCamera& camera) {
   const auto wrong = [](const char* what) { return Error("camera-value", what); };
@@ -122,10 +124,24 @@ class Shooting {
         const double before = headings[at(f - 1)].x();
         headings[at(f)].x() = before + wrapped(ground_frame(clip_, carrier, f).heading - before);
       }
-      smooth_both_ways(headings, clip_.rate, camera_.smoothing);
+      smooth_turning(headings);
     }
     for (int f = 0; f < frames_; ++f) {
       azimuths_.push_back(headings[at(f)].x() + camera_.azimuth + camera_.turning * f / clip_.rate);
+    }
+  }
+
+  // Smooths as asked, and longer where the camera would whip round.
+  void smooth_turning(std::vector<Vec3>& headings) const {
+    const std::vector<Vec3> given = headings;
+    for (double time = camera_.smoothing; time > 0; time *= kMoreSmoothing) {
+      headings = given;
+      smooth_both_ways(headings, clip_.rate, time);
+      double fastest = 0;
+      for (std::size_t f = 1; f < headings.size(); ++f) {
+        fastest = std::max(fastest, std::abs(headings[f].x() - headings[f - 1].x()) * clip_.rate);
+      }
+      if (fastest <= kFastestTurn || time > kMaxSmoothing) return;
     }
   }
 

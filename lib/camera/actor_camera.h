@@ -16,7 +16,7 @@ namespace krok {
 // What azimuth 0 refers to.
 enum class AzimuthFrom : unsigned char {
   start,  // the facing in the first frame
-  actor,  // the facing in each frame, smoothed
+  actor,  // the facing in each frame, smoothed, at most 90 degrees a second
   world   // +Z
 };
 
@@ -39,7 +39,8 @@ struct ActorCamera {
   double margin = 0.08;  // fraction of height and width kept free at each edge; in [0, 0.45]
 
   // Smoothing time in seconds for the joint's path and the facing; see smooth_both_ways in
-  // camera/spring.h. 0 disables smoothing.
+  // camera/spring.h. 0 disables smoothing. The facing is smoothed for longer where it turns faster
+  // than 90 degrees a second.
   double smoothing = 0.5;
   // Metres that the joint may move before the camera follows.
   double dead_zone = 0;

@@ -11,6 +11,7 @@
 #include "core/result.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/motion_keys.h"
 
 // Types and functions shared by all readers of motion captures.
 
@@ -56,6 +57,8 @@ struct Capture {
 
   // The conventions the file was read with.
   Conventions conventions;
+
+  MotionKeys keys;  // contacts stored in the file, if any
 
   Choice exporter;                   // the program that wrote the file; empty if unknown
   Choice rate;                       // where the frame rate comes from

@@ -58,11 +58,11 @@ inline Fading fading(double s) {
 struct BodyStep {
   enum class Kind : unsigned char { middle, captured_start, captured_stop, first, last, only };
 
-  BodyStep(parametric::BlendedMotion blend, const Walker& walker)
+  BodyStep(parametric::BlendedMotion blend, const Walker& whose)
       : motion(std::move(blend)),
-        bones(&walker.bones),
-        joints(walker.skeleton->joint_count()),
-        walker(&walker) {}
+        bones(&whose.bones),
+        joints(whose.skeleton->joint_count()),
+        walker(&whose) {}
 
   parametric::BlendedMotion motion;
   const std::vector<FixedJoint>* bones;

@@ -17,38 +17,41 @@ namespace {
 // Whether a sole lies on one surface.
 
 enum class SolePlace : unsigned char {
-  whole,          // the sole lies on one surface
-  heel_and_ball,  // the toes stand out over a lower edge or a hole
-  none            // an edge between heel and ball, or something in the toes' way
+  whole,             // the sole lies on one surface
+  heel_and_ball,     // the toes stand out over a lower edge or a hole
+  midfoot_and_ball,  // the heel does
+  none               // an edge between heel and ball, or something in the toes' way
 };
 
 struct SoleGround {
   SolePlace place = SolePlace::none;
-  double height = 0;  // under the heel, metres
+  double height = 0;  // of the surface, metres: under the heel, or midfoot
 };
 
 constexpr double kSoleSample = 0.01;   // metres along the sole
 constexpr double kSoleEdge = 0.025;    // metres from sample to sample: steeper than can be stood on
 constexpr double kSoleMargin = 0.005;  // metres between heel or ball and an edge
+constexpr double kMidfoot = 0.4;       // of the length from heel to ball
 constexpr double kSteepAcross = 0.9;   // height by width, the tangent of 42 degrees
 constexpr double kOverhead = 0.4;      // metres: what is higher is another storey
 
-// Samples the ground under the sole of a print. `near` is the height of the ground thereabouts:
-// surfaces far above it are another storey.
-SoleGround ground_under_sole(const Print& print, double near, const Terrain& ground,
-                             const PlanOptions& options) {
+// Samples the ground under the part of a sole that begins `from` metres before the heel. `near` is
+// the height of the ground thereabouts: surfaces far above it are another storey.
+SoleGround ground_ahead_of(double from, const Print& print, double near, const Terrain& ground,
+                           const PlanOptions& options) {
   const Vec2 ahead(std::sin(print.heading), std::cos(print.heading));
   const Vec2 left(ahead.y(), -ahead.x());
-  const auto at_heel = ground.at(print.x, print.z, near + kOverhead);
+  const auto at_heel =
+      ground.at(print.x + from * ahead.x(), print.z + from * ahead.y(), near + kOverhead);
   if (!at_heel) return {};
   SoleGround result{SolePlace::whole, at_heel->height};
   const double half = 0.5 * options.sole_width;
   std::array<double, 3> last = {at_heel->height, at_heel->height, at_heel->height};
   bool first = true;
   const double end = options.heel_to_toes;
-  const int samples = static_cast<int>(std::ceil((end + kSoleMargin) / kSoleSample));
+  const int samples = static_cast<int>(std::ceil((end - from + kSoleMargin) / kSoleSample));
   for (int i = 0; i <= samples; ++i) {
-    const double along = std::min(i * kSoleSample - kSoleMargin, end);
+    const double along = std::min(from + i * kSoleSample - kSoleMargin, end);
     std::array<double, 3> heights{};
     double edge = 0;  // 0: none, otherwise up or down
     for (std::size_t line = 0; line < 3; ++line) {
@@ -80,15 +83,29 @@ SoleGround ground_under_sole(const Print& print, double near, const Terrain& gro
   return result;
 }
 
-constexpr double kPlanGrid = 0.005;      // metres, of places for feet on uneven ground
-constexpr double kMaxPlanPlaces = 5e6;   // of them
-constexpr double kGradeReach = 1;        // metres on either side, over which slopes are averaged
-constexpr double kSteepNormal = 0.5;     // least height of a normal: what is steeper is a wall
-constexpr double kStorey = 0.6;          // metres: what is higher than this is overhead
-constexpr double kEndRange = 0.4;        // metres by which the last prints may be short of the end
-constexpr double kBesideRange = 0.3;     // metres by which one may be before the other
-constexpr double kBesideCost = 2;        // per metre of that, and of the rise from one to the other
-constexpr double kToesOutCost = 0.3;     // of a step's length squared
+SoleGround ground_under_sole(const Print& print, double near, const Terrain& ground,
+                             const PlanOptions& options) {
+  const SoleGround all = ground_ahead_of(0, print, near, ground, options);
+  if (all.place != SolePlace::none) return all;
+  // Up stairs that are shorter than the sole, the heel stands out over the tread below.
+  SoleGround front = ground_ahead_of(kMidfoot * options.heel_to_ball, print, near, ground, options);
+  if (front.place != SolePlace::whole) return all;
+  const auto at_heel = ground.at(print.x, print.z, near + kOverhead);
+  if (at_heel && at_heel->height > front.height - kSoleEdge) return all;
+  front.place = SolePlace::midfoot_and_ball;
+  return front;
+}
+
+constexpr double kPlanGrid = 0.005;     // metres, of places for feet on uneven ground
+constexpr double kMaxPlanPlaces = 5e6;  // of them
+constexpr double kGradeReach = 1;       // metres on either side, over which slopes are averaged
+constexpr double kSteepNormal = 0.5;    // least height of a normal: what is steeper is a wall
+constexpr double kStorey = 0.6;         // metres: what is higher than this is overhead
+constexpr double kEndRange = 0.4;       // metres by which the last prints may be short of the end
+constexpr double kBesideRange = 0.3;    // metres by which one may be before the other
+constexpr double kBesideCost = 2;       // per metre of that, and of the rise from one to the other
+// Of a step's length squared, where toes or heel stand out.
+constexpr double kToesOutCost = 0.3, kHeelOutCost = 0.5;
 constexpr double kShortOfEndCost = 4;    // per metre
 constexpr double kStandingWidth = 1.25;  // of the sole's, from heel to heel
 // People shorten steps that go up or down, and the first one out of standing.
@@ -330,7 +347,9 @@ std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
     for (std::size_t side = 0; side < 2; ++side) {
       PlaceState& state = states[side][i];
       if (state.sole.place == SolePlace::none) continue;
-      const double toes = state.sole.place == SolePlace::whole ? 0 : kToesOutCost;
+      const double out = state.sole.place == SolePlace::whole           ? 0
+                         : state.sole.place == SolePlace::heel_and_ball ? kToesOutCost
+                                                                        : kHeelOutCost;
       for (std::size_t j = i > reach ? i - reach : 0; j < i; ++j) {
         const PlaceState& before = states[1 - side][j];
         const double step = length_of(i) - length_of(j);
@@ -342,7 +361,7 @@ std::size_t PrintPlanner::find_ways(PlaceStates& states) const {
         const double usual =
             std::max(kMinOfUsual, 1 - rise / kTooHighToStride) * (j == 0 ? kFirstOfUsual : 1);
         const double off = steps_[i] - steps_[j] - usual;
-        const double cost = before.cost + off * off + toes;
+        const double cost = before.cost + off * off + out;
         if (cost >= state.cost) continue;
         state.cost = cost;
         state.from = static_cast<int>(j);
@@ -431,10 +450,11 @@ std::vector<Print> PrintPlanner::prints_at(const std::vector<double>& places) co
     const double length = index < 2 ? 0 : places[index - 2];
     const double near = ground_near(length);
     print = rounded(print);
-    // Where something is overhead, the print says on which storey it is.
+    // Where something is overhead, or the heel stands out, the print says how high it is.
     const auto top = ground_.at(print.x, print.z);
     const SoleGround sole = ground_under_sole(print, near, ground_, options_);
-    if (top && sole.place != SolePlace::none && top->height > sole.height + 1e-9) {
+    if (sole.place == SolePlace::midfoot_and_ball ||
+        (top && sole.place != SolePlace::none && top->height > sole.height + 1e-9)) {
       print.height = sole.height;
     }
     ++index;

@@ -38,8 +38,8 @@ struct PlannedPrints {
 // downhill, so many that their length is nearest to what is asked for. Where a sole would lie
 // across an edge of the ground or a step would rise more than asked for, prints are set along the
 // path so that each sole lies on one surface (heel and ball at least; toes may stand out over a
-// lower edge) and steps remain between the least and the most, as even as can be. A path with times
-// gives prints with times.
+// lower edge; or ball and midfoot, where the heel does: such prints have a height) and steps remain
+// between the least and the most, as even as can be. A path with times gives prints with times.
 //
 // Codes: plan-options for options out of range; plan-ground if there is no ground at the begin, or
 // no place for a foot that a step could reach, with the place where it ends.

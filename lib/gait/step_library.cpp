@@ -1,5 +1,7 @@
 #include "gait/step_library.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,6 +13,7 @@ namespace krok::gait {
 
 namespace {
 
+constexpr double kClearly = 0.15;       // metres: steps forward or backward, not on the spot
 constexpr double kMaxToeOut = kPi / 3;  // more is a step to the side
 
 double heading_at(const parametric::Example& example, const parametric::FootShape& foot,
@@ -61,6 +64,22 @@ std::optional<StepKind> kind_of(const std::vector<std::string>& times) {
   return {};
 }
 
+// First and last steps forward and backward have no blend between them: the body would go elsewhere
+// than the feet.
+Status check_direction(const StepLibrary& steps) {
+  if (steps.kind() != StepKind::start && steps.kind() != StepKind::stop) return {};
+  const auto goes = [&](double ahead) {
+    return std::ranges::count_if(
+        steps.found_steps(), [&](const FoundStep& step) { return ahead * step.along > kClearly; });
+  };
+  const auto forward = goes(1), backward = goes(-1);
+  if (forward == 0 || backward == 0) return {};
+  return Error("walk-library",
+               fmt::format("the {} of the library go forward in {} and backward in {} examples",
+                           steps.kind() == StepKind::start ? "starts" : "stops", forward, backward),
+               "fit a library of each, and give the one that goes as the walk does");
+}
+
 }  // namespace
 
 const StepLibrary& main_library(std::span<const StepLibrary> libraries) {
@@ -102,6 +121,7 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
   for (const parametric::Example& example : result.library().examples) {
     result.found_steps_.push_back(step_of(result.library(), example));
   }
+  if (Status status = check_direction(result); !status) return status.error();
   result.toe_out_ = usual_toe_out(result.library());
   return result;
 }

@@ -30,7 +30,8 @@ class StepLibrary {
   // A library of walks has step.length among its parameters; steps of the other foot are the mirror
   // image of those given.
   // `name` is for reports. Codes: those of Synthesiser::create() and mirrored(); walk-library if
-  // the library has no step.length, or keytimes that are not those of steps.
+  // the library has no step.length, keytimes that are not those of steps, or starts or stops
+  // forward and backward.
   static Result<StepLibrary> create(std::string name, parametric::Library library,
                                     const rbf::WeightFunction& weights, const RoleMap& roles);
 

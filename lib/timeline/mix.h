@@ -82,7 +82,7 @@ struct Mixed {
   std::vector<Event> events;     // by time
   std::vector<ItemFacts> items;  // base first, then layer by layer
   std::vector<ChangeFacts> changes;
-  Diagnostics warnings;  // loops with a jump, marks never reached
+  Diagnostics warnings;  // loops with a jump, layers that pop, marks never reached
 };
 
 // Outside changes, a frame of a motion that is not repositioned equals the source frame bit for

@@ -156,13 +156,14 @@ class ChangeFinder {
       check_steps(i);
       if (i > 0) changes.push_back(change(i));
     }
+    for (std::size_t layer = 0; layer < parts_.layers.size(); ++layer) check_layer(layer);
     return changes;
   }
 
  private:
   // usual_speed() of the source, scaled by the item's speed.
-  double usual(std::size_t item) {
-    const PlayedRange& range = parts_.base.items()[item].range;
+  double usual(std::size_t item) { return usual(parts_.base.items()[item].range); }
+  double usual(const PlayedRange& range) {
     const auto [found, is_new] = usual_.try_emplace(range.source, 0.0);
     if (is_new) {
       found->second =
@@ -283,6 +284,73 @@ class ChangeFinder {
     const GroundFrame from = place(change.begin), to = place(change.settled);
     return std::hypot(to.x - from.x, to.z - from.z) >
            kTravels * std::max(1e-3, change.settled - change.begin);
+  }
+
+  // Warns if a layer turns joints faster than the motions do where an item begins or ends.
+  void check_layer(std::size_t index) {
+    const LayerPlayer& player = parts_.layers[index];
+    const double rate = parts_.clip.rate;
+    for (std::size_t i = 0; i < player.items().size(); ++i) {
+      const LayerItem& item = parts_.timeline.layers[index].items[i];
+      const LayerTimes& times = player.items()[i];
+      const auto begin = static_cast<int>(std::ceil(times.start * rate - kTimeRounding));
+      const auto end = static_cast<int>(std::floor(times.end * rate + kTimeRounding));
+      const auto lasts = [&](const Fade& fade) {
+        return static_cast<int>(std::ceil(fade.duration * rate));
+      };
+      check_edge(player, i, item, true, begin, begin + lasts(item.fade_in));
+      check_edge(player, i, item, false, end + 1 - lasts(item.fade_out), end + 1);
+    }
+  }
+
+  // From the frame before `first` to frame `last`.
+  void check_edge(const LayerPlayer& player, std::size_t index, const LayerItem& item, bool begins,
+                  int first, int last) {
+    const LayerTimes& times = player.items()[index];
+    double allowed = usual(times.range);
+    for (std::size_t i = 0; i < parts_.base.items().size(); ++i) {
+      const ScheduledItem& base = parts_.base.items()[i];
+      if (base.begin <= times.end && base.end >= times.start) {
+        allowed = std::max(allowed, usual(i));
+      }
+    }
+    const std::size_t joints = parts_.clip.skeleton.names.size();
+    std::vector<Transform> world(joints), before(joints), now(joints);
+    double fastest = 0;
+    std::size_t joint = 0;
+    int frame = 0;
+    const int from = std::max(first - 1, 0), to = std::min(last, parts_.clip.frame_count() - 1);
+    for (int f = from; f <= to; ++f) {
+      parts_.clip.get_pose(f, world);
+      world_to_local(parts_.clip.skeleton.parents, world, now);
+      for (std::size_t j = 0; j < joints && f > from; ++j) {
+        if (player.touched()[j] == 0) continue;
+        const double turn = angle_between(before[j].orientation, now[j].orientation);
+        if (turn * parts_.clip.rate <= fastest) continue;
+        fastest = turn * parts_.clip.rate;
+        joint = j;
+        frame = f;
+      }
+      std::swap(before, now);
+    }
+    // As in ChangeFacts::turns_too_fast().
+    if (fastest <= 1.1 * allowed || allowed == 0) return;
+    const Fade& fade = begins ? item.fade_in : item.fade_out;
+    Diagnostic pop;
+    pop.severity = Severity::warning;
+    pop.code = "mix-pop";
+    pop.joint = parts_.clip.skeleton.names[at(parts_.hips_root.original(static_cast<int>(joint)))];
+    pop.frame = frame;
+    pop.message = fmt::format(
+        "{} of the layer rotates {} at {:.0f} degrees per second where it {} (frame {}); 99 % of "
+        "the frames of the motions stay below {:.0f}",
+        shown(item.name), pop.joint, fastest / kRadiansPerDegree, begins ? "begins" : "ends", frame,
+        allowed / kRadiansPerDegree);
+    pop.hint = fade.duration > 0
+                   ? "use a longer fade, or the easing smooth"
+                   : fmt::format("\"{}\" makes it smooth", begins ? "fade_in" : "fade_out");
+    pop.where = item.where;
+    warnings_.push_back(std::move(pop));
   }
 
   // Warns if a loop jumps from its end to its start.

@@ -32,7 +32,7 @@ Result<std::vector<Event>> result_events(const Parts& parts, Diagnostics& warnin
 
 std::vector<ItemFacts> result_items(const Parts& parts);
 
-// Warns about joints that jump at the seam of a loop.
+// Warns about joints that jump at the seam of a loop, or where a layer's item begins or ends.
 std::vector<ChangeFacts> result_changes(const Parts& parts, Diagnostics& warnings);
 
 }  // namespace krok::timeline

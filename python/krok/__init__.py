@@ -13,26 +13,36 @@ is read before it is used. The layouts are those of formats/*/SPEC.md.
 from __future__ import annotations
 
 import base64
+import difflib
+import glob
 import json
 import mmap
 import os
+import shutil
 import struct
 import subprocess
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Iterable, NamedTuple, Union
 
 import numpy as np
 
 __all__ = ["Camera", "Contact", "Error", "FormatError", "Keytime", "Model", "Motion", "Part", "Report", "Skeleton",
-           "StepLibrary", "read", "run", "write"]
+           "StepLibrary", "from_positions", "read", "run", "write"]
 
 Path = Union[str, "os.PathLike[str]"]
 
 
 class FormatError(ValueError):
     """A file that breaks a rule of its SPEC.md; the message begins with its path."""
+
+
+def _nearest(name: str, names: Iterable[str]) -> str:
+    """ "; did you mean 'LeftFoot'?", or nothing where no name is near."""
+    by_lower = {one.lower(): one for one in names}
+    near = difflib.get_close_matches(name.lower(), by_lower, 1)
+    return f"; did you mean '{by_lower[near[0]]}'?" if near else ""
 
 
 class Error(RuntimeError):
@@ -84,11 +94,11 @@ class Skeleton:
     orientations: np.ndarray
 
     def index(self, name: str) -> int:
-        """The joint's index; KeyError if there is none."""
+        """The joint's index; KeyError, with the nearest name, if there is none."""
         try:
             return self.names.index(name)
         except ValueError:
-            raise KeyError(name) from None
+            raise KeyError(name + _nearest(name, self.names)) from None
 
 
 @dataclass(repr=False)
@@ -492,8 +502,13 @@ def run(verb: str, *inputs: Path, **options: Any) -> Report:
 
     `run("edit", "walk.anim", output="cut.anim", from_="1s", loop=True)` is `krok-edit walk.anim --output cut.anim
     --from 1s --loop`: underscores become hyphens, a trailing one is dropped; True is an option without a value,
-    False and None leave it out, a list repeats it. Error on exit codes 2 and 3; FileNotFoundError without the tool.
+    False and None leave it out, a list repeats it. Error on exit codes 2 and 3 and for an unknown verb;
+    FileNotFoundError without the tools.
     """
+    if shutil.which(f"krok-{verb}") is None and shutil.which("krok-import") is not None:
+        known = [os.path.basename(path)[5:] for folder in os.get_exec_path()
+                 for path in glob.glob(os.path.join(glob.escape(folder), "krok-*"))]
+        raise Error(2, f"unknown verb '{verb}'" + _nearest(verb, known), None)
     arguments = [os.fspath(path) for path in inputs]
     for name, value in options.items():
         flag = "--" + name.rstrip("_").replace("_", "-")
@@ -512,3 +527,16 @@ def run(verb: str, *inputs: Path, **options: Any) -> Report:
     if done.returncode not in (0, 1) or report is None:
         raise Error(done.returncode, done.stderr, report)
     return report
+
+
+def from_positions(positions: Any, skeleton: Path, rate: float, **options: Any) -> Motion:
+    """The motion of joint positions, (frames, joints, 3), with rotations found by `krok-import`.
+
+    `skeleton` says what the joints are: "humanml22", "smpl24", "coco17" and so on, or a file as --skeleton takes it;
+    `options` are those of `krok-import`, such as unit="mm", up="z". Error if the array is no motion.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        array, clip = os.path.join(folder, "positions.npy"), os.path.join(folder, "motion.anim")
+        np.save(array, np.asarray(positions), allow_pickle=False)
+        run("import", array, skeleton=skeleton, fps=rate, output=clip, orientation="xyzw", **options)
+        return replace(read(clip), path=None)  # the file is gone, its map stays

@@ -18,6 +18,10 @@ double least_knee_flexion(double activity) {
   return (4 + 18 * std::max(0.0, activity - 1)) * kRadiansPerDegree;
 }
 constexpr double kStandingKneeFlexion = 6 * kRadiansPerDegree;
+// Of the slope of the ground: by which the line from hip to ankle tilts against gravity, and the
+// knee bends more in mid-stance, up or down (Reznick and others, Scientific Data 8, 2021); and by
+// which the trunk leans (Leroux, Fung, Barbeau, Gait & Posture 15, 2002).
+constexpr double kTilt = 0.5, kKneeUp = 0.95, kKneeDown = 1.2, kLeanUp = 0.6, kLeanDown = 0.25;
 constexpr double kHeightSpacing = 1.0 / 120.0;  // seconds between height keys
 constexpr double kHeightSmoothing = 0.045;      // seconds, standard deviation
 
@@ -84,7 +88,9 @@ Transform BodyMotion::pelvis_without_height(double time) const {
   const double sway = 0.018 * stature / 1.75 * moving * std::cos(2 * kPi * (phase - 0.31));
   // In front of the ankles: at a strike the trailing leg reaches further than the leading one.
   // Slightly faster in double than in single support.
-  const double ahead = 0.046 * stature + 0.006 * activity * std::sin(4 * kPi * (phase + 0.03));
+  const double slope = plan_.prints.front().slope;
+  const double ahead = 0.046 * stature + 0.006 * activity * std::sin(4 * kPi * (phase + 0.03)) -
+                       std::tan(kTilt * slope) * (actor_.thigh + actor_.shank);
   Transform pelvis;
   pelvis.position = path_(time) + left_of(heading) * sway + forward_of(heading) * ahead;
   pelvis.position.y() = 0;
@@ -111,6 +117,7 @@ double BodyMotion::level_height(double time) const {
   const Transform pelvis = pelvis_without_height(time);
   const double stride = 2 * plan_.step_time;
   const double activity = std::clamp(activity_(time), 0.0, 1.0);
+  const double slope = plan_.prints.front().slope;
   double height = 0;
   double weight = 0;
   for (const Side side : {Side::left, Side::right}) {
@@ -124,7 +131,8 @@ double BodyMotion::level_height(double time) const {
     if (!print.last_of_foot) phase = std::max(phase, kToeOff - (print.off - time) / stride);
     const double flexion =
         std::max(least_knee_flexion(activity_(time)),
-                 kStandingKneeFlexion + activity * (knee_flexion(phase) - kStandingKneeFlexion));
+                 kStandingKneeFlexion + activity * (knee_flexion(phase) - kStandingKneeFlexion)) +
+        activity * (slope > 0 ? kKneeUp : kKneeDown) * std::abs(slope);
     const Vec3 hip_local =
         actor_.skeleton.reference_local(actor_.legs[static_cast<std::size_t>(side)].upper).position;
     const Vec3 hip = pelvis * hip_local;
@@ -205,10 +213,12 @@ void BodyMotion::pose_trunk(double time, std::span<Transform> world) const {
   // The shoulders counter-rotate with a small delay relative to the pelvis, and stay nearly level.
   const double turn = activity * 5.5 * kRadiansPerDegree * std::cos(2 * kPi * (phase - 0.03));
   const double list = -0.35 * std::min(1.0, 2.5 * activity) * pelvis_list(phase);
+  const double slope = plan_.prints.front().slope;
   const double climb = plan_.ground == Ground::stairs ? plan_.rise / (0.1 * actor_.stature) : 0;
   const double lean = (2.0 + 1.5 * activity + 1.0 * activity * std::sin(4 * kPi * (phase - 0.05)) +
                        6.0 * std::max(0.0, climb) * std::min(1.0, 2.5 * activity)) *
-                      kRadiansPerDegree;
+                          kRadiansPerDegree +
+                      (slope > 0 ? kLeanUp : kLeanDown) * slope;
   const Quat chest = axis_rotation(Axis::y, heading + turn) * axis_rotation(Axis::z, list) *
                      axis_rotation(Axis::x, lean);
   const Quat hips = world[static_cast<std::size_t>(actor_.hips)].orientation;

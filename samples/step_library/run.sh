@@ -58,7 +58,7 @@ say "5. Synthesise steps"
 "$bin/krok-synth" walking.steps --set length=57cm --set height=3cm --correct --side right \
   -o step_right.anim
 mkdir -p sheet
-"$bin/krok-synth" walking.steps --table "$story/points.csv" -o sheet/step.anim
+"$bin/krok-synth" walking.steps --points "$story/points.csv" -o sheet/step.anim
 "$bin/krok-synth" turning.steps --set length=60cm --set height=0 --set turn=14deg -o bend.anim
 
 "$bin/krok-synth" captured.steps --set length=62cm --set duration=0.6s --plant -o captured.anim

@@ -10,6 +10,7 @@
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/morph_exr/morph_exr.h"
+#include "formats/npy/npz_motion.h"
 #include "formats/obj/obj_writer.h"
 #include "formats/pc2/pc2.h"
 #include "golden/samples/samples.h"
@@ -131,6 +132,10 @@ void write_seeds(const std::string& folder) {
   seeds.written("pc2", "wobble.pc2", [&](OutputFile& file) {
     return pc2::write(model, test::wobble(model, 3), {}, file);
   });
+  if (const auto arrays = npy::write_motion(clip, {}); arrays) {
+    seeds.put("arrays", "clip.npz",
+              std::string(reinterpret_cast<const char*>(arrays->data()), arrays->size()));
+  }
   // Each use and each edit by itself, of several motions: see run_operations for what bytes choose.
   for (int use = 0; use < 13; ++use) {
     for (int edit = 0; edit < 24; edit += use < 2 ? 1 : 6) {

@@ -27,6 +27,7 @@
 #include "formats/material/material_format.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
+#include "formats/npy/array_reader.h"
 #include "formats/obj/obj_reader.h"
 #include "formats/path/path_format.h"
 #include "formats/pc2/pc2.h"
@@ -249,6 +250,14 @@ void read_zip(Bytes input) {
   }
 }
 
+void read_arrays(Bytes input) {
+  npy::ReadOptions options;
+  options.jobs = 1;
+  const auto capture = npy::read(input, "input.npz", options);
+  if (!capture) return judge_error(capture.error());
+  judge(check(capture->clip));
+}
+
 // JSON pages.
 
 template <auto read>
@@ -324,6 +333,7 @@ constexpr Target kTargets[] = {
     {"timeline", read_named_page<timeline_file::read>},
     {"weights", read_weights},
     {"zip", read_zip},
+    {"arrays", read_arrays},
 };
 
 }  // namespace

@@ -151,6 +151,12 @@ class Files(unittest.TestCase):
         self.assertEqual(caught.exception.exit_code, 2)
         self.assertEqual(caught.exception.report["issues"][0]["code"], "file-missing")
 
+    def test_wrong_names_get_the_nearest(self):
+        with self.assertRaisesRegex(krok.Error, "unknown verb 'exprot'; did you mean 'export'"):
+            krok.run("exprot", self.walk())
+        with self.assertRaisesRegex(KeyError, "leftfoot; did you mean 'LeftFoot'"):
+            krok.read(self.walk()).index("leftfoot")
+
     def test_a_large_file_is_mapped_not_read(self):
         motion = krok.read(self.walk())
         large = self.folder / "large.anim"

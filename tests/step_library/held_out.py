@@ -145,7 +145,7 @@ class Tools:
             lines = [",".join(names)] + [",".join(map(repr, map(float, points[r]))) for r in rows]
             (folder / "points.csv").write_text("\n".join(lines) + "\n")
             run = subprocess.run(
-                [self.bin / "krok-synth", library, "--table", folder / "points.csv", "-q",
+                [self.bin / "krok-synth", library, "--points", folder / "points.csv", "-q",
                  "--orientation", "xyzw", "-o", folder / "made.anim",
                  *(["--extrapolate"] if extrapolate else [])], capture_output=True, text=True)
             if run.returncode == 0:

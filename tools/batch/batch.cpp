@@ -443,7 +443,11 @@ class Batch {
     if (outcome.state != FileState::failed) {
       if (const Status status = place(file, outcome); !status) fail(file, status.error(), outcome);
     }
-    if (!outcome.run.messages.empty()) write_message(console_.get(), outcome.run.messages);
+    std::string text;
+    for (const OneOfMany::Message& message : outcome.run.messages) {
+      if (tally_.is_shown(message.warning, file.input)) text += message.text;
+    }
+    if (!text.empty()) write_message(console_.get(), text);
     if (report_.is_wanted()) report_.add(outcome.report);
     if (!outcome.journal && journal_trouble_) {
       journal_trouble_ = outcome.journal;
@@ -483,6 +487,9 @@ class Batch {
       Diagnostic warning = status.error();
       warning.severity = Severity::warning;
       context_.diagnose(std::move(warning));
+    }
+    if (const std::string more = tally_.more_warnings(); !more.empty()) {
+      write_message(console_.get(), more);
     }
     if (tally_.failed() > 0) context_.diagnose(tally_.failure(line_.keep_going));
     const std::string part =

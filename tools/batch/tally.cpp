@@ -12,6 +12,8 @@ namespace {
 
 // Max number of failed files that are named.
 constexpr std::size_t kNamed = 10;
+// Max number of files whose warnings of one code are printed.
+constexpr std::size_t kShown = 3;
 
 std::string counted_files(std::size_t count) {
   return counted(static_cast<long long>(count), "file");
@@ -37,6 +39,25 @@ void BatchTally::add(FileState state, const std::string& name, bool warned) {
   if (state == FileState::done && warned) ++warned_;
   ++counts_[static_cast<std::size_t>(state)];
   if (state == FileState::failed && failed_.size() < kNamed) failed_.push_back(name);
+}
+
+bool BatchTally::is_shown(const std::string& warning, const std::string& name) {
+  if (warning.empty()) return true;
+  Warned& warned = warnings_[warning];
+  if (warned.last != name) ++warned.files;
+  warned.last = name;
+  return warned.files <= kShown;
+}
+
+std::string BatchTally::more_warnings() const {
+  std::string text;
+  for (const auto& [code, warned] : warnings_) {
+    if (warned.files <= kShown) continue;
+    const std::size_t more = warned.files - kShown;
+    text += fmt::format("  {} more {} such warnings; -v and --json have all [{}]\n", more,
+                        more == 1 ? "file has" : "files have", code);
+  }
+  return text;
 }
 
 std::size_t BatchTally::left() const {

@@ -22,9 +22,9 @@ constexpr int kMostAlike = 20;
 }  // namespace
 
 // Everything a tool says goes through here or print(), and may quote what is in a file.
-void ToolContext::put_message(const std::string& text) {
+void ToolContext::put_message(const std::string& text, const std::string& warning) {
   if (one_of_many != nullptr) {
-    one_of_many->messages += printable(text, true);
+    one_of_many->messages.push_back({printable(text, true), warning});
   } else {
     write_message(console, printable(text, true));
   }
@@ -36,10 +36,13 @@ void ToolContext::diagnose(Diagnostic diagnostic) {
                      (!quiet && (verbose || diagnostic.severity != Severity::note));
   const bool counts = !verbose && diagnostic.severity != Severity::error;
   const int alike = shown && counts ? ++alike_[diagnostic.code] : 1;
-  if (shown && alike <= kMostAlike) put_message(message_of(report.tool, diagnostic));
+  if (shown && alike <= kMostAlike) {
+    put_message(message_of(report.tool, diagnostic), counts ? diagnostic.code : "");
+  }
   if (shown && alike == kMostAlike + 1) {
     put_message(fmt::format("  more of these warnings are not shown; -v and --json have all [{}]\n",
-                            diagnostic.code));
+                            diagnostic.code),
+                diagnostic.code);
   }
   report.issues.push_back(std::move(diagnostic));
 }

@@ -43,6 +43,7 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-render", "--fps", "--rate"},
     {"krok-render", "--sides", "--view"},
     {"krok-render", "--together", "--layout together"},
+    {"krok-synth", "--table", "--points"},
     {"krok-view", "--keys", "--contacts"},
     {"krok-walk", "--from", "--start"},
     {"krok-walk", "--to", "--goal"},

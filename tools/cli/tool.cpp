@@ -16,8 +16,10 @@
 #include "core/temporary_files.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/console_progress.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/paths.h"
+#include "tools/cli/usage.h"
 
 namespace krok::cli {
 

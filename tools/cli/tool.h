@@ -33,7 +33,11 @@ inline constexpr int kExitPartly = 3;   // batch finished, some files failed
 
 // How the run for one of many files (batch mode, folders of krok-diff) differs from a single run.
 struct OneOfMany {
-  std::string messages;  // collected, to be printed in list order
+  struct Message {
+    std::string text;
+    std::string warning;  // its code; empty for errors and what else is always shown
+  };
+  std::vector<Message> messages;  // collected, to be printed in list order
   // Checks an output that is not a destination; may be empty. Those outputs are held back here, and
   // renamed to their final names in list order.
   std::function<Status(const std::string& path)> check_unforeseen;
@@ -120,7 +124,7 @@ class ToolContext : public io::Inputs {
   Location subject;
 
  private:
-  void put_message(const std::string& text);
+  void put_message(const std::string& text, const std::string& warning = {});
 
   std::map<std::string, int> alike_;  // warnings so far, by code
   std::set<std::string> written_;     // canonical paths that passed check_output

@@ -248,6 +248,14 @@ Result<int> run(const Options& options, ToolContext& context) {
     context.report.result["planted"] = to_json(*drift);
     context.log(text_of(*drift));
   }
+  for (std::size_t m = 0; m < motions->size(); ++m) {
+    const Clip& clip = (*motions)[m].clip;
+    const double from = moments->times[m].front(), to = moments->times[m].back();
+    if (from + clip.duration() - to < 1.5 / clip.rate) continue;
+    context.log(fmt::format("{}: {} to {} s of {} s are used, what has a counterpart in the others",
+                            (*motions)[m].name, readable(from, 3), readable(to, 3),
+                            readable(clip.duration(), 3)));
+  }
   context.log(fmt::format("{} -> {}: {} at {} fps ({} s), {} matched times",
                           counted(static_cast<long long>(motions->size()), "motion"),
                           context.output, counted(blended->clip.frame_count(), "frame"),

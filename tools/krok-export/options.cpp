@@ -24,10 +24,33 @@ Result<std::string> extension_of(ExportFormat format) {
       return std::string(".mot");
     case ExportFormat::sto:
       return std::string(".sto");
+    case ExportFormat::npz:
+      return std::string(".npz");
     case ExportFormat::from_extension:
       break;
   }
-  return Error("usage", "no output format given", "use --format bvh, glb, gltf, csv, mot or sto");
+  return Error("usage", "no output format given",
+               "use --format bvh, glb, gltf, csv, npz, mot or sto");
+}
+
+// Words that one tries first have other homes.
+ValueKind<What> series_kind() {
+  ValueKind<What> kind = choice<What>({{"positions", What::positions},
+                                       {"local", What::local},
+                                       {"angles", What::angles},
+                                       {"quaternions", What::quaternions},
+                                       {"velocities", What::velocities},
+                                       {"contacts", What::contacts}});
+  kind.read = [known = kind.read](const std::string& text) -> Result<What> {
+    auto read = known(text);
+    if (read) return read;
+    Error error = std::move(read).error();
+    if (text == "speed" || text == "gait")
+      error.hint = "krok-keys --table OUT.csv has speed and gait";
+    if (text == "events") error.hint = "krok-keys -o NAME.keys.json has gait events";
+    return error;
+  };
+  return kind;
 }
 
 Status check(const Options& options) {
@@ -42,7 +65,7 @@ Status check_for(ExportFormat format, const Options& options) {
   using enum ExportFormat;
   const bool opensim = format == mot || format == sto;
   const char* const for_bvh = "--digits, --order and --root-offset are for BVH";
-  const char* const for_tables = "--what and --map are for tables: .csv, .mot and .sto";
+  const char* const for_tables = "--what is for tables: .csv, .mot and .sto";
   const struct {
     const char* option;
     std::vector<ExportFormat> formats;
@@ -53,7 +76,9 @@ Status check_for(ExportFormat format, const Options& options) {
       {"--order", {bvh}, for_bvh},
       {"--root-offset", {bvh}, for_bvh},
       {"--what", {csv, mot, sto}, for_tables},
-      {"--map", {csv, mot, sto}, for_tables},
+      {"--map",
+       {csv, npz, mot, sto},
+       "--map is for tables and for arrays: .csv, .mot, .sto and .npz"},
       {"--layout",
        {csv},
        opensim ? "--layout is for CSV; OpenSim's files are wide" : "--layout is for CSV"},
@@ -75,23 +100,20 @@ void declare(CommandOptions& command, Options& options) {
                   "Motion: a .anim file, or a capture (BVH; AMC with its ASF beside it), read as "
                   "by krok-import without options")
       .required();
-  command.add("--format FORMAT", options.format,
-              choice<ExportFormat>({{"bvh", ExportFormat::bvh},
-                                    {"glb", ExportFormat::glb},
-                                    {"gltf", ExportFormat::gltf},
-                                    {"csv", ExportFormat::csv},
-                                    {"mot", ExportFormat::mot},
-                                    {"sto", ExportFormat::sto}}),
-              "bvh, glb, gltf (text, embedded data), csv, or OpenSim's mot or sto; default: the "
-              "output's extension");
   command.add(
-      "--what SERIES", options.what,
-      choice<What>({{"positions", What::positions},
-                    {"local", What::local},
-                    {"angles", What::angles},
-                    {"quaternions", What::quaternions},
-                    {"velocities", What::velocities},
-                    {"contacts", What::contacts}}),
+      "--format FORMAT", options.format,
+      choice<ExportFormat>({{"bvh", ExportFormat::bvh},
+                            {"glb", ExportFormat::glb},
+                            {"gltf", ExportFormat::gltf},
+                            {"csv", ExportFormat::csv},
+                            {"npz", ExportFormat::npz},
+                            {"mot", ExportFormat::mot},
+                            {"sto", ExportFormat::sto}}),
+      "bvh, glb, gltf (text, embedded data), csv, npz (arrays of numpy), or OpenSim's mot or "
+      "sto; default: the "
+      "output's extension");
+  command.add(
+      "--what SERIES", options.what, series_kind(),
       "Tables: positions (world, m), velocities (world, m/s), quaternions (world: qx, qy, "
       "qz, qw), local (position in m and quaternion relative to the parent), angles (of "
       "hips, knees, ankles, shoulders, elbows in degrees, those that krok-plot draws, see "
@@ -130,7 +152,7 @@ void declare(CommandOptions& command, Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-export", options, declare, check, run);
-  spec.summary = "Exports a motion as BVH, glTF or tables (CSV, OpenSim)";
+  spec.summary = "Exports a motion as BVH, glTF, arrays of numpy or tables (CSV, OpenSim)";
   spec.details = "Tables have positions, angles, velocities, contacts and others.";
   spec.inputs = "IN";
   spec.examples = {
@@ -139,6 +161,8 @@ ToolSpec make_spec() {
        "frame,time,joint,x,y,z: one row per frame and joint, in metres"},
       {"krok-export walk.anim --what angles --layout wide -o angles.csv",
        "frame,time,hip_flexion_l,...: one row per frame, in degrees"},
+      {"krok-export walk.anim -o walk.npz",
+       "positions, quaternions, names, parents and contacts for numpy.load"},
       {"krok-export walk.anim -o walk.mot", "the same angles for OpenSim"},
       {"krok-export capture.bvh -o capture.glb",
        "directly from a capture; -v prints the detected conventions"},

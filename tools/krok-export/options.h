@@ -9,7 +9,7 @@
 
 namespace krok::cli::exporting {
 
-enum class ExportFormat { from_extension, bvh, glb, gltf, csv, mot, sto };
+enum class ExportFormat { from_extension, bvh, glb, gltf, csv, npz, mot, sto };
 
 // The series in a table.
 enum class What : unsigned char {

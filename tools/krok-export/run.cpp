@@ -21,6 +21,7 @@
 #include "formats/gltf/reduce_tracks.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
+#include "formats/npy/npz_motion.h"
 #include "formats/opensim/storage_writer.h"
 #include "math/quaternion.h"
 #include "motion/local_motion.h"
@@ -200,12 +201,13 @@ Result<ExportFormat> format_of(const Options& options, const std::string& output
   if (end == ".glb") return ExportFormat::glb;
   if (end == ".gltf") return ExportFormat::gltf;
   if (end == ".csv") return ExportFormat::csv;
+  if (end == ".npz") return ExportFormat::npz;
   if (end == ".mot") return ExportFormat::mot;
   if (end == ".sto") return ExportFormat::sto;
   return Error("export-format",
                end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
                            : fmt::format("unknown extension {}", end),
-               "use .bvh, .glb, .gltf, .csv, .mot or .sto; or --format")
+               "use .bvh, .glb, .gltf, .csv, .npz, .mot or .sto; or --format")
       .in_file(output);
 }
 
@@ -350,17 +352,28 @@ Status write_table(ExportFormat format, const Clip& clip, const Options& options
   });
 }
 
+// With the contacts of the sidecar or those detected; none for a skeleton without legs.
+Status write_arrays(const Clip& clip, const Options& options, ToolContext& context) {
+  auto contacts = contacts_of(options, clip, context);
+  if (!contacts && contacts.error().code != "contacts-feet") return contacts.error();
+  const auto bytes = npy::write_motion(clip, contacts ? *contacts : std::vector<Contact>());
+  if (!bytes) return bytes.error();
+  return write_output(context, context.output,
+                      [&](OutputFile& file) { return file.write(*bytes); });
+}
+
 Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
                                         double unit_metres, ToolContext& context) {
   const auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
-  const Status status = format == ExportFormat::bvh
-                            ? write_output(context, context.output,
-                                           [&](OutputFile& file) {
-                                             return write_bvh(*clip, options, unit_metres, file);
-                                           })
-                            : write_table(format, *clip, options, context);
+  const Status status =
+      format == ExportFormat::bvh
+          ? write_output(
+                context, context.output,
+                [&](OutputFile& file) { return write_bvh(*clip, options, unit_metres, file); })
+      : format == ExportFormat::npz ? write_arrays(*clip, options, context)
+                                    : write_table(format, *clip, options, context);
   if (!status) return status.error();
   return facts_of(*clip);
 }

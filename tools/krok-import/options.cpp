@@ -1,8 +1,11 @@
 #include "tools/krok-import/options.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "formats/io/formats.h"
+#include "positions/position_skeleton.h"
 #include "tools/cli/output_kind.h"
 #include "tools/shared/shared_options.h"
 
@@ -23,13 +26,18 @@ void declare_inputs(CommandOptions& command, Options& options) {
   command
       .add_option(
           "input IN", options.input,
-          "Motion capture (BVH; Acclaim motion, AMC; Acclaim skeleton, ASF) or character "
+          "Motion capture (BVH; Acclaim motion, AMC; Acclaim skeleton, ASF; arrays of "
+          "numpy, NPY and NPZ) or character "
           "(GLB, glTF, a ZIP with one of them, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5); - is "
           "standard input")
       .required();
-  command.add_option("--skeleton IN.asf", options.skeleton,
-                     "Skeleton of an Acclaim motion; default: the .asf file beside it whose name "
-                     "starts the motion's name, or the only one");
+  command.add_option(
+      "--skeleton IN", options.skeleton,
+      "Skeleton of an Acclaim motion (IN.asf) [the .asf file beside it whose name starts the "
+      "motion's name, or the only one]. What the joints of an array are: " +
+          fmt::format("{}", fmt::join(skeleton_names(), ", ")) +
+          ", a list (.json), a motion with that skeleton, or for poses of SMPL its model (.npz) "
+          "[by the array, or the number of its joints]");
   add_map_option(command, options.map);
   command.add("--save-model OUT.model", options.model, output_of(registry::Kind::model),
               "Write the model: skeleton with reference pose, mesh and skin; for a capture "
@@ -45,10 +53,12 @@ void declare_characters(CommandOptions& command, Options& options) {
            "textures in OUT_textures/, morph targets in OUT_morphs.exr; replaces --save-model and "
            "--save-morphs")
       .not_with({"--save-model", "--save-morphs"});
-  command.add_option("--clip NAME", options.clip,
-                     "Animation to import: name, number from 0, or all; for all, {clip} in the "
-                     "output's name is the animation's name [the first that moves at least half "
-                     "as many joints as any other; for --save-cam alone the camera]");
+  command.add_option(
+      "--clip NAME", options.clip,
+      "Animation to import: name, number from 0, or all; for all, {clip} in the "
+      "output's name is the animation's name [the first that moves at least half "
+      "as many joints as any other; for --save-cam alone the camera]. For an array of "
+      "several motions a number or all [the first]");
   command.add_option("--skin NAME", options.skin,
                      "Use the skeleton of this skin (name or number) if the file has several [the "
                      "one with the most joints]");
@@ -155,7 +165,8 @@ ToolSpec make_spec() {
   ToolSpec spec = spec_of("krok-import", options, declare, check, run);
   spec.summary = "Converts motion captures and characters to Krok's formats";
   spec.details =
-      "Captures: BVH, Acclaim. Characters: glTF (meshopt and Draco, too), FBX, COLLADA, SMD, MS3D, "
+      "Captures: BVH, Acclaim, arrays of numpy. Characters: glTF (meshopt and Draco, too), FBX, "
+      "COLLADA, SMD, MS3D, "
       "3DS, ASE, MD5.";
   spec.inputs = "IN";
   spec.needs_output = false;  // --save-model or --save-cam alone is enough
@@ -165,6 +176,10 @@ ToolSpec make_spec() {
        "a capture in inches with +Z up, and its skeleton as a model"},
       {"krok-import 01_01.amc --skeleton 01.asf -o walk.anim",
        "an Acclaim motion with its skeleton, as in the CMU database"},
+      {"krok-import new_joints/012314.npy --skeleton humanml22 --fps 20 -o walk.anim",
+       "joint positions of a generative model, as rotations of a skeleton"},
+      {"krok-import amass.npz --skeleton SMPLX_NEUTRAL.npz -o walk.anim",
+       "poses of SMPL-X, with the joints of its body"},
       {"krok-import hero.glb --clip Walk -o walk.anim --save-model hero.model --save-cam shot.cam",
        "one animation of a character, its mesh and skin, and the camera"},
       {"krok-import hero.glb --clip all -o 'hero_{clip}.anim' --save-morphs face.exr",

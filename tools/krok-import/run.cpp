@@ -6,11 +6,13 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/result.h"
+#include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/io/open_capture.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
+#include "formats/keys/keys.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
 #include "motion/sample.h"
@@ -19,8 +21,10 @@
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
+#include "tools/krok-import/clips.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
+#include "tools/shared/keys_choice.h"
 
 namespace krok::cli::import {
 
@@ -100,13 +104,24 @@ Status check_capture_options(const Options& options, const std::string& path) {
   if (!options.morphs.empty()) return missing("morph targets", "--save-morphs");
   if (!options.weights.empty()) return missing("morph targets", "--morph-weights");
   if (!options.skin.empty()) return missing("skin", "--skin");
-  if (!options.clip.empty()) return missing("animations to choose from", "--clip");
   return {};
+}
+
+// Whether --clip chooses among the motions of an array.
+Result<std::optional<int>> motion_of_array(const Options& options, const InputFile& input) {
+  if (options.clip.empty() || options.clip == "all") return std::optional<int>();
+  const auto number = parse_integer(options.clip);
+  if (number && *number >= 0 && *number < 1'000'000) {
+    return std::optional(static_cast<int>(*number));
+  }
+  return Error("usage", fmt::format("--clip {}: an array's motions have numbers, from 0",
+                                    shown(options.clip)))
+      .in_file(input.path());
 }
 
 // Writes the outputs and reports what was imported.
 Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
-                     const Options& options, ToolContext& context) {
+                     const std::string& output, const Options& options, ToolContext& context) {
   Capture& capture = *opened.capture;
   std::optional<Clip> resampled;
   FrameSource frames = opened.frames;
@@ -129,13 +144,12 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
     return provenance;
   };
   OutputSet outputs(context);
-  if (context.output.empty()) {
+  if (output.empty()) {
     complete();
   } else {
     const anim::WriteOptions writing{.orientation = options.orientation, .jobs = context.jobs};
-    Status status = outputs.add(context.output, [&](OutputFile& file) {
-      return anim::write(frames, complete, writing, file);
-    });
+    Status status = outputs.add(
+        output, [&](OutputFile& file) { return anim::write(frames, complete, writing, file); });
     if (!status) return status;
   }
   Status status = outputs.add(options.model, [&](OutputFile& file) {
@@ -144,6 +158,13 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
     model.provenance = provenance;
     return model::write(model, {.orientation = options.orientation}, file);
   });
+  if (status && !output.empty()) {
+    const auto sidecar = place_for_keys(capture.keys, output);
+    if (!sidecar) return sidecar.error();
+    status = outputs.add(*sidecar, [&](OutputFile& file) {
+      return file.write(keys::write(capture.keys, frames.skeleton, frames.duration()));
+    });
+  }
   if (status) status = outputs.finish();
   if (!status) return status;
 
@@ -178,14 +199,35 @@ Result<int> import_capture(const InputFile& input, const Options& options, ToolC
   if (Status status = take_axes(options, reading, context); !status) return status.error();
   reading.jobs = context.jobs;
   reading.progress = context.progress;
+  const registry::Kind kind = registry::identify(input.path(), input.bytes());
+  const bool arrays = kind == registry::Kind::npy || kind == registry::Kind::npz;
+  if (!arrays && !options.clip.empty()) {
+    return Error("import-missing",
+                 "a capture has no animations to choose from: --clip cannot be used")
+        .in_file(input.path());
+  }
+  const auto motion = motion_of_array(options, input);
+  if (!motion) return motion.error();
+  reading.motion = *motion;
   const bool whole = context.output.empty() || options.resample > 0;
-  Status status =
-      io::use_capture(input, context, reading, whole, [&](const io::OpenedCapture& opened) {
-        if (Status fits = check_output_kind(context.output, "-o", registry::Kind::anim); !fits) {
-          return fits;
-        }
-        return write_capture(opened, input, options, context);
-      });
+  const bool all = arrays && options.clip == "all";
+  Json results = Json::array();
+  Status status;
+  for (int number = 0, count = 1; status && number < count; ++number) {
+    if (all) reading.motion = number;
+    status = io::use_capture(input, context, reading, whole, [&](const io::OpenedCapture& opened) {
+      if (all) count = opened.details.motions;
+      const std::string name = std::to_string(number);
+      const auto output = all ? clip_path(context.output, "-o", {number, name, name, "as given"},
+                                          count > 1, ".anim")
+                              : Result<std::string>(context.output);
+      if (!output) return Status(output.error());
+      if (Status fits = check_output_kind(*output, "-o", registry::Kind::anim); !fits) return fits;
+      return write_capture(opened, input, *output, options, context);
+    });
+    if (all && status) results.push_back(std::move(context.report.result));
+  }
+  if (all) context.report.result = Json{{"motions", std::move(results)}};
   if (!status) {
     Error error = std::move(status).error();
     if (error.code == "acclaim-skeleton") error.hint = "use --skeleton FILE.asf";

@@ -54,8 +54,9 @@ Result<ContactChange> parse_contact(const std::string& text) {
 
 void declare(CommandOptions& command, Options& o) {
   command
-      .add_option("input IN", o.input,
-                  "Motion: a .anim file, or a capture, read with the defaults of krok-import")
+      .add_option("inputs IN", o.inputs,
+                  "Motion: a .anim file, or a capture, read with the defaults of krok-import; for "
+                  "--table several, or folders")
       .required();
   add_map_option(command, o.map);
   command.add(
@@ -73,6 +74,12 @@ void declare(CommandOptions& command, Options& o) {
       .not_with("--find none");
   command.add("--plot OUT.svg", o.plot, output({".svg"}),
               "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes");
+  command
+      .add(
+          "--table OUT.csv", o.table, output({".csv"}),
+          "A table of gait with a row for each motion: speed, cadence, lengths and width of steps, "
+          "stance, foot skate")
+      .not_with({"--output", "--plot", "--contacts", "--find none"});
   command.group("Manual edits");
   command
       .add("--keytime", o.changes.set, keytime("=", true, "--keytime left_strike=1.25s"),
@@ -108,15 +115,17 @@ ToolSpec make_spec() {
   ToolSpec spec = spec_of<Options>("krok-keys", options, declare, nullptr, run);
   spec.summary = "Detects foot contacts and gait keytimes; shows and saves them";
   spec.details = "They are written to an editable file beside the motion.";
-  spec.inputs = "IN.anim|IN.bvh|IN.amc";
+  spec.inputs = "IN.anim|IN.bvh|IN.amc...";
   spec.examples = {
       {"krok-keys walk.anim", "prints what is detected, or walk.keys.json if that was edited"},
       {"krok-keys walk.anim -o walk.keys.json --plot walk.svg",
        "writes the file beside the motion, and a plot of the feet for checking"},
       {"krok-keys walk.anim -o walk.keys.json --keytime left_strike=1.25s,right_off=1.31s",
        "moves two keytimes; they are kept when the file is rebuilt"},
-      {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"}};
+      {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"},
+      {"krok-keys motions --table gait.csv", "a table of the gait of all motions of a folder"}};
   spec.exit_no = "--find steps was given and no step was found";
+  spec.folder_endings = io::motion_endings();
   spec.needs_output = false;
   spec.output_endings = {".json"};
   spec.batch = {io::motion_endings(), always(".keys.json")};

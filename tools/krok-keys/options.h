@@ -34,13 +34,16 @@ struct Changes {
 };
 
 struct Options {
-  std::string input;
-  std::string map;   // path of a role map, or empty
-  std::string keys;  // path of the initial keytime file, or empty
+  std::vector<std::string> inputs;  // several for `table` alone
+  std::string map;                  // path of a role map, or empty
+  std::string keys;                 // path of the initial keytime file, or empty
   Find find = Find::automatic;
   bool discard_edits = false;
   Changes changes;
   std::string plot;
+  std::string table;
+
+  const std::string& input() const { return inputs.front(); }
 };
 
 // The tool. Each call has options of its own.

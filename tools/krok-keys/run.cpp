@@ -8,9 +8,6 @@
 
 #include "contacts/contacts.h"
 #include "contacts/gait_keytimes.h"
-#include "contacts/gait_metrics.h"
-#include "contacts/slide_speed.h"
-#include "contacts/step_measures.h"
 #include "core/numbers.h"
 #include "core/result.h"
 #include "draw/plot.h"
@@ -20,7 +17,9 @@
 #include "scene/clip.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-keys/edit_keys.h"
+#include "tools/krok-keys/gait_table.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::keys {
@@ -106,7 +105,7 @@ Result<std::optional<krok::keys::Sidecar>> read_before(const Options& options, c
     return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
   }
   const bool beside = context.output.empty();
-  const std::string path = beside ? keys_sidecar_path(options.input) : context.output;
+  const std::string path = beside ? keys_sidecar_path(options.input()) : context.output;
   if (!stands(path)) return std::optional<krok::keys::Sidecar>();
   const auto file = InputFile::open(path);
   if (!file) return file.error();
@@ -114,7 +113,7 @@ Result<std::optional<krok::keys::Sidecar>> read_before(const Options& options, c
   if (options.find != Find::none && !krok::keys::has_edits(file->text())) {
     return std::optional<krok::keys::Sidecar>();
   }
-  if (beside) return read_keys_beside(options.input, clip, context);
+  if (beside) return read_keys_beside(options.input(), clip, context);
   auto sidecar = krok::keys::read_sidecar(file->text(), path, clip.skeleton, clip.duration());
   if (!sidecar) {
     Error error = std::move(sidecar).error();
@@ -177,7 +176,8 @@ Json number(const std::optional<double>& value) {
   return value ? Json(*value) : Json();
 }
 
-Json as_json(const GaitMetrics& gait, const StepMeasures& steps, double slide) {
+Json as_json(const GaitFacts& facts) {
+  const auto& [gait, steps, slide] = facts;
   const auto if_known = [](bool known, double value) { return known ? Json(value) : Json(); };
   const bool cycles = gait.cycles > 0;
   return {
@@ -220,7 +220,8 @@ Json as_json(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton) {
   return json;
 }
 
-std::string gait_text(const GaitMetrics& gait, const StepMeasures& steps, double slide) {
+std::string gait_text(const GaitFacts& facts) {
+  const auto& [gait, steps, slide] = facts;
   if (gait.cycles == 0) return {};
   std::string text =
       fmt::format("; {:.0f} steps per minute, stance {:.0f} % and {:.0f} % of a cycle",
@@ -250,7 +251,7 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
       if (!contacts) return std::move(contacts).error();
       found = std::move(*contacts);
     }
-    const auto svg = feet_plot(name_of_input(options.input), clip, *found, sidecar.keys);
+    const auto svg = feet_plot(name_of_input(options.input()), clip, *found, sidecar.keys);
     if (!svg) return svg.error();
     const Status status =
         outputs.add(options.plot, [&](OutputFile& file) { return file.write(*svg); });
@@ -262,12 +263,17 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (!options.changes.empty() && context.output.empty()) {
-    return no_output(
-        fmt::format("use -o {} to write beside the motion",
-                    options.input == "-" ? "NAME.keys.json" : keys_sidecar_path(options.input)));
+  if (!options.table.empty()) return write_gait_table(options, context);
+  if (options.inputs.size() > 1) {
+    return usage("several motions are given",
+                 "--table OUT.csv makes a table of them, --out-dir DIR a keytime file of each");
   }
-  const auto clip = io::open_motion(options.input, context);
+  if (!options.changes.empty() && context.output.empty()) {
+    return no_output(fmt::format(
+        "use -o {} to write beside the motion",
+        options.input() == "-" ? "NAME.keys.json" : keys_sidecar_path(options.input())));
+  }
+  const auto clip = io::open_motion(options.input(), context);
   if (!clip) return clip.error();
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
@@ -282,7 +288,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   std::optional<FoundContacts> contacts;
   if (*finding) {
     auto found = find(*clip, *roles, context);
-    if (!found) return std::move(found).error().in_file(options.input);
+    if (!found) return std::move(found).error().in_file(options.input());
     sidecar = with_edits(std::move(found->keys), sidecar);
     contacts = std::move(found->contacts);
   } else if (*before && (*before)->has_edits()) {
@@ -297,20 +303,18 @@ Result<int> run(const Options& options, ToolContext& context) {
       write_results(options, *clip, *roles, std::move(contacts), sidecar, context);
   if (!status) return status.error();
 
-  const GaitMetrics gait = gait_metrics(sidecar.keys.keytimes);
-  const double slide = slide_speed(*clip, *roles);
-  const StepMeasures steps = step_measures(*clip, *roles, sidecar.keys.keytimes);
+  const GaitFacts gait = gait_facts(*clip, *roles, sidecar.keys.keytimes);
   context.report.result = as_json(sidecar, clip->skeleton);
-  context.report.result["gait"] = as_json(gait, steps, slide);
+  context.report.result["gait"] = as_json(gait);
   context.report.result["found"] = *finding;
   context.report.result["edited"] = sidecar.has_edits();
   if (context.output.empty() && options.plot.empty()) {
     context.print(as_table(sidecar, clip->skeleton));
   }
-  context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input),
+  context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input()),
                           counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
                           counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
-                          gait_text(gait, steps, slide)));
+                          gait_text(gait)));
   return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
 }
 

@@ -17,6 +17,7 @@
 #include "retarget/stance.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-retarget/outcome.h"
 #include "tools/krok-retarget/takes.h"
 #include "tools/shared/keys_choice.h"

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/numbers.h"
 #include "tools/krok-skin/outputs.h"
 #include "tools/krok-skin/small_rig.h"
@@ -43,14 +45,19 @@ Json result_of(const Subject& subject, int frames) {
   return result;
 }
 
-// "; clips: walk (120 frames), run (80)", or nothing without motions.
+// "; clips: walk (120), run (80) frames", of many "; 30 clips: ... and 25 more"; nothing for one.
 std::string clips_text(const Subject& subject) {
   if (subject.others.empty()) return {};
-  std::string text = fmt::format("; clips: {} ({})", subject.clip_name, subject.clip.frame_count());
-  for (const Subject::Motion& other : subject.others) {
+  constexpr std::size_t kNamed = 5;
+  const std::size_t count = 1 + subject.others.size();
+  std::string text = count > kNamed ? fmt::format("; {} clips", count) : "; clips";
+  text += fmt::format(": {} ({})", subject.clip_name, subject.clip.frame_count());
+  for (std::size_t i = 0; i < std::min(kNamed, count) - 1; ++i) {
+    const Subject::Motion& other = subject.others[i];
     text += fmt::format(", {} ({})", other.name, other.clip.frame_count());
   }
-  return text + " frames";
+  text += " frames";
+  return count > kNamed ? text + fmt::format(" and {} more", count - kNamed) : text;
 }
 
 struct Written {

@@ -16,8 +16,8 @@ void declare(CommandOptions& command, Options& options) {
   command
       .add_option("--set NAME=VALUE", options.set,
                   "Value of a parameter: length=70cm, turn=15deg, duration=0.6s")
-      .not_with("--table");
-  command.add_option("--table IN.csv", options.table,
+      .not_with("--points");
+  command.add_option("--points IN.csv", options.table,
                      "Table (CSV) with a column per parameter; makes one motion per row, named as "
                      "-o plus the row number");
   command.add_flag("--extrapolate", options.extrapolate,
@@ -53,7 +53,7 @@ ToolSpec make_spec() {
                     "one step of that length and turn; prints its measured parameters"},
                    {"krok-synth walking.steps --set length=0.7 --correct --side right -o step.anim",
                     "a step of the right foot, corrected to within a hundredth of the tolerance"},
-                   {"krok-synth walking.steps --table points.csv -o steps/step.anim",
+                   {"krok-synth walking.steps --points points.csv -o steps/step.anim",
                     "one motion per row of a table with a column per parameter: step_1.anim, ..."}};
   return spec;
 }

@@ -28,6 +28,26 @@ TEST_F(BatchList, APatternKeepsTheFoldersBelowItsFixedPart) {
   EXPECT_EQ(files_below("new/out"), (Names{"a/x.anim", "b/c/x.anim", "y.anim"}));
 }
 
+// Would fail if hundreds of lines said the same, or if the report left any of it out.
+TEST_F(BatchList, OfManyFilesWithOneWarningTheFirstAreTold) {
+  for (const char* name : {"a", "b", "c", "d", "e"}) {
+    put_capture(std::string("takes/") + name + ".bvh");
+  }
+  const auto count = [](const std::string& text, const std::string& part) {
+    std::size_t found = 0;
+    for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  const ToolRun run = import({"takes", "--out-dir", "out", "--json=report.json"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_EQ(count(run.err, "the unit is"), 3U) << run.err;
+  EXPECT_THAT(run.err,
+              HasSubstr("  2 more files have such warnings; -v and --json have all [bvh-unit]"));
+  EXPECT_EQ(count(get(path("report.json")), "the unit is"), 5U);
+  const ToolRun all = import({"takes", "--out-dir", "again", "-v"});
+  EXPECT_EQ(count(all.err, "the unit is"), 5U) << all.err;
+}
+
 TEST_F(BatchList, PatternsAreExpandedAsShellsDo) {
   for (const char* name : {"a1.bvh", "a2.bvh", "b1.bvh", "[x].bvh"}) put_capture(name);
   const auto made = [&](const std::string& pattern) {

@@ -68,6 +68,18 @@ TEST_F(KrokBlend, KeytimesAreFoundAndWritten) {
   EXPECT_EQ(written["keytimes"].size(), result["keytimes"].size());
 }
 
+// Would fail if a blend were shorter than a motion of weight 1 without a word.
+TEST_F(KrokBlend, WhatHasNoCounterpartIsNamed) {
+  const ToolRun cut =
+      run_tool("krok-edit", {path("quick.anim"), "--from", "1s", "-o", path("late.anim"), "-q"});
+  ASSERT_EQ(cut.exit_code, 0) << cut.err;
+  const ToolRun run = blend({walk("1"), path("late.anim") + ":0"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("walk.anim: "));
+  EXPECT_THAT(run.err, HasSubstr("are used, what has a counterpart in the others"));
+  EXPECT_THAT(blend({walk("1"), walk("0")}).err, Not(HasSubstr("are used")));
+}
+
 TEST_F(KrokBlend, WeightsFromATable) {
   put("in.csv", "generic,weight\n0,0\n1,1\n");
   put("out.csv", "generic,weight\n0,1\n1,0\n");

@@ -13,7 +13,7 @@
 namespace krok::test {
 namespace {
 
-const std::string kMotion = kFrozen + "motion.anim";
+const std::string kFrozenMotion = kFrozen + "motion.anim";
 
 class KrokBody : public CliTest {
  protected:
@@ -28,7 +28,7 @@ class KrokBody : public CliTest {
 };
 
 TEST_F(KrokBody, WritesAModelAndOneLine) {
-  const ToolRun run = build({kMotion});
+  const ToolRun run = build({kFrozenMotion});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.out, "");
   EXPECT_THAT(run.err, HasSubstr("body: 2,5"));
@@ -68,7 +68,7 @@ TEST_F(KrokBody, ACaptureIsReadAsItIs) {
 }
 
 TEST_F(KrokBody, FilesThatAreNoSkeletonOrDamaged) {
-  std::string cut = get(kMotion);
+  std::string cut = get(kFrozenMotion);
   cut.resize(cut.size() / 2);
   const std::pair<std::string, const char*> cases[] = {
       {put("cut.anim", cut), "[container-truncated]"},
@@ -85,28 +85,28 @@ TEST_F(KrokBody, FilesThatAreNoSkeletonOrDamaged) {
 
 TEST_F(KrokBody, AnOutputThatCannotBeWritten) {
   const ToolRun run =
-      run_tool("krok-body", {kMotion, "--detail", "low", "-o", path("no/such/body.model")});
+      run_tool("krok-body", {kFrozenMotion, "--detail", "low", "-o", path("no/such/body.model")});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("[file-unwritable]"));
   EXPECT_THAT(run.err, HasSubstr("hint: create the folder first"));
   EXPECT_THAT(listing(), IsEmpty());
 
   put("body.model", "mine");
-  EXPECT_EQ(build({kMotion, "--no-clobber"}).exit_code, 2);
+  EXPECT_EQ(build({kFrozenMotion, "--no-clobber"}).exit_code, 2);
   EXPECT_EQ(get(path("body.model")), "mine");
 }
 
 TEST_F(KrokBody, UsageErrors) {
   const std::string out = path("x.model");
   const std::pair<std::vector<std::string>, const char*> cases[] = {
-      {{kMotion, "--detail", "enormous", "-o", out},
+      {{kFrozenMotion, "--detail", "enormous", "-o", out},
        "krok-body: error: --detail: 'enormous' is not low, medium or high [usage]"},
-      {{kMotion, "--pose", "soon", "-o", out},
+      {{kFrozenMotion, "--pose", "soon", "-o", out},
        "--pose: 'soon' is not auto, reference or a frame number [usage]"},
-      {{kMotion, "--pose", "-1", "-o", out}, "[usage]"},
-      {{kMotion}, "no output given [usage]"},
+      {{kFrozenMotion, "--pose", "-1", "-o", out}, "[usage]"},
+      {{kFrozenMotion}, "no output given [usage]"},
       {{"-o", out}, "[usage]"},
-      {{kMotion, "--nonsense", "-o", out}, "[usage]"},
+      {{kFrozenMotion, "--nonsense", "-o", out}, "[usage]"},
   };
   for (const auto& [arguments, text] : cases) {
     const ToolRun run = run_tool("krok-body", arguments);
@@ -118,33 +118,33 @@ TEST_F(KrokBody, UsageErrors) {
 }
 
 TEST_F(KrokBody, AFrameThatIsNotThere) {
-  const ToolRun run = build({kMotion, "--pose", "99"});
+  const ToolRun run = build({kFrozenMotion, "--pose", "99"});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr("motion.anim: error: frame 99 is out of range, the clip has 2"));
   EXPECT_THAT(run.err, HasSubstr("[body-frame]"));
-  EXPECT_EQ(build({kMotion, "--pose", "1"}).exit_code, 0);
+  EXPECT_EQ(build({kFrozenMotion, "--pose", "1"}).exit_code, 0);
 }
 
 TEST_F(KrokBody, BytesDoNotDependOnThreadsOrFolders) {
-  ASSERT_EQ(build({kMotion, "-j1"}).exit_code, 0);
+  ASSERT_EQ(build({kFrozenMotion, "-j1"}).exit_code, 0);
   const std::string one = get(path("body.model"));
   for (const char* jobs : {"-j2", "-j3", "-j0"}) {
-    ASSERT_EQ(build({kMotion, jobs}).exit_code, 0);
+    ASSERT_EQ(build({kFrozenMotion, jobs}).exit_code, 0);
     EXPECT_TRUE(get(path("body.model")) == one) << jobs;
   }
-  std::filesystem::copy(kMotion, path("motion.anim"));
+  std::filesystem::copy(kFrozenMotion, path("motion.anim"));
   ASSERT_EQ(build({path("motion.anim")}).exit_code, 0);
   EXPECT_TRUE(get(path("body.model")) == one);
 }
 
 TEST_F(KrokBody, JsonHoldsTheMetrics) {
-  const ToolRun run = build({kMotion, "--json"});
+  const ToolRun run = build({kFrozenMotion, "--json"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   const json report = json::parse(run.out);
   EXPECT_EQ(report["schema"], "krok.report/1");
   EXPECT_EQ(report["tool"], "krok-body");
-  EXPECT_EQ(report["inputs"][0]["path"], kMotion);
+  EXPECT_EQ(report["inputs"][0]["path"], kFrozenMotion);
   EXPECT_EQ(report["options"]["detail"], "low");
   EXPECT_EQ(report["outputs"], json{path("body.model")});
   const json& result = report["result"];

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
@@ -65,6 +67,40 @@ TEST_F(KrokKeys, ReportsAsJson) {
   EXPECT_NEAR(result["gait"]["cadence"].get<double>(), 109.4, 1);
   EXPECT_NEAR(result["gait"]["stance"][0].get<double>(), 0.62, 0.02);
   EXPECT_LT(result["gait"]["slide_speed"].get<double>(), 0.005);
+}
+
+// Would fail if the table said something else than the report of one motion, or if one that cannot
+// be read took the others with it.
+TEST_F(KrokKeys, TheTableHasARowForEachMotion) {
+  std::filesystem::create_directory(path("takes"));
+  std::filesystem::copy_file(motion_, path("takes/a, b.bvh"));
+  std::filesystem::copy_file(motion_, path("takes/c.bvh"));
+  const std::string table = path("gait.csv");
+  ASSERT_EQ(run_tool("krok-keys", {path("takes"), "--table", table}).exit_code, 0);
+  const json gait = json::parse(keys({"--json"}).out)["result"]["gait"];
+  const std::string text = get(table);
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  ASSERT_EQ(lines.size(), 3U) << text;
+  EXPECT_THAT(lines[0], testing::StartsWith("file,duration [s],cycles,steps,speed [m/s],cadence"));
+  EXPECT_THAT(lines[1], testing::StartsWith('"' + path("takes/a, b.bvh") + "\","));
+  std::vector<double> values;
+  std::istringstream row(lines[2].substr(lines[2].find(',') + 1));
+  for (std::string cell; std::getline(row, cell, ',');) values.push_back(std::stod(cell));
+  ASSERT_EQ(values.size(), 13U) << lines[2];
+  EXPECT_EQ(values[1], gait["cycles"]);
+  EXPECT_EQ(values[2], gait["steps"]);
+  EXPECT_NEAR(values[3], gait["speed"].get<double>(), 1e-3);
+  EXPECT_NEAR(values[4], gait["cadence"].get<double>(), 0.1);
+  EXPECT_NEAR(values[5], gait["stride_length"].get<double>(), 1e-3);
+  EXPECT_NEAR(values[7], gait["step_length"][1].get<double>(), 1e-3);
+  EXPECT_NEAR(values[10], 100 * gait["stance"][1].get<double>(), 0.1);
+  EXPECT_NEAR(values[12], 1000 * gait["slide_speed"].get<double>(), 0.1);
+  put("takes/broken.bvh", "HIERARCHY");
+  const ToolRun part = run_tool("krok-keys", {path("takes"), "--table", table});
+  EXPECT_EQ(part.exit_code, 3) << part.err;
+  EXPECT_EQ(get(table), text);
 }
 
 TEST_F(KrokKeys, SetMovesMarksAndStays) {

@@ -172,6 +172,24 @@ TEST_F(KrokMix, ACutThatPopsIsWarnedOf) {
   EXPECT_THAT(run.err, HasSubstr("inertial"));
 }
 
+// Would fail if a layer without a fade popped in silence, or one with fades were warned of.
+TEST_F(KrokMix, ALayerThatPopsIsWarnedOf) {
+  const auto layered = [&](const std::string& fades) {
+    return mix(timeline("{\"source\": \"walk\"}",
+                        ",\"layers\": [{\"mode\": \"override\", \"items\": [{\"source\": "
+                        "\"quick\", \"from\": 1, \"to\": 2, \"at\": 0.9" +
+                            fades + "}]}]"));
+  };
+  const ToolRun hard = layered("");
+  EXPECT_EQ(hard.exit_code, 0) << hard.err;
+  EXPECT_TRUE(has_code(hard.err, "mix-pop")) << hard.err;
+  EXPECT_THAT(hard.err, HasSubstr("where it begins"));
+  EXPECT_THAT(hard.err, HasSubstr("\"fade_in\" makes it smooth"));
+  const ToolRun soft = layered(",\"fade_in\": 0.4, \"fade_out\": 0.4");
+  EXPECT_EQ(soft.exit_code, 0) << soft.err;
+  EXPECT_FALSE(has_code(soft.err, "mix-pop")) << soft.err;
+}
+
 TEST_F(KrokMix, KeysAreTakenFromBesideAMotion) {
   // A keytime that nobody would find.
   put("in/walk.keys.json",

@@ -105,7 +105,7 @@ TEST_F(StepLibrary, ParametersThatAreNotGivenAreTheMean) {
 TEST_F(StepLibrary, ATableMakesAMotionForEachRow) {
   fit_well();
   write("points.csv", "height [cm],length\n0,0.55\n4,0.6\n8,0.65\n");
-  const json made = synthesised({"--table", path("points.csv"), "-o", path("s.anim")});
+  const json made = synthesised({"--points", path("points.csv"), "-o", path("s.anim")});
   ASSERT_EQ(made.size(), 3u);
   EXPECT_NEAR(made[2]["measured"]["height"].get<double>(), 0.08, 1e-3);
   EXPECT_NEAR(made[0]["measured"]["length"].get<double>(), 0.55, 1e-3);
@@ -113,7 +113,7 @@ TEST_F(StepLibrary, ATableMakesAMotionForEachRow) {
     EXPECT_THAT(listing(), Contains(name));
   }
   write("points.csv", "height,length\n0,0.55\n0,9\n");
-  const ToolRun outside = synth({"--table", path("points.csv"), "-o", path("t.anim")});
+  const ToolRun outside = synth({"--points", path("points.csv"), "-o", path("t.anim")});
   EXPECT_EQ(outside.exit_code, 2);
   EXPECT_THAT(outside.err, HasSubstr("row 2"));
   EXPECT_THAT(listing(), Not(Contains("t_1.anim")));

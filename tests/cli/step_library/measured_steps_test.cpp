@@ -67,11 +67,11 @@ TEST_F(StepLibrary, CellsOfATableMayHaveUnits) {
  "parameters": [{"name": "turn", "measures": "step.turn"}], "examples": [{"clip": "bend_*.bvh"}]})");
   ASSERT_EQ(fit().exit_code, 0);
   write("points.csv", "turn [deg]\n16\n16\u00B0\n16deg\n0.279253rad\n");
-  const json made = synthesised({"--table", path("points.csv"), "-o", path("s.anim")});
+  const json made = synthesised({"--points", path("points.csv"), "-o", path("s.anim")});
   ASSERT_EQ(made.size(), 4u);
   for (const json& one : made) EXPECT_NEAR(one["asked"]["turn"].get<double>(), 16, 1e-4);
   write("points.csv", "turn [deg]\n8\n8cm\n");
-  const ToolRun wrong = synth({"--table", path("points.csv"), "-o", path("s.anim")});
+  const ToolRun wrong = synth({"--points", path("points.csv"), "-o", path("s.anim")});
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.err, HasSubstr("points.csv:3:1: error")) << wrong.err;
 }

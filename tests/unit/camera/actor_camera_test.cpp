@@ -210,6 +210,27 @@ TEST(ActorCamera, FollowsTheFacingOfAActorThatTurnsRound) {
   EXPECT_NEAR(motion.largest_turning, 2.0, 0.02);  // 8 rad in 4 s, evenly
 }
 
+// Would fail if the camera whipped round with an actor that turns about in a third of a second.
+TEST(ActorCamera, TurnsWithTheActorAtNoMoreThanNinetyDegreesASecond) {
+  Clip about;
+  about.skeleton = walk().skeleton;
+  about.rate = 30;
+  about.resize(241);
+  for (int f = 0; f < 241; ++f) {
+    const double turned = kPi * std::clamp((f - 120) / 10.0, 0.0, 1.0);
+    const Transform turn{Vec3::Zero(), Quat(Eigen::AngleAxisd(turned, Vec3::UnitY()))};
+    std::vector<Transform> pose = about.skeleton.reference;
+    for (Transform& one : pose) one = turn * one;
+    about.set_pose(f, pose);
+  }
+  ActorCamera camera;
+  camera.joint = joint(Role::hips);
+  camera.azimuth_from = AzimuthFrom::actor;
+  const ActorShot shot = shot_of(camera, about);
+  EXPECT_LE(camera_motion(shot.track).largest_turning, 0.5 * kPi + 0.01);
+  EXPECT_GT(camera_motion(shot.track).largest_turning, 1);
+}
+
 TEST(ActorCamera, TheDeadZoneLeavesSmallMotionAlone) {
   ActorCamera camera;
   camera.joint = joint(Role::hips);

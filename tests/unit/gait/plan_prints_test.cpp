@@ -107,6 +107,28 @@ TEST(PlanPrints, StairsHaveAFootOnEachTread) {
   }
 }
 
+// Would fail if stairs were refused whose treads are shorter than the sole: heels stand out.
+TEST(PlanPrints, HeelsStandOutOverShortTreads) {
+  for (const char* spec : {"stairs:rise=17cm,run=29cm,count=8", "stairs:rise=17cm,run=26cm"}) {
+    const auto stairs = ground_of(spec);
+    PlanOptions options;
+    options.heel_to_ball = 0.22, options.heel_to_toes = 0.31;
+    const auto plan = plan_prints(straight(5), *stairs, options);
+    ASSERT_TRUE(plan) << spec << plan.error().message;
+    int out = 0;
+    for (const Print& print : plan->prints) {
+      const double tread = stairs->at(print.x, print.z + options.heel_to_ball)->height;
+      EXPECT_EQ(tread, stairs->at(print.x, print.z + 0.4 * options.heel_to_ball)->height);
+      EXPECT_EQ(tread, stairs->at(print.x, print.z + 0.95 * options.heel_to_toes)->height);
+      EXPECT_EQ(print.height.value_or(tread), tread) << print.z;
+      if (stairs->at(print.x, print.z)->height == tread) continue;
+      ++out;
+      EXPECT_TRUE(print.height.has_value()) << print.z;
+    }
+    EXPECT_GE(out, 5) << spec;
+  }
+}
+
 // Would fail if a walk could not end on stairs that it crosses at an angle, where treads have no
 // room for two feet side by side: one is then a little ahead, on the same tread if possible.
 TEST(PlanPrints, EndsOnStairsCrossedAtAnAngle) {

@@ -52,6 +52,25 @@ std::vector<StepLibrary> with_starts_and_stops() {
   return libraries;
 }
 
+// Would fail if starts forward and backward were blended: the body would stay between the feet's
+// ways.
+TEST(StartsAndStops, StartsForwardAndBackwardAreNoLibrary) {
+  samples::WalkOptions options;
+  options.steps = 5;
+  options.from_standing = options.backward = true;
+  std::vector<KeyedWalk> walks = {from_standing(0.6, 0), parametric::test::keyed_walk(options)};
+  auto library =
+      parametric::test::library_of(walks, {"step.length"}, {.gait = StepGait::start, .outlier = 0})
+          .library;
+  const RoleMap roles = find_roles(library.skeleton);
+  const auto made =
+      StepLibrary::create("starts", std::move(library),
+                          rbf::WeightSolver::create(1, std::vector{-0.6, 0.6})->function(), roles);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, "walk-library");
+  EXPECT_NE(made.error().message.find("backward in 1"), std::string::npos) << made.error().message;
+}
+
 // The footprints of a generated walk.
 std::vector<Print> prints_of_capture(const samples::Walk& walk) {
   std::vector<Print> prints;

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "formats/npy/array_reader.h"
+#include "formats/npy/npy.h"
+
+// A motion as it stands in arrays, between the readers of its kinds and what they share.
+
+namespace krok::npy {
+
+struct ArrayMotion {
+  Skeleton skeleton;  // the reference pose in its own axes, in the file's unit
+  RoleMap roles;
+  std::vector<Vec3> positions;     // [frames x joints], in the file's unit and axes
+  std::vector<Quat> orientations;  // [frames x joints], joint to world; empty: to be found
+  bool is_krok = false;            // in Krok's unit and axes
+  bool upright = false;            // the reference pose is +Y up and faces +Z, whatever the motion
+  double usual_rate = 0;           // 0: unknown
+  MotionKeys keys;
+  std::size_t motions = 1;
+  Diagnostics diagnostics;
+};
+
+// What is read, and how.
+struct ArrayFile {
+  const Arrays& arrays;
+  const std::string& name;
+  const ReadOptions& options;
+
+  // The first of the names that the file has; empty if none.
+  std::string find(std::initializer_list<const char*> names) const;
+  // The numbers of an array, all finite (code npy-value; filled in where --repair is given). Shape
+  // as given: 0 is any size, which is set.
+  Result<std::vector<double>> numbers(const std::string& array,
+                                      std::vector<std::size_t>& shape) const;
+  // A single number; empty if there is none of the names.
+  Result<std::optional<double>> number(std::initializer_list<const char*> names) const;
+};
+
+// What the columns are: as given, or by their number.
+Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns,
+                                      double& usual_rate, Diagnostics& diagnostics);
+
+// Positions and orientations of frames from rotations relative to the parents, [frames x joints].
+void pose_frames(const std::vector<Quat>& rotations, const std::vector<Vec3>& roots,
+                 ArrayMotion& motion);
+
+// Contacts of joints, as krok-export writes them, or of Kimodo's feet.
+Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion);
+
+Result<ArrayMotion> read_smpl(const ArrayFile& file);
+Result<ArrayMotion> read_krok(const ArrayFile& file);
+
+}  // namespace krok::npy

@@ -1,0 +1,597 @@
+#include "formats/npy/array_reader.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "capture/far_values.h"
+#include "core/index.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/json/located_json.h"
+#include "formats/npy/array_motion_internal.h"
+#include "math/quaternion.h"
+#include "positions/from_positions.h"
+#include "scene/farthest.h"
+#include "scene/frame_moment.h"
+
+namespace krok::npy {
+
+namespace {
+
+constexpr std::size_t kMaxSamples = 200;
+constexpr const char* kSkeletonHint = "say what its joints are: --skeleton NAME or NAME.json";
+
+// Fills values that are not finite from the frames before and after; false if a column has none.
+bool fill_gaps(std::vector<double>& values, std::size_t frames) {
+  const std::size_t columns = values.size() / frames;
+  for (std::size_t c = 0; c < columns; ++c) {
+    std::size_t before = frames;
+    for (std::size_t f = 0; f < frames; ++f) {
+      if (!std::isfinite(values[f * columns + c])) continue;
+      const std::size_t first = before == frames ? 0 : before + 1;
+      for (std::size_t g = first; g < f; ++g) {
+        const double from = values[(before == frames ? f : before) * columns + c];
+        const double share = before == frames ? 1 : double(g - before) / double(f - before);
+        values[g * columns + c] = from + share * (values[f * columns + c] - from);
+      }
+      before = f;
+    }
+    if (before == frames) return false;
+    for (std::size_t g = before + 1; g < frames; ++g) {
+      values[g * columns + c] = values[before * columns + c];
+    }
+  }
+  return true;
+}
+
+// How to bring an array into order, if an axis has three elements.
+std::string advice_on_axes(std::span<const std::size_t> shape) {
+  const auto three = std::ranges::find(shape, 3U);
+  if (shape.size() == 2 && shape[1] % 3 == 0) {
+    return fmt::format("x, y, z of {} joints in a row? then a.reshape(-1, {}, 3)", shape[1] / 3,
+                       shape[1] / 3);
+  }
+  if (three == shape.end()) return "save the array with the axes frames, joints, x y z";
+  const std::ptrdiff_t axis = three - shape.begin();
+  if (shape.size() == 4 && axis == 2) {
+    return "motions, joints, x y z, frames? then a.transpose(0, 3, 1, 2)";
+  }
+  return fmt::format("axis {} has three elements: numpy.moveaxis(a, {}, -1) makes it the last",
+                     axis, axis);
+}
+
+Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string& name) {
+  auto array = file.arrays.read(name);
+  if (!array) return array.error();
+  ArrayMotion motion;
+  motion.upright = true;
+  std::vector<std::size_t>& shape = array->shape;
+  const std::string text = shape_text(shape);
+  const std::string what = name.empty() ? "the array" : name;
+  if (!array->is_number() || shape.size() < 3 || shape.size() > 4 || shape.back() != 3) {
+    return Error("npy-shape",
+                 fmt::format("{} has the shape {}; (frames, joints, 3) is needed, or (motions, "
+                             "frames, joints, 3)",
+                             what, text),
+                 advice_on_axes(shape));
+  }
+  if (array->data.empty()) return Error("npy-shape", fmt::format("{} has no frames", what));
+  const std::size_t columns = shape[shape.size() - 2], frames = shape[shape.size() - 3];
+  auto arranged = skeleton_for(file, columns, motion.usual_rate, motion.diagnostics);
+  if (!arranged) {
+    if (!skeleton_of_columns(frames).empty()) {
+      arranged.error().hint =
+          fmt::format("joints before frames? numpy.swapaxes(a, {}, {}) exchanges them",
+                      shape.size() - 3, shape.size() - 2);
+    }
+    arranged.error().message += fmt::format("; the shape is {}", text);
+    return arranged.error();
+  }
+  std::vector<double> values = array->numbers();
+  if (shape.size() == 4) {
+    motion.motions = shape[0];
+    const int wanted = file.options.motion.value_or(0);
+    if (wanted < 0 || at(wanted) >= motion.motions) {
+      return Error("npy-shape", fmt::format("there is no motion {} among {}", wanted, shape[0]),
+                   "motions are counted from 0");
+    }
+    if (motion.motions > 1 && !file.options.motion) {
+      motion.diagnostics.push_back(make_warning(
+          "npy-motion", fmt::format("the file holds {} motions, the first is used", shape[0]),
+          "krok-import --clip NUMBER takes another, --clip all writes all"));
+    }
+    const std::size_t size = frames * columns * 3;
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>((at(wanted) + 1) * size),
+                 values.end());
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at(wanted) * size));
+  }
+  const auto wrong = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
+  if (wrong != values.end()) {
+    const auto place = static_cast<std::size_t>(wrong - values.begin());
+    Error error("npy-value", fmt::format("{} has {} for a coordinate", what, *wrong),
+                "--repair fills gaps from the frames before and after");
+    error.frame = static_cast<std::int64_t>(place / (3 * columns));
+    for (std::size_t j = 0; j < arranged->columns.size(); ++j) {
+      if (arranged->columns[j] == std::vector{static_cast<int>(place / 3 % columns)}) {
+        error.joint = arranged->skeleton.names[j];
+      }
+    }
+    const bool filled = file.options.strictness == Strictness::repair && fill_gaps(values, frames);
+    if (!filled) return error;
+    error.severity = Severity::warning;
+    error.code = "npy-repair";
+    error.message += "; gaps are filled from the frames before and after";
+    error.hint.clear();
+    motion.diagnostics.push_back(error);
+  }
+  std::vector<Vec3> places(frames * columns);
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3(&values[3 * i]);
+  motion.positions = places_of(*arranged, places, columns);
+  motion.skeleton = std::move(arranged->skeleton);
+  motion.roles = std::move(arranged->roles);
+  return motion;
+}
+
+// Positions with the rotations of joints, global or relative to the parents.
+Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string& positions,
+                                        const std::string& rotations, bool global) {
+  auto motion = motion_of_positions(file, positions);
+  if (!motion) return motion;
+  const std::size_t joints = motion->skeleton.names.size();
+  const std::size_t frames = motion->positions.size() / joints;
+  std::vector<std::size_t> shape = {frames, joints, 3, 3};
+  const auto values = file.numbers(rotations, shape);
+  if (!values) return values.error();
+  std::vector<int> columns(joints);
+  double rate = 0;
+  Diagnostics ignored;
+  const auto arranged = skeleton_for(file, joints, rate, ignored);
+  if (!arranged) return arranged.error();
+  motion->orientations.resize(frames * joints);
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t column = at(arranged->columns[j][0]);
+      const Mat3 matrix = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+          &(*values)[9 * (f * joints + column)]);
+      if (!(matrix * matrix.transpose()).isIdentity(0.02) || !(matrix.determinant() > 0)) {
+        Error error("npy-rotation", fmt::format("{} has a matrix that is no rotation", rotations),
+                    "save rotation matrices, each with its rows and columns");
+        error.joint = motion->skeleton.names[j];
+        error.frame = static_cast<std::int64_t>(f);
+        return error;
+      }
+      Quat turn = Quat(matrix).normalized();
+      const int parent = motion->skeleton.parents[j];
+      if (!global && parent >= 0) turn = motion->orientations[f * joints + at(parent)] * turn;
+      motion->orientations[f * joints + j] = turn.normalized();
+    }
+  }
+  motion->upright = false;
+  // Bones as the rotations have them: the mean in their parents' frames.
+  double worst = 0;
+  for (std::size_t j = 1; j < joints; ++j) {
+    const std::size_t parent = at(motion->skeleton.parents[j]);
+    const auto offset = [&](std::size_t f) -> Vec3 {
+      return motion->orientations[f * joints + parent].conjugate() *
+             (motion->positions[f * joints + j] - motion->positions[f * joints + parent]);
+    };
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t f = 0; f < frames; ++f) mean += offset(f) / static_cast<double>(frames);
+    for (std::size_t f = 0; f < frames; ++f) {
+      worst = std::max(worst, (offset(f) - mean).norm() / std::max(mean.norm(), 1e-3));
+    }
+    motion->skeleton.reference[j].position = motion->skeleton.reference[parent].position + mean;
+  }
+  if (worst > 0.05) {
+    motion->diagnostics.push_back(make_warning(
+        "npy-rotation",
+        fmt::format("the positions do not follow the rotations in {}: a bone moves by {}% of its "
+                    "length in the frame of its parent",
+                    rotations, readable(100 * worst, 3)),
+        "are they of other axes, or of other frames?"));
+  }
+  return motion;
+}
+
+constexpr std::initializer_list<const char*> kPositionNames = {
+    "posed_joints", "positions", "joints", "joints3d", "joints_3d", "joint_positions",
+    "keypoints3d",  "keypoints", "motion", "xyz",      "pred_xyz",  "Jtr"};
+
+Result<ArrayMotion> motion_of(const ArrayFile& file) {
+  const Arrays& arrays = file.arrays;
+  if (arrays.names().front().empty()) return motion_of_positions(file, "");
+  if (arrays.has("positions") && arrays.has("quaternions") && arrays.has("parents")) {
+    return read_krok(file);
+  }
+  if (arrays.has("poses") || arrays.has("smpl_poses") || arrays.has("full_pose") ||
+      arrays.has("thetas") || arrays.has("pose_body") || arrays.has("body_pose")) {
+    return read_smpl(file);
+  }
+  const std::string positions = file.find(kPositionNames);
+  if (!positions.empty()) {
+    const auto global = file.find({"global_rot_mats", "global_rotations"});
+    if (!global.empty()) return motion_of_rotations(file, positions, global, true);
+    const auto local = file.find({"local_rot_mats", "local_rotations"});
+    if (!local.empty()) return motion_of_rotations(file, positions, local, false);
+    return motion_of_positions(file, positions);
+  }
+  if (arrays.names().size() == 1) return motion_of_positions(file, arrays.names().front());
+  std::vector<std::string> names(
+      arrays.names().begin(),
+      arrays.names().begin() + std::min<std::ptrdiff_t>(std::ssize(arrays.names()), 12));
+  return Error("npy-arrays",
+               fmt::format("none of the arrays is known as a motion: {}",
+                           shown(fmt::format("{}", fmt::join(names, ", ")))),
+               "name the positions \"positions\"; formats/npy/SPEC.md lists the names");
+}
+
+// Where +Z goes as +Y is turned to the axis that is up; of -Y as if about X.
+Direction forward_below(Direction up) {
+  switch (up) {
+    case Direction::plus_z:
+      return Direction::minus_y;
+    case Direction::minus_z:
+      return Direction::plus_y;
+    case Direction::minus_y:
+      return Direction::minus_z;
+    case Direction::plus_x:
+    case Direction::minus_x:
+    case Direction::plus_y:
+      break;
+  }
+  return Direction::plus_z;
+}
+
+// Lengths of bones for the reference pose, by a few frames, in the file's unit.
+void take_lengths(ArrayMotion& motion) {
+  const std::size_t joints = motion.skeleton.names.size();
+  const std::size_t frames = motion.positions.size() / joints;
+  const std::size_t step = (frames + kMaxSamples - 1) / kMaxSamples;
+  auto& reference = motion.skeleton.reference;
+  const std::vector<Transform> usual = reference;
+  for (std::size_t j = 1; j < joints; ++j) {
+    const std::size_t parent = at(motion.skeleton.parents[j]);
+    double sum = 0;
+    for (std::size_t f = 0; f < frames; f += step) {
+      sum += (motion.positions[f * joints + j] - motion.positions[f * joints + parent]).norm();
+    }
+    const double length = sum / static_cast<double>((frames + step - 1) / step);
+    const Vec3 direction = (usual[j].position - usual[parent].position).stableNormalized();
+    reference[j].position = reference[parent].position + length * direction;
+  }
+}
+
+class Reader {
+ public:
+  explicit Reader(const ArrayFile& file) : file_(file), options_(file.options) {}
+
+  Result<Capture> read() {
+    if (Status status = check_rate(options_.rate, "npy-rate"); !status) return status.error();
+    auto motion = motion_of(file_);
+    if (!motion) return motion.error();
+    motion_ = *std::move(motion);
+    capture_.diagnostics = std::move(motion_.diagnostics);
+    capture_.motions = motion_.motions;
+    capture_.has_rotations = !motion_.orientations.empty();
+    if (at(options_.max_joints) < motion_.skeleton.names.size()) {
+      return Error("npy-limit", "the array has too many joints");
+    }
+    if (Status status = choose_rate(); !status) return status.error();
+    if (Status status = add_contacts(file_, capture_.clip.rate, motion_); !status) {
+      return status.error();
+    }
+    if (!capture_.has_rotations) take_lengths(motion_);
+    if (options_.roles) {
+      auto roles = options_.roles(motion_.skeleton);
+      if (!roles) return roles.error();
+      motion_.roles = *std::move(roles);
+    }
+    if (Status status = convert(); !status) return status.error();
+    capture_.roles = motion_.roles;
+    capture_.keys = std::move(motion_.keys);
+    if (capture_.has_rotations) {
+      fill_clip();
+    } else {
+      find_rotations();
+    }
+    for (Diagnostic& diagnostic : capture_.diagnostics) {
+      if (diagnostic.where.file.empty()) diagnostic.where.file = file_.name;
+    }
+    return std::move(capture_);
+  }
+
+ private:
+  void report(Severity severity, std::string code, std::string message, std::string hint = {}) {
+    Diagnostic diagnostic = make_warning(std::move(code), std::move(message), std::move(hint));
+    diagnostic.severity = severity;
+    capture_.diagnostics.push_back(std::move(diagnostic));
+  }
+
+  Status choose_rate() {
+    const auto stated = file_.number(
+        {"rate", "fps", "framerate", "frame_rate", "mocap_framerate", "mocap_frame_rate"});
+    if (!stated) return stated.error();
+    double& rate = capture_.clip.rate;
+    if (options_.rate) {
+      rate = *options_.rate;
+      capture_.rate = {readable(rate), "as given", Confidence::certain};
+    } else if (*stated) {
+      rate = **stated;
+      if (Status status = check_frame_rate(rate, "npy-rate"); !status) return status;
+      capture_.rate = {readable(rate), "stated in the file", Confidence::certain};
+    } else {
+      const bool usual = motion_.usual_rate > 0;
+      rate = usual ? motion_.usual_rate : 30;
+      capture_.rate = {readable(rate),
+                       usual ? "the file does not state it; data of this kind usually has it"
+                             : "the file does not state it",
+                       Confidence::guess};
+      report(Severity::warning, "npy-rate",
+             fmt::format("{} frames per second: {}", readable(rate), capture_.rate.reason),
+             "set the rate with --fps N if this is wrong");
+    }
+    return {};
+  }
+
+  Status convert() {
+    Conventions& conventions = capture_.conventions;
+    const std::size_t joints = motion_.skeleton.names.size();
+    const std::size_t frames = motion_.positions.size() / joints;
+    if (motion_.is_krok) {
+      conventions.unit_confidence = conventions.up_confidence = conventions.forward_confidence =
+          Confidence::certain;
+    } else {
+      std::vector<Vec3> samples;
+      const std::size_t count = std::min(frames, kMaxSamples);
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t f = count < 2 ? 0 : i * (frames - 1) / (count - 1);
+        samples.insert(samples.end(), &motion_.positions[f * joints],
+                       &motion_.positions[f * joints] + joints);
+      }
+      conventions = detect_conventions(motion_.skeleton, motion_.roles, samples);
+      if (motion_.upright) {
+        conventions.forward = forward_below(conventions.up);
+        conventions.forward_confidence = Confidence::certain;
+        conventions.forward_reason = "the reference pose is made so";
+      }
+      apply_given(options_, conventions);
+      if (motion_.upright) {
+        conventions.reference_up = Direction::plus_y;
+        conventions.reference_forward = Direction::plus_z;
+      }
+      report_conventions(conventions, options_, "npy", file_.name, capture_.diagnostics);
+    }
+    const auto conversion = Conversion::make(conventions);
+    if (!conversion) return conversion.error();
+    capture_.clip.provenance.conversions = describe_conversions(conventions, options_);
+    for (Transform& joint : motion_.skeleton.reference) joint = conversion->reference(joint);
+    for (std::size_t i = 0; i < motion_.positions.size(); ++i) {
+      Transform joint{motion_.positions[i],
+                      capture_.has_rotations ? motion_.orientations[i] : Quat::Identity()};
+      joint = conversion->pose(joint);
+      if (!is_near(joint.position)) {
+        Error error("npy-value", "a joint is over 1e9 m away", "set the unit with --unit");
+        error.joint = motion_.skeleton.names[i % joints];
+        error.frame = static_cast<std::int64_t>(i / joints);
+        return error;
+      }
+      motion_.positions[i] = joint.position;
+      if (capture_.has_rotations) motion_.orientations[i] = joint.orientation;
+    }
+    for (Contact& contact : motion_.keys.contacts) {
+      contact.place = conversion->pose({contact.place, Quat::Identity()}).position;
+    }
+    return {};
+  }
+
+  void fill_clip() {
+    Clip& clip = capture_.clip;
+    clip.skeleton = motion_.skeleton;
+    clip.positions.reserve(motion_.positions.size());
+    for (const Vec3& place : motion_.positions) clip.positions.push_back(place.cast<float>());
+    for (const Quat& turn : motion_.orientations) {
+      clip.orientations.push_back(turn.normalized().cast<float>());
+    }
+  }
+
+  void find_rotations() {
+    PositionsToPose input;
+    input.skeleton = motion_.skeleton;
+    input.roles = motion_.roles;
+    input.positions = motion_.positions;
+    input.rate = capture_.clip.rate;
+    input.jobs = options_.jobs;
+    PoseFromPositions found = from_positions(input);
+    found.clip.provenance = std::move(capture_.clip.provenance);
+    capture_.clip = std::move(found.clip);
+    capture_.clip.provenance.conversions.emplace_back("rotations found from joint positions");
+    capture_.noise = found.noise;
+    capture_.rms = found.rms;
+    capture_.largest = found.largest;
+    const auto millimetres = [](double metres) { return readable(1e3 * metres, 3); };
+    report(Severity::note, "npy-noise",
+           fmt::format("rotations found from positions: joints are {} mm from the file's (RMS), at "
+                       "most {} mm; noise {} mm{}",
+                       millimetres(found.rms), millimetres(found.largest), millimetres(found.noise),
+                       found.smoothed ? ", smoothed" : ""));
+    if (found.length_variation > 0.1) {
+      report(Severity::warning, "npy-bones",
+             fmt::format("the bones change their lengths by {}%: their mean is used",
+                         readable(100 * found.length_variation, 3)),
+             "is --skeleton the right one?");
+    }
+  }
+
+  const ArrayFile& file_;
+  const ReadOptions& options_;
+  ArrayMotion motion_;
+  Capture capture_;
+};
+
+}  // namespace
+
+std::string ArrayFile::find(std::initializer_list<const char*> names) const {
+  for (const char* wanted : names) {
+    if (arrays.has(wanted)) return wanted;
+  }
+  return {};
+}
+
+Result<std::vector<double>> ArrayFile::numbers(const std::string& array,
+                                               std::vector<std::size_t>& shape) const {
+  const auto read = arrays.read(array);
+  if (!read) return read.error();
+  bool right = read->is_number() && (shape.empty() || shape.size() == read->shape.size());
+  for (std::size_t d = 0; right && d < shape.size(); ++d) {
+    right = shape[d] == 0 || shape[d] == read->shape[d];
+  }
+  if (!right) {
+    return Error("npy-shape", fmt::format("{} has the shape {}, expected {}", array,
+                                          shape_text(read->shape), shape_text(shape)));
+  }
+  shape = read->shape;
+  std::vector<double> values = read->numbers();
+  const auto wrong = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
+  if (wrong == values.end()) return values;
+  Error error("npy-value", fmt::format("{} has the value {}", array, *wrong));
+  if (!shape.empty() && shape[0] > 0) {
+    const std::size_t row = values.size() / shape[0];
+    error.frame = (wrong - values.begin()) / static_cast<std::ptrdiff_t>(row);
+  }
+  return error;
+}
+
+Result<std::optional<double>> ArrayFile::number(std::initializer_list<const char*> names) const {
+  const std::string found = find(names);
+  if (found.empty()) return std::optional<double>();
+  std::vector<std::size_t> shape;
+  const auto values = numbers(found, shape);
+  if (!values) return values.error();
+  if (values->size() != 1) {
+    return Error("npy-shape",
+                 fmt::format("{} has the shape {}, expected one number", found, shape_text(shape)));
+  }
+  return std::optional((*values)[0]);
+}
+
+Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns,
+                                      double& usual_rate, Diagnostics& diagnostics) {
+  const auto other_number = [&](int expected) {
+    return Error("npy-skeleton",
+                 fmt::format("there are {} joints, {} has {}", columns,
+                             shown(file.options.columns_name), expected),
+                 kSkeletonHint);
+  };
+  if (file.options.skeleton) {
+    ArrangedSkeleton arranged;
+    arranged.skeleton = *file.options.skeleton;
+    const int joints = arranged.skeleton.joint_count();
+    if (at(joints) != columns) return other_number(joints);
+    arranged.roles = find_roles(arranged.skeleton);
+    for (int j = 0; j < joints; ++j) arranged.columns.push_back({j});
+    return arranged;
+  }
+  std::optional<PositionSkeleton> skeleton = file.options.columns;
+  if (!skeleton) {
+    const std::string_view name = skeleton_of_columns(columns);
+    if (name.empty()) {
+      return Error("npy-skeleton",
+                   fmt::format("there are {} joints, of no skeleton that is known "
+                               "by its number",
+                               columns),
+                   kSkeletonHint);
+    }
+    skeleton = named_skeleton(name);
+    if (file.find({"global_rot_mats", "local_rot_mats"}).empty()) {
+      diagnostics.push_back(make_warning(
+          "npy-skeleton", fmt::format("{} joints are taken for {}", columns, name), kSkeletonHint));
+      diagnostics.back().where.file = file.name;
+    }
+  }
+  if (at(skeleton->columns()) != columns) return other_number(skeleton->columns());
+  usual_rate = skeleton->rate;
+  return arrange(*skeleton);
+}
+
+void pose_frames(const std::vector<Quat>& rotations, const std::vector<Vec3>& roots,
+                 ArrayMotion& motion) {
+  const std::size_t joints = motion.skeleton.names.size();
+  motion.positions.resize(rotations.size());
+  motion.orientations.resize(rotations.size());
+  std::vector<Transform> locals(joints), pose(joints);
+  for (std::size_t j = 0; j < joints; ++j) {
+    locals[j] = motion.skeleton.reference_local(static_cast<int>(j));
+  }
+  for (std::size_t f = 0; f < roots.size(); ++f) {
+    locals[0].position = roots[f];
+    for (std::size_t j = 0; j < joints; ++j) locals[j].orientation = rotations[f * joints + j];
+    local_to_world(motion.skeleton.parents, locals, pose);
+    for (std::size_t j = 0; j < joints; ++j) {
+      motion.positions[f * joints + j] = pose[j].position;
+      motion.orientations[f * joints + j] = pose[j].orientation;
+    }
+  }
+}
+
+Result<Capture> read(std::span<const std::byte> file, const std::string& file_name,
+                     const ReadOptions& options) {
+  auto arrays = Arrays::open(file);
+  if (!arrays) return std::move(arrays.error()).in_file(file_name);
+  const ArrayFile given{*arrays, file_name, options};
+  auto capture = Reader(given).read();
+  if (!capture) return std::move(capture.error()).in_file(file_name);
+  return capture;
+}
+
+Result<PositionSkeleton> read_columns(std::string_view text) {
+  const auto root = json::parse(text);
+  if (!root) return root.error();
+  const auto wrong = [&](std::size_t offset, const std::string& what) {
+    return json::error_at(text, offset, "columns-structure", what,
+                          "write {\"joints\": [{\"name\": \"hips\"}, {\"name\": \"spine\", "
+                          "\"parent\": \"hips\"}, ...]}; see formats/npy/SPEC.md");
+  };
+  using Kind = json::Value::Kind;
+  PositionSkeleton skeleton;
+  const json::Value* joints = root->find("joints");
+  if (joints == nullptr || joints->kind != Kind::array) {
+    return wrong(root->offset, "\"joints\" is missing or not an array");
+  }
+  if (const json::Value* rate = root->find("rate"); rate != nullptr) {
+    if (rate->kind != Kind::number || !check_frame_rate(rate->number, "npy-rate")) {
+      return wrong(rate->offset, "\"rate\" is no frame rate");
+    }
+    skeleton.rate = rate->number;
+  }
+  for (const json::Value& item : joints->items) {
+    PositionJoint joint;
+    for (const json::Value::Member& member : item.members) {
+      const json::Value& value = member.value;
+      const bool is_text = value.kind == Kind::string;
+      if (member.key == "name" && is_text) {
+        joint.name = value.text;
+      } else if (member.key == "parent" && (is_text || value.kind == Kind::null)) {
+        joint.parent = value.text;
+      } else if (member.key == "role" && is_text && parse_role_label(value.text)) {
+        joint.role = value.text;
+      } else if (member.key == "mean_of" && value.kind == Kind::array && !value.items.empty()) {
+        for (const json::Value& name : value.items) joint.mean_of.push_back(name.text);
+      } else {
+        return wrong(
+            member.key_offset,
+            fmt::format("\"{}\" of a joint is not known, or has a wrong value", shown(member.key)));
+      }
+    }
+    if (joint.name.empty()) return wrong(item.offset, "a joint has no name");
+    skeleton.joints.push_back(std::move(joint));
+  }
+  if (skeleton.joints.empty()) return wrong(joints->offset, "there are no joints");
+  if (auto arranged = arrange(skeleton); !arranged) return arranged.error();
+  return skeleton;
+}
+
+}  // namespace krok::npy

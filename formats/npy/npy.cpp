@@ -1,0 +1,449 @@
+#include "formats/npy/npy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <string_view>
+
+#include "core/text.h"
+
+namespace krok::npy {
+
+namespace {
+
+constexpr std::string_view kMagic("\x93NUMPY", 6);
+constexpr std::size_t kMaxHeader = 65535;
+constexpr std::size_t kMaxDimensions = 32;  // as numpy
+constexpr std::uint64_t kSmallArray = std::uint64_t{32} << 20;
+
+Error damaged(std::string what) {
+  return Error("npy-damaged", std::move(what), "save the array anew with numpy.save");
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Reads the header, a Python dictionary such as
+// {'descr': '<f4', 'fortran_order': False, 'shape': (170, 22, 3), }.
+class Header {
+ public:
+  explicit Header(std::string_view text) : rest_(text) {}
+
+  Status read(Array& array) {
+    bool has_type = false, has_order = false, has_shape = false;
+    if (!take('{')) return fault("{");
+    while (!take('}')) {
+      const auto key = quoted();
+      if (!key || !take(':')) return fault("a key");
+      Status status;
+      if (*key == "descr") {
+        has_type = true;
+        status = read_type(array);
+      } else if (*key == "fortran_order") {
+        has_order = true;
+        array.column_major = take_word("True");
+        if (!array.column_major && !take_word("False")) return fault("True or False");
+      } else if (*key == "shape") {
+        has_shape = true;
+        status = read_shape(array);
+      } else {
+        return damaged(fmt::format("the header has an unknown key {}", shown(*key)));
+      }
+      if (!status) return status;
+      if (!take(',') && !starts('}')) return fault("a comma");
+    }
+    if (has_type && has_order && has_shape) return {};
+    return damaged("the header has no type, order or shape");
+  }
+
+ private:
+  void skip_space() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(" \t\n"), rest_.size()));
+  }
+  bool starts(char c) {
+    skip_space();
+    return rest_.starts_with(c);
+  }
+  bool take(char c) {
+    if (!starts(c)) return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+  bool take_word(std::string_view word) {
+    skip_space();
+    if (!rest_.starts_with(word)) return false;
+    rest_.remove_prefix(word.size());
+    return true;
+  }
+  std::optional<std::string_view> quoted() {
+    skip_space();
+    if (!starts('\'') && !starts('"')) return std::nullopt;
+    const std::size_t end = rest_.find(rest_.front(), 1);
+    if (end == std::string_view::npos) return std::nullopt;
+    const std::string_view text = rest_.substr(1, end - 1);
+    rest_.remove_prefix(end + 1);
+    return text;
+  }
+  Status fault(const char* expected) {
+    return damaged(fmt::format("the header has {} where {} is expected", shown(rest_.substr(0, 20)),
+                               expected));
+  }
+
+  Status read_type(Array& array) {
+    const auto text = quoted();
+    if (!text) {
+      return Error("npy-type", "the array has elements of several fields",
+                   "save each field as an array of its own");
+    }
+    std::string_view type = *text;
+    array.big_endian = type.starts_with('>');
+    if (!type.empty() && std::string_view("<>|=").find(type.front()) != std::string_view::npos) {
+      type.remove_prefix(1);
+    }
+    const char letter = type.empty() ? ' ' : type.front();
+    if (letter == 'O') {
+      return Error("npy-objects",
+                   "the array holds Python objects (a pickle), which can run any program and are "
+                   "never opened",
+                   "in Python, for a file you trust: x = numpy.load(FILE, allow_pickle=True), then "
+                   "numpy.savez(\"motion.npz\", positions=...) with its arrays of numbers");
+    }
+    constexpr std::string_view kLetters = "biufUS";
+    const std::size_t kind = kLetters.find(letter);
+    std::size_t size = 0;
+    if (kind != std::string_view::npos) {
+      const auto [end, trouble] = std::from_chars(type.data() + 1, type.data() + type.size(), size);
+      if (trouble != std::errc() || end != type.data() + type.size()) size = kMaxHeader + 1;
+    }
+    array.element = static_cast<Element>(std::min<std::size_t>(kind, 5));
+    const bool whole = letter == 'i' || letter == 'u';
+    const bool known = (letter == 'b' && size == 1) ||
+                       (whole && std::has_single_bit(size) && size <= 8) ||
+                       (letter == 'f' && (size == 2 || size == 4 || size == 8)) ||
+                       ((letter == 'U' || letter == 'S') && size <= kMaxHeader);
+    if (kind == std::string_view::npos || !known) {
+      return Error("npy-type", fmt::format("elements of type {} are not read", shown(*text)),
+                   "save numbers: array.astype(\"float32\")");
+    }
+    array.item_size = letter == 'U' ? 4 * size : size;
+    return {};
+  }
+
+  Status read_shape(Array& array) {
+    if (!take('(')) return fault("a shape");
+    array.shape.clear();
+    while (!take(')')) {
+      skip_space();
+      std::size_t size = 0;
+      const auto [end, trouble] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), size);
+      if (trouble != std::errc()) return fault("a number");
+      rest_.remove_prefix(static_cast<std::size_t>(end - rest_.data()));
+      if (array.shape.size() == kMaxDimensions) return damaged("the array has over 32 dimensions");
+      array.shape.push_back(size);
+      if (!take(',') && !starts(')')) return fault("a comma");
+    }
+    return {};
+  }
+
+  std::string_view rest_;
+};
+
+// Whether the shape is that of so many bytes, without overflow.
+bool is_shape_of(const Array& array, std::size_t bytes) {
+  if (std::ranges::find(array.shape, 0) != array.shape.end() || array.item_size == 0) {
+    return bytes == 0;
+  }
+  std::size_t total = array.item_size;
+  for (const std::size_t size : array.shape) {
+    if (size > bytes / total) return false;
+    total *= size;
+  }
+  return total == bytes;
+}
+
+template <typename Number>
+Number number_at(const std::byte* place, bool swapped) {
+  std::byte bytes[sizeof(Number)];
+  std::memcpy(bytes, place, sizeof(Number));
+  if (swapped) std::reverse(std::begin(bytes), std::end(bytes));
+  return std::bit_cast<Number>(bytes);
+}
+
+double from_half(std::uint16_t half) {
+  const int exponent = (half >> 10) & 31, fraction = half & 1023;
+  double size = 0;
+  if (exponent == 31) {
+    size = fraction == 0 ? std::numeric_limits<double>::infinity()
+                         : std::numeric_limits<double>::quiet_NaN();
+  } else {
+    size = std::ldexp(exponent == 0 ? fraction : fraction + 1024, std::max(exponent, 1) - 25);
+  }
+  return (half & 0x8000) != 0 ? -size : size;
+}
+
+double value_at(const Array& array, std::size_t index) {
+  const std::byte* place = array.data.data() + index * array.item_size;
+  const bool swapped = array.big_endian;
+  switch (array.element) {
+    case Element::boolean:
+      return std::to_integer<int>(*place) != 0 ? 1 : 0;
+    case Element::integer:
+      if (array.item_size == 1) return number_at<std::int8_t>(place, swapped);
+      if (array.item_size == 2) return number_at<std::int16_t>(place, swapped);
+      if (array.item_size == 4) return number_at<std::int32_t>(place, swapped);
+      return static_cast<double>(number_at<std::int64_t>(place, swapped));
+    case Element::natural:
+      if (array.item_size == 1) return number_at<std::uint8_t>(place, swapped);
+      if (array.item_size == 2) return number_at<std::uint16_t>(place, swapped);
+      if (array.item_size == 4) return number_at<std::uint32_t>(place, swapped);
+      return static_cast<double>(number_at<std::uint64_t>(place, swapped));
+    case Element::real:
+      if (array.item_size == 2) return from_half(number_at<std::uint16_t>(place, swapped));
+      if (array.item_size == 4) return number_at<float>(place, swapped);
+      return number_at<double>(place, swapped);
+    case Element::text:
+    case Element::bytes:
+      break;
+  }
+  return 0;
+}
+
+// Calls take(i) with the places in the file of the elements, row by row.
+template <typename Take>
+void in_row_order(const Array& array, const Take& take) {
+  const std::size_t count = array.count();
+  if (!array.column_major) {
+    for (std::size_t i = 0; i < count; ++i) take(i);
+    return;
+  }
+  std::vector<std::size_t> index(array.shape.size(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t place = 0;
+    for (std::size_t d = index.size(); d-- > 0;) place = place * array.shape[d] + index[d];
+    take(place);
+    for (std::size_t d = index.size(); d-- > 0 && ++index[d] == array.shape[d];) index[d] = 0;
+  }
+}
+
+void append_utf8(std::uint32_t code, std::string& text) {
+  const auto add = [&](std::uint32_t byte) { text.push_back(static_cast<char>(byte)); };
+  if (code >= 0x110000 || (code >= 0xD800 && code < 0xE000)) code = 0xFFFD;
+  if (code < 0x80) return add(code);
+  if (code < 0x800) {
+    add(0xC0 | code >> 6);
+  } else {
+    if (code < 0x10000) {
+      add(0xE0 | code >> 12);
+    } else {
+      add(0xF0 | code >> 18);
+      add(0x80 | (code >> 12 & 0x3F));
+    }
+    add(0x80 | (code >> 6 & 0x3F));
+  }
+  add(0x80 | (code & 0x3F));
+}
+
+// The code points of UTF-8 text; bytes that are none become U+FFFD.
+std::vector<std::uint32_t> code_points(const std::string& text) {
+  std::vector<std::uint32_t> points;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i++]);
+    const int more = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : 0;
+    std::uint32_t code = lead < 0x80 ? lead : more == 0 ? 0xFFFD : lead & (0x3FU >> more);
+    for (int k = 0; k < more; ++k) {
+      if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) {
+        code = 0xFFFD;
+        break;
+      }
+      code = code << 6 | (static_cast<unsigned char>(text[i++]) & 0x3F);
+    }
+    points.push_back(code);
+  }
+  return points;
+}
+
+std::string type_of(const Array& array) {
+  const char letter = "biufUS"[static_cast<std::size_t>(array.element)];
+  const char order = array.item_size == 1 || letter == 'S' ? '|' : array.big_endian ? '>' : '<';
+  return fmt::format("{}{}{}", order, letter,
+                     letter == 'U' ? array.item_size / 4 : array.item_size);
+}
+
+template <typename Number>
+Array make_array(Element element, std::span<const Number> values, std::vector<std::size_t> shape) {
+  static_assert(std::endian::native == std::endian::little);
+  Array array;
+  array.element = element;
+  array.item_size = sizeof(Number);
+  array.shape = std::move(shape);
+  const auto bytes = std::as_bytes(values);
+  array.data.assign(bytes.begin(), bytes.end());
+  return array;
+}
+
+}  // namespace
+
+std::size_t Array::count() const {
+  return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
+}
+
+std::vector<double> Array::numbers() const {
+  std::vector<double> values;
+  if (!is_number()) return values;
+  values.reserve(count());
+  in_row_order(*this, [&](std::size_t i) { values.push_back(value_at(*this, i)); });
+  return values;
+}
+
+std::vector<std::string> Array::texts() const {
+  std::vector<std::string> texts;
+  if (is_number()) return texts;
+  in_row_order(*this, [&](std::size_t i) {
+    const std::byte* place = data.data() + i * item_size;
+    std::string& text = texts.emplace_back();
+    if (element == Element::bytes) {
+      text.assign(reinterpret_cast<const char*>(place), item_size);
+      text.resize(text.find_last_not_of('\0') + 1);
+      return;
+    }
+    for (std::size_t k = 0; k < item_size; k += 4) {
+      const auto code = number_at<std::uint32_t>(place + k, big_endian);
+      if (code == 0) break;
+      append_utf8(code, text);
+    }
+  });
+  return texts;
+}
+
+std::string shape_text(std::span<const std::size_t> shape) {
+  return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
+}
+
+Result<Array> parse(std::span<const std::byte> file) {
+  if (!text_of(file).starts_with(kMagic) || file.size() < 10) {
+    return damaged("it does not begin as an array of numpy");
+  }
+  const auto byte = [&](std::size_t i) { return std::to_integer<std::size_t>(file[i]); };
+  const std::size_t version = byte(6);
+  if (version < 1 || version > 3) {
+    return damaged(fmt::format("it has version {} of the format, known are 1 to 3", version));
+  }
+  const std::size_t start = version == 1 ? 10 : 12;
+  if (file.size() < start) return damaged("it ends in the header");
+  std::size_t length = byte(8) | byte(9) << 8;
+  if (version > 1) length |= byte(10) << 16 | byte(11) << 24;
+  if (length > kMaxHeader || length > file.size() - start) {
+    return damaged(fmt::format("its header has {} bytes, by the file; there are {}", length,
+                               file.size() - start));
+  }
+  Array array;
+  if (Status status = Header(text_of(file.subspan(start, length))).read(array); !status) {
+    return status.error();
+  }
+  const auto data = file.subspan(start + length);
+  if (!is_shape_of(array, data.size())) {
+    return damaged(fmt::format("an array of shape {} with {} bytes each does not have {} bytes",
+                               shape_text(array.shape), array.item_size, data.size()));
+  }
+  array.data.assign(data.begin(), data.end());
+  return array;
+}
+
+Result<Arrays> Arrays::open(std::span<const std::byte> file) {
+  Arrays arrays;
+  arrays.file_ = file;
+  if (!text_of(file).starts_with("PK")) {
+    arrays.names_.emplace_back();
+    return arrays;
+  }
+  auto archive = zip::Archive::open(file);
+  if (!archive) return archive.error();
+  for (const std::string& name : archive->names()) {
+    if (name.ends_with(".npy")) arrays.names_.push_back(name.substr(0, name.size() - 4));
+  }
+  if (arrays.names_.empty()) return damaged("the archive has no array");
+  arrays.archive_ = *std::move(archive);
+  return arrays;
+}
+
+bool Arrays::has(const std::string& name) const {
+  return std::ranges::find(names_, name) != names_.end();
+}
+
+Result<Array> Arrays::read(const std::string& name) const {
+  if (!archive_) return parse(file_);
+  const std::uint64_t most = std::max<std::uint64_t>(
+      std::min<std::uint64_t>(1000 * std::uint64_t{file_.size()} + 4096, kSmallArray),
+      100 * std::uint64_t{file_.size()});
+  const auto bytes = archive_->read(name + ".npy", most);
+  if (!bytes) return bytes.error();
+  auto array = parse(*bytes);
+  if (!array) array.error().message = fmt::format("{}: {}", name, array.error().message);
+  return array;
+}
+
+Array array_of(std::span<const float> values, std::vector<std::size_t> shape) {
+  return make_array(Element::real, values, std::move(shape));
+}
+
+Array array_of(std::span<const double> values, std::vector<std::size_t> shape) {
+  return make_array(Element::real, values, std::move(shape));
+}
+
+Array array_of(std::span<const std::int32_t> values, std::vector<std::size_t> shape) {
+  return make_array(Element::integer, values, std::move(shape));
+}
+
+Array array_of_flags(std::span<const std::uint8_t> values, std::vector<std::size_t> shape) {
+  return make_array(Element::boolean, values, std::move(shape));
+}
+
+Array array_of_texts(std::span<const std::string> texts) {
+  std::vector<std::vector<std::uint32_t>> points;
+  std::size_t longest = 1;
+  for (const std::string& text : texts) {
+    points.push_back(code_points(text));
+    longest = std::max(longest, points.back().size());
+  }
+  std::vector<std::uint32_t> all;
+  for (std::vector<std::uint32_t>& text : points) {
+    text.resize(longest, 0);
+    all.insert(all.end(), text.begin(), text.end());
+  }
+  Array array = make_array(Element::text, std::span<const std::uint32_t>(all), {texts.size()});
+  array.item_size = 4 * longest;
+  return array;
+}
+
+std::vector<std::byte> write(const Array& array) {
+  std::string header =
+      fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': {}, }}", type_of(array),
+                  array.column_major ? "True" : "False", shape_text(array.shape));
+  // Data is aligned to 64 bytes, and the header ends with a line break.
+  header.append(63 - (10 + header.size()) % 64, ' ');
+  header += '\n';
+  std::string start(kMagic);
+  start += {1, 0, static_cast<char>(header.size() & 255), static_cast<char>(header.size() >> 8)};
+  start += header;
+  const auto bytes = std::as_bytes(std::span(start));
+  std::vector<std::byte> file(bytes.begin(), bytes.end());
+  file.insert(file.end(), array.data.begin(), array.data.end());
+  return file;
+}
+
+Result<std::vector<std::byte>> write(
+    std::span<const std::pair<std::string, Array>> names_and_arrays) {
+  std::vector<std::pair<std::string, std::vector<std::byte>>> files;
+  for (const auto& [name, array] : names_and_arrays)
+    files.emplace_back(name + ".npy", write(array));
+  return zip::pack(files);
+}
+
+}  // namespace krok::npy

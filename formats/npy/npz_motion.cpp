@@ -1,0 +1,204 @@
+#include "formats/npy/npz_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/index.h"
+#include "formats/npy/array_motion_internal.h"
+#include "math/quaternion.h"
+
+namespace krok::npy {
+
+namespace {
+
+Vec3 vector_at(const std::vector<double>& values, std::size_t i) {
+  return Vec3(&values[3 * i]);
+}
+
+Result<Quat> quaternion_at(const std::vector<double>& values, std::size_t i) {
+  const Quat q(values[4 * i + 3], values[4 * i], values[4 * i + 1], values[4 * i + 2]);
+  if (std::abs(q.norm() - 1) < 1e-3) return q.normalized();
+  return Error("npy-rotation", fmt::format("quaternion {} is not of length 1", i));
+}
+
+// Each run of frames in which a joint is down, at its mean place.
+void add_runs(const std::vector<double>& down, std::size_t column, std::size_t columns, int joint,
+              double rate, ArrayMotion& motion) {
+  const std::size_t joints = motion.skeleton.names.size(), frames = down.size() / columns;
+  for (std::size_t f = 0; f < frames; ++f) {
+    if (down[f * columns + column] < 0.5) continue;
+    Contact contact;
+    contact.joint = joint;
+    contact.start = static_cast<double>(f) / rate;
+    const std::size_t first = f;
+    for (; f < frames && down[f * columns + column] >= 0.5; ++f) {
+      contact.place += motion.positions[f * joints + at(joint)];
+    }
+    contact.end = static_cast<double>(f - 1) / rate;
+    contact.place /= static_cast<double>(f - first);
+    motion.keys.contacts.push_back(contact);
+  }
+}
+
+}  // namespace
+
+Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion) {
+  const std::string name = file.find({"contacts", "foot_contacts"});
+  if (name.empty()) return {};
+  const std::size_t frames = motion.positions.size() / motion.skeleton.names.size();
+  std::vector<int> joints;
+  if (file.arrays.has("contact_joints")) {
+    std::vector<std::size_t> shape = {0};
+    const auto given = file.numbers("contact_joints", shape);
+    if (!given) return given.error();
+    for (const double joint : *given) {
+      if (!(joint >= 0 && joint < static_cast<double>(motion.skeleton.joint_count()))) {
+        return Error("npy-value", fmt::format("contact_joints has {}, of no joint", joint));
+      }
+      joints.push_back(static_cast<int>(joint));
+    }
+  } else {
+    // Kimodo's: left heel, left toe, right heel, right toe (docs/source/user_guide).
+    for (const Role role : {Role::left_foot, Role::left_toes, Role::right_foot, Role::right_toes}) {
+      joints.push_back(motion.roles.joint(role));
+    }
+  }
+  if (joints.empty()) return {};
+  std::vector<std::size_t> shape = {frames, joints.size()};
+  const auto down = file.numbers(name, shape);
+  if (!down) return down.error();
+  for (std::size_t c = 0; c < joints.size(); ++c) {
+    if (joints[c] >= 0) add_runs(*down, c, joints.size(), joints[c], rate, motion);
+  }
+  std::ranges::stable_sort(motion.keys.contacts, [](const Contact& a, const Contact& b) {
+    return std::pair(a.start, a.joint) < std::pair(b.start, b.joint);
+  });
+  return {};
+}
+
+Result<ArrayMotion> read_krok(const ArrayFile& file) {
+  ArrayMotion motion;
+  motion.is_krok = true;
+  Skeleton& skeleton = motion.skeleton;
+  std::vector<std::size_t> parents_shape = {0};
+  const auto parents = file.numbers("parents", parents_shape);
+  if (!parents) return parents.error();
+  const std::size_t joints = parents->size();
+  std::vector<std::size_t> places_shape = {0, joints, 3};
+  const auto places = file.numbers("positions", places_shape);
+  if (!places) return places.error();
+  const std::size_t frames = places_shape[0];
+  std::vector<std::size_t> turns_shape = {frames, joints, 4};
+  const auto turns = file.numbers("quaternions", turns_shape);
+  if (!turns) return turns.error();
+  std::vector<std::string> names;
+  if (file.arrays.has("names")) {
+    const auto read = file.arrays.read("names");
+    if (!read) return read.error();
+    names = read->texts();
+  }
+  std::vector<double> ends(joints, 0), rest_places, rest_turns;
+  if (file.arrays.has("end_sites")) {
+    std::vector<std::size_t> shape = {joints};
+    auto read = file.numbers("end_sites", shape);
+    if (!read) return read.error();
+    ends = *std::move(read);
+  }
+  // Without a reference pose, the first frame.
+  const bool has_rest = file.arrays.has("reference_positions");
+  std::vector<std::size_t> rest_shape = {joints, 3}, rest_turns_shape = {joints, 4};
+  if (has_rest) {
+    auto read = file.numbers("reference_positions", rest_shape);
+    if (!read) return read.error();
+    rest_places = *std::move(read);
+    auto read_turns = file.numbers("reference_quaternions", rest_turns_shape);
+    if (!read_turns) return read_turns.error();
+    rest_turns = *std::move(read_turns);
+  }
+  if (names.empty()) {
+    for (std::size_t j = 0; j < joints; ++j) names.push_back(fmt::format("joint_{}", j));
+  }
+  if (joints == 0 || frames == 0 || names.size() != joints) {
+    return Error("npy-shape", fmt::format("there are {} frames, {} parents and {} names", frames,
+                                          joints, names.size()));
+  }
+  for (std::size_t j = 0; j < joints; ++j) {
+    const double parent = (*parents)[j];
+    if (!(parent >= -1 && parent < static_cast<double>(j)) || (parent < 0) != (j == 0)) {
+      return Error("npy-shape",
+                   fmt::format("parents has {} for joint {}: parents come before their "
+                               "children, and the first joint has none, -1",
+                               parent, j));
+    }
+    const auto turn = quaternion_at(has_rest ? rest_turns : *turns, j);
+    if (!turn) return turn.error();
+    skeleton.add(names[j], static_cast<int>(parent),
+                 {vector_at(has_rest ? rest_places : *places, j), *turn}, ends[j] > 0.5);
+  }
+  if (Status status = check(skeleton); !status) return status.error();
+  for (std::size_t i = 0; i < frames * joints; ++i) {
+    const auto turn = quaternion_at(*turns, i);
+    if (!turn) return turn.error();
+    motion.positions.push_back(vector_at(*places, i));
+    motion.orientations.push_back(*turn);
+  }
+  motion.roles = find_roles(skeleton);
+  return motion;
+}
+
+Result<std::vector<std::byte>> write_motion(const Clip& clip, std::span<const Contact> contacts) {
+  const std::size_t joints = clip.skeleton.names.size();
+  const auto frames = at(clip.frame_count());
+  std::vector<float> places, turns;
+  places.reserve(3 * frames * joints);
+  turns.reserve(4 * frames * joints);
+  for (const Vec3f& place : clip.positions) {
+    places.insert(places.end(), place.data(), place.data() + 3);
+  }
+  for (std::size_t i = 0; i < clip.orientations.size(); ++i) {
+    Quatf turn = clip.orientations[i];
+    const float* const before = i < joints ? nullptr : &turns[4 * (i - joints)];
+    const float sign =
+        before == nullptr ? turn.w() : turn.coeffs().dot(Eigen::Map<const Vec4f>(before));
+    if (sign < 0) turn.coeffs() *= -1;
+    turns.insert(turns.end(), turn.coeffs().data(), turn.coeffs().data() + 4);
+  }
+  std::vector<double> rest_places, rest_turns;
+  for (const Transform& joint : clip.skeleton.reference) {
+    rest_places.insert(rest_places.end(), joint.position.data(), joint.position.data() + 3);
+    const Vec4 turn = joint.orientation.coeffs();
+    rest_turns.insert(rest_turns.end(), turn.data(), turn.data() + 4);
+  }
+  std::set<int> touching;
+  for (const Contact& contact : contacts) touching.insert(contact.joint);
+  const std::vector<std::int32_t> touching_joints(touching.begin(), touching.end());
+  std::vector<std::uint8_t> down(frames * touching_joints.size(), 0);
+  for (const Contact& contact : contacts) {
+    const auto column =
+        static_cast<std::size_t>(std::distance(touching.begin(), touching.find(contact.joint)));
+    for (std::size_t f = 0; f < frames; ++f) {
+      const double time = static_cast<double>(f) / clip.rate;
+      // Times in sidecars are whole microseconds.
+      if (time < contact.start - 1e-6 || time > contact.end + 1e-6) continue;
+      down[f * touching_joints.size() + column] = 1;
+    }
+  }
+  const std::vector<std::int32_t> parents(clip.skeleton.parents.begin(),
+                                          clip.skeleton.parents.end());
+  const std::vector<std::pair<std::string, Array>> arrays = {
+      {"positions", array_of(places, {frames, joints, 3})},
+      {"quaternions", array_of(turns, {frames, joints, 4})},
+      {"names", array_of_texts(clip.skeleton.names)},
+      {"parents", array_of(parents, {joints})},
+      {"end_sites", array_of_flags(clip.skeleton.end_sites, {joints})},
+      {"reference_positions", array_of(rest_places, {joints, 3})},
+      {"reference_quaternions", array_of(rest_turns, {joints, 4})},
+      {"rate", array_of(std::span(&clip.rate, 1), {})},
+      {"contacts", array_of_flags(down, {frames, touching_joints.size()})},
+      {"contact_joints", array_of(touching_joints, {touching_joints.size()})}};
+  return write(arrays);
+}
+
+}  // namespace krok::npy

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/result.h"
+#include "scene/clip.h"
+#include "scene/motion_keys.h"
+
+// Writes a motion as arrays that numpy.load reads: positions, quaternions (x, y, z, w), names,
+// parents, end_sites, reference_positions, reference_quaternions, rate, contacts and
+// contact_joints. See SPEC.md; npy::read() reads it again.
+
+namespace krok::npy {
+
+// `contacts`: empty for none. Quaternions of a joint stay in one hemisphere from frame to frame.
+// Code: zip-damaged.
+Result<std::vector<std::byte>> write_motion(const Clip& clip, std::span<const Contact> contacts);
+
+}  // namespace krok::npy

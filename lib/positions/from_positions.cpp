@@ -1,0 +1,520 @@
+#include "positions/from_positions.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "core/index.h"
+#include "core/parallel.h"
+#include "math/quaternion.h"
+#include "math/smoother_step.h"
+#include "roles/limbs.h"
+
+namespace krok {
+
+namespace {
+
+constexpr double kNoLength = 1e-5;  // metres: a bone without a direction
+constexpr std::size_t kGrain = 256;
+constexpr std::size_t kFramesOfShape = 2000;
+
+// The rotation nearest to a sum of outer products target * source^T.
+Quat nearest_rotation(const Mat3& products) {
+  const Eigen::JacobiSVD<Mat3> parts(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = parts.matrixU();
+  if ((u * parts.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
+  return Quat(Mat3(u * parts.matrixV().transpose())).normalized();
+}
+
+// The angle of a rotation about an axis (unit), in (-pi, pi].
+double twist_about(const Vec3& axis, const Quat& rotation) {
+  double angle = 2 * std::atan2(rotation.vec().dot(axis), rotation.w());
+  if (angle > kPi) angle -= 2 * kPi;
+  if (angle <= -kPi) angle += 2 * kPi;
+  return angle;
+}
+
+void unwrap(std::vector<double>& angles) {
+  double turns = 0, mean = 0;
+  for (std::size_t t = 1; t < angles.size(); ++t) {
+    angles[t] += turns;
+    const double more = -2 * kPi * std::round((angles[t] - angles[t - 1]) / (2 * kPi));
+    angles[t] += more;
+    turns += more;
+  }
+  for (const double angle : angles) mean += angle / static_cast<double>(angles.size());
+  const double whole = 2 * kPi * std::round(mean / (2 * kPi));
+  for (double& angle : angles) angle -= whole;
+}
+
+// Angles that follow `measured` by their weights, and zero weakly: the least sum of
+// weight |z - measured|^2 + smoothness |steps of z|^2 + pull |z - 1|^2 over unit complex numbers,
+// of which the lengths are left free, so that the system is linear.
+std::vector<double> angles_over_time(std::span<const double> measured,
+                                     std::span<const double> weights, double smoothness,
+                                     double pull) {
+  const std::size_t n = measured.size();
+  std::vector<double> upper(n, 0);
+  std::vector<std::complex<double>> z(n);
+  for (std::size_t t = 0; t < n; ++t) {
+    double diagonal = weights[t] + pull + (t > 0 ? smoothness : 0) + (t + 1 < n ? smoothness : 0);
+    z[t] = std::polar(weights[t], measured[t]) + pull;
+    if (t > 0) {
+      diagonal -= smoothness * upper[t - 1];
+      z[t] += smoothness * z[t - 1];
+    }
+    upper[t] = smoothness / diagonal;
+    z[t] /= diagonal;
+  }
+  std::vector<double> angles(n);
+  for (std::size_t t = n; t-- > 0;) {
+    if (t + 1 < n) z[t] += upper[t] * z[t + 1];
+    angles[t] = std::arg(z[t]);
+  }
+  return angles;
+}
+
+class Solver {
+ public:
+  explicit Solver(const PositionsToPose& input)
+      : input_(input),
+        parents_(input.skeleton.parents),
+        children_(input.skeleton.children()),
+        joints_(parents_.size()),
+        frames_(joints_ == 0 ? 0 : input.positions.size() / joints_),
+        measured_(joints_ * frames_),
+        placed_(joints_ * frames_),
+        turns_(joints_ * frames_, Quat::Identity()),
+        offsets_(joints_, Vec3::Zero()),
+        weights_(joints_, 1),
+        targets_(joints_),
+        shapes_(joints_),
+        twisted_(joints_, false) {
+    for (std::size_t f = 0; f < frames_; ++f) {
+      for (std::size_t j = 0; j < joints_; ++j) {
+        measured_[j * frames_ + f] = input.positions[f * joints_ + j];
+      }
+    }
+  }
+
+  PoseFromPositions solve() {
+    find_noise();
+    if (frames_ > 0) {
+      find_targets();
+      place(true);
+      if (shift_root()) place(false);
+      twist_limbs();
+      follow();
+      spread_twists();
+      follow();
+    }
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  using Track = std::span<Quat>;
+  Track turns_of(std::size_t joint) { return std::span(turns_).subspan(joint * frames_, frames_); }
+  std::span<Vec3> measured_of(std::size_t joint) {
+    return std::span(measured_).subspan(joint * frames_, frames_);
+  }
+
+  void find_noise() {
+    noise_ = noise_of(parents_, measured_);
+    double squares = 0, worst = 0;
+    for (const double n : noise_) {
+      squares += n * n / static_cast<double>(joints_);
+      worst = std::max(worst, n);
+    }
+    result_.noise = std::sqrt(squares);
+    if (!input_.smooth || worst == 0) return;
+    std::vector<char> changed(joints_, 0);
+    parallel_for(joints_, 1, input_.jobs, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) {
+        changed[j] = smooth_track(measured_of(j), noise_[j], input_.rate) ? 1 : 0;
+      }
+    });
+    result_.smoothed = std::ranges::find(changed, 1) != changed.end();
+    for (std::size_t j = 0; j < joints_ && result_.smoothed; ++j) {
+      const double trust = std::max(noise_[j] / result_.noise, 0.1);
+      weights_[j] = 1 / (trust * trust);
+    }
+  }
+
+  // Metres, over a part of the frames.
+  double usual_length(std::size_t from, std::size_t to) const {
+    double sum = 0, count = 0;
+    for (std::size_t f = 0; f < frames_; f += sample_step()) {
+      sum += way(from, to, f).norm();
+      ++count;
+    }
+    return sum / count;
+  }
+  std::size_t sample_step() const { return (frames_ + 49) / 50; }
+
+  // The joints that show a joint's rotation: its children, and beyond those at its own place their
+  // children, if it needs them.
+  void find_targets() {
+    for (std::size_t j = joints_; j-- > 0;) {
+      std::vector<int>& targets = targets_[j];
+      std::vector<int> near;
+      for (const int child : children_[j]) {
+        const double noise = 2.5 * std::hypot(noise_[j], noise_[at(child)]);
+        const bool away = usual_length(j, at(child)) > std::max(kNoLength, noise);
+        (away ? targets : near).push_back(child);
+      }
+      const bool few = targets.size() < 2;
+      for (std::size_t i = 0; few && i < near.size(); ++i) {
+        const std::vector<int>& beyond = targets_[at(near[i])];
+        targets.insert(targets.end(), beyond.begin(), beyond.end());
+      }
+      if (const int only = only_target(j); only >= 0) targets = {only};
+      for (const int target : targets) {
+        shapes_[j].push_back(input_.skeleton.reference[at(target)].position -
+                             input_.skeleton.reference[j].position);
+      }
+    }
+  }
+
+  // The farthest target if all are in one line; otherwise -1.
+  int only_target(std::size_t j) const {
+    int farthest = -1;
+    double length = 0, aside = 0, count = 0;
+    for (const int target : targets_[j]) {
+      const double here = usual_length(j, at(target));
+      if (here <= length) continue;
+      length = here;
+      farthest = target;
+    }
+    if (farthest < 0) return farthest;
+    for (std::size_t f = 0; f < frames_; f += sample_step(), ++count) {
+      const Vec3 along = way(j, at(farthest), f).stableNormalized();
+      double most = 0;
+      for (const int target : targets_[j]) {
+        most = std::max(most, along.cross(way(j, at(target), f)).norm());
+      }
+      aside += most;
+    }
+    return aside / count <= std::max(0.03 * length, 3 * result_.noise) ? farthest : -1;
+  }
+
+  // Rotations and places from the root down. With `measure`, offsets are measured first.
+  void place(bool measure) {
+    for (std::size_t j = 0; j < joints_; ++j) {
+      if (parents_[j] < 0 && measure) std::ranges::copy(measured_of(j), &placed_[j * frames_]);
+      if (targets_[j].size() == 1) {
+        if (measure) measure_bone(j);
+        point(j);
+      } else if (!targets_[j].empty()) {
+        if (measure) measure_shape(j);
+        fit(j);
+      } else if (parents_[j] >= 0) {
+        std::ranges::copy(turns_of(at(parents_[j])), turns_of(j).begin());
+      }
+      for (const int child : children_[j]) {
+        const auto target = std::ranges::find(targets_[j], child);
+        if (target != targets_[j].end()) {
+          offsets_[at(child)] = shapes_[j][static_cast<std::size_t>(target - targets_[j].begin())];
+        } else if (measure) {
+          measure_aside(j, at(child));
+        }
+        for (std::size_t f = 0; f < frames_; ++f) {
+          placed_[at(child) * frames_ + f] =
+              placed_[j * frames_ + f] + turns_[j * frames_ + f] * offsets_[at(child)];
+        }
+      }
+    }
+  }
+
+  Quat turn_above(std::size_t joint, std::size_t frame) const {
+    return parents_[joint] < 0 ? Quat::Identity() : turns_[at(parents_[joint]) * frames_ + frame];
+  }
+  Vec3 way(std::size_t joint, std::size_t child, std::size_t frame) const {
+    return measured_[child * frames_ + frame] - measured_[joint * frames_ + frame];
+  }
+
+  void measure_bone(std::size_t j) {
+    const std::size_t target = at(targets_[j][0]);
+    double length = 0;
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t f = 0; f < frames_; ++f) {
+      length += way(j, target, f).norm();
+      mean += turn_above(j, f).conjugate() * way(j, target, f);
+    }
+    const Vec3 direction = shapes_[j][0].norm() > kNoLength ? shapes_[j][0] : mean;
+    shapes_[j][0] = length / static_cast<double>(frames_) * direction.stableNormalized();
+  }
+
+  void measure_aside(std::size_t j, std::size_t child) {
+    offsets_[child].setZero();
+    for (std::size_t f = 0; f < frames_; ++f) {
+      offsets_[child] += turns_[j * frames_ + f].conjugate() * way(j, child, f);
+    }
+    offsets_[child] /= static_cast<double>(frames_);
+  }
+
+  Mat3 products(std::size_t j, std::size_t frame, const Vec3& from) const {
+    Mat3 sum = Mat3::Zero();
+    double size = 0;
+    for (std::size_t i = 0; i < targets_[j].size(); ++i) {
+      const std::size_t target = at(targets_[j][i]);
+      const Vec3 weighted = weights_[target] * shapes_[j][i];
+      sum += (measured_[target * frames_ + frame] - from) * weighted.transpose();
+      size += weighted.dot(shapes_[j][i]);
+    }
+    // The parent's rotation decides what the children leave open.
+    return sum + 1e-6 * std::max(size, 1e-12) * turn_above(j, frame).toRotationMatrix();
+  }
+
+  // The mean offsets of several targets in their joint's frame.
+  void measure_shape(std::size_t j) {
+    const std::size_t step = (frames_ + kFramesOfShape - 1) / kFramesOfShape;
+    std::vector<Vec3>& shape = shapes_[j];
+    if (std::ranges::all_of(shape, [](const Vec3& v) { return v.norm() <= kNoLength; })) {
+      for (std::size_t i = 0; i < shape.size(); ++i) {
+        shape[i] = turn_above(j, 0).conjugate() * way(j, at(targets_[j][i]), 0);
+      }
+    }
+    const std::vector<Vec3> reference = shape;
+    for (int iteration = 0; iteration < 3; ++iteration) {
+      std::vector<Vec3> sums(shape.size(), Vec3::Zero());
+      double count = 0;
+      for (std::size_t f = 0; f < frames_; f += step, ++count) {
+        const Quat back = nearest_rotation(products(j, f, measured_[j * frames_ + f])).conjugate();
+        for (std::size_t i = 0; i < sums.size(); ++i) {
+          sums[i] += back * way(j, at(targets_[j][i]), f);
+        }
+      }
+      for (std::size_t i = 0; i < sums.size(); ++i) shape[i] = sums[i] / count;
+    }
+    // As the reference pose stands, as nearly as the shape allows.
+    Mat3 sum = 1e-9 * Mat3::Identity();
+    for (std::size_t i = 0; i < shape.size(); ++i) sum += reference[i] * shape[i].transpose();
+    const Quat turn = nearest_rotation(sum);
+    for (Vec3& offset : shape) offset = turn * offset;
+  }
+
+  void fit(std::size_t j) {
+    parallel_for(frames_, kGrain, input_.jobs, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) {
+        turns_[j * frames_ + f] = nearest_rotation(products(j, f, placed_[j * frames_ + f]));
+      }
+    });
+  }
+
+  void point(std::size_t j) {
+    const std::size_t target = at(targets_[j][0]);
+    const Vec3& bone = shapes_[j][0];
+    for (std::size_t f = 0; f < frames_; ++f) {
+      const Quat above = turn_above(j, f);
+      Quat& turn = turns_[j * frames_ + f];
+      turn = above;
+      const Vec3 to = measured_[target * frames_ + f] - placed_[j * frames_ + f];
+      if (bone.norm() < kNoLength || to.norm() < kNoLength) continue;
+      turn = (shortest_arc(above * bone, to) * above).normalized();
+    }
+  }
+
+  // Moves the root so that the joints are right in the mean; false if they are.
+  bool shift_root() {
+    double largest = 0;
+    for (std::size_t f = 0; f < frames_; ++f) {
+      Vec3 sum = Vec3::Zero();
+      double weights = 0;
+      for (std::size_t j = 0; j < joints_; ++j) {
+        sum += weights_[j] * (measured_[j * frames_ + f] - placed_[j * frames_ + f]);
+        weights += weights_[j];
+      }
+      placed_[f] += sum / weights;
+      largest = std::max(largest, sum.norm() / weights);
+    }
+    return largest > 1e-7;
+  }
+
+  // Turns a joint with one target about its bone.
+  void twist(std::size_t j, std::size_t frame, double angle) {
+    Quat& turn = turns_[j * frames_ + frame];
+    turn = (turn * Quat(Eigen::AngleAxisd(angle, bone(j)))).normalized();
+  }
+  Vec3 bone(std::size_t j) const { return shapes_[j][0].stableNormalized(); }
+
+  bool has_bone(int joint) const {
+    return joint >= 0 && targets_[at(joint)].size() == 1 &&
+           shapes_[at(joint)][0].norm() > kNoLength;
+  }
+
+  // Joints of which the children do not show the twist take it from their parents, from the root
+  // down.
+  void follow() {
+    for (std::size_t j = 1; j < joints_; ++j) {
+      if (targets_[j].empty()) {
+        std::ranges::copy(turns_of(at(parents_[j])), turns_of(j).begin());
+      } else if (targets_[j].size() == 1 && !twisted_[j]) {
+        point(j);
+      }
+    }
+  }
+
+  void twist_limb(int upper, int lower, int end, const Vec3& forward) {
+    if (!has_bone(upper) || lower < 0 || end < 0) return;
+    const std::size_t u = at(upper);
+    const auto& reference = input_.skeleton.reference;
+    const Vec3 first = reference[at(lower)].position - reference[u].position;
+    const Vec3 second = reference[at(end)].position - reference[at(lower)].position;
+    // The hinge, as the reference pose shows it or as anatomy has it.
+    Vec3 hinge = first.cross(second);
+    if (hinge.norm() < 0.17 * first.norm() * second.norm()) hinge = first.cross(forward);
+    hinge -= hinge.dot(bone(u)) * bone(u);
+    if (hinge.norm() < 1e-9) return;
+    hinge.normalize();
+    std::vector<double> angles(frames_), weights(frames_), clear(frames_);
+    for (std::size_t f = 0; f < frames_; ++f) {
+      const Vec3 along = way(u, at(lower), f), beyond = way(at(lower), at(end), f);
+      const double size = along.norm() * beyond.norm();
+      if (size < 1e-8) continue;
+      const Vec3 normal = along.cross(beyond);
+      const Vec3 local = turns_[u * frames_ + f].conjugate() * normal;
+      angles[f] = std::atan2(bone(u).dot(hinge.cross(local)), hinge.dot(local));
+      weights[f] = normal.squaredNorm() / (size * size);
+      clear[f] = weights[f] * smoother_step(2 * std::sqrt(weights[f]) - 0.5);
+    }
+    // A limb that is nearly straight may be bent the other way: it follows frames that are clearly
+    // bent.
+    const double steps = 0.05 * input_.rate, smoothness = 0.003 * steps * steps;
+    auto found = angles_over_time(angles, clear, smoothness, 1e-4);
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (std::cos(angles[f] - found[f]) < 0) angles[f] += kPi;
+    }
+    found = angles_over_time(angles, weights, smoothness, 1e-5);
+    for (std::size_t f = 0; f < frames_; ++f) twist(u, f, found[f]);
+    twisted_[u] = true;
+  }
+
+  void twist_limbs() {
+    for (const ArmRoles& arm : kArmRoles) {
+      const auto joint = [&](Role role) { return input_.roles.joint(role); };
+      twist_limb(joint(arm.upper), joint(arm.lower), joint(arm.hand), Vec3::UnitZ());
+    }
+    for (const LegRoles& leg : kLegRoles) {
+      const auto joint = [&](Role role) { return input_.roles.joint(role); };
+      twist_limb(joint(leg.upper), joint(leg.lower), joint(leg.foot), -Vec3::UnitZ());
+    }
+  }
+
+  // The share of the twist between the ends of a chain that a link and those above it take.
+  double share_of(std::size_t joint, std::size_t place, std::size_t links) const {
+    switch (joint < input_.roles.roles.size() ? input_.roles.roles[joint] : Role::none) {
+      case Role::left_collar:
+      case Role::right_collar:
+      case Role::left_upper_arm:
+      case Role::right_upper_arm:
+      case Role::left_lower_arm:
+      case Role::right_lower_arm:
+      case Role::left_upper_leg:
+      case Role::right_upper_leg:
+      case Role::left_lower_leg:
+      case Role::right_lower_leg:
+        return 0;
+      default:
+        return static_cast<double>(place + 1) / static_cast<double>(links + 1);
+    }
+  }
+
+  void spread_twists() {
+    for (std::size_t end = 0; end < joints_; ++end) {
+      if (targets_[end].size() < 2) continue;
+      std::vector<std::size_t> links;
+      for (int j = parents_[end], below = static_cast<int>(end);
+           has_bone(j) && targets_[at(j)][0] == below; below = j, j = parents_[at(j)]) {
+        links.push_back(at(j));
+      }
+      // From a joint known in full to the next.
+      if (links.empty() || parents_[links.back()] < 0) continue;
+      std::ranges::reverse(links);
+      std::vector<double> angles(frames_);
+      for (std::size_t f = 0; f < frames_; ++f) {
+        angles[f] = twist_about(bone(links.back()), turns_[links.back() * frames_ + f].conjugate() *
+                                                        turns_[end * frames_ + f]);
+      }
+      unwrap(angles);
+      for (std::size_t i = 0; i < links.size(); ++i) {
+        const double share = share_of(links[i], i, links.size());
+        if (share > 0) twisted_[links[i]] = true;
+        for (std::size_t f = 0; share > 0 && f < frames_; ++f) {
+          twist(links[i], f, share * angles[f]);
+        }
+      }
+    }
+  }
+
+  void finish() {
+    Clip& clip = result_.clip;
+    clip.skeleton = input_.skeleton;
+    clip.rate = input_.rate;
+    auto& reference = clip.skeleton.reference;
+    for (std::size_t j = 0; j < joints_ && frames_ > 0; ++j) {
+      if (parents_[j] >= 0) {
+        reference[j].position = reference[at(parents_[j])].position + offsets_[j];
+      }
+    }
+    clip.resize(static_cast<int>(frames_));
+    double squares = 0;
+    for (std::size_t f = 0; f < frames_; ++f) {
+      for (std::size_t j = 0; j < joints_; ++j) {
+        const std::size_t from = j * frames_ + f, to = f * joints_ + j;
+        clip.positions[to] = placed_[from].cast<float>();
+        clip.orientations[to] =
+            (turns_[from] * input_.skeleton.reference[j].orientation).normalized().cast<float>();
+        const double off = (placed_[from] - input_.positions[to]).norm();
+        squares += off * off;
+        if (off <= result_.largest) continue;
+        result_.largest = off;
+        result_.largest_joint = static_cast<int>(j);
+        result_.largest_frame = static_cast<int>(f);
+      }
+    }
+    if (frames_ > 0) result_.rms = std::sqrt(squares / static_cast<double>(placed_.size()));
+    measure_variation();
+  }
+
+  void measure_variation() {
+    double bones = 0;
+    for (std::size_t j = 0; j < joints_ && frames_ > 0; ++j) {
+      const double length = offsets_[j].norm();
+      if (parents_[j] < 0 || length < kNoLength) continue;
+      double squares = 0;
+      for (std::size_t f = 0; f < frames_; ++f) {
+        const Vec3 here =
+            input_.positions[f * joints_ + j] - input_.positions[f * joints_ + at(parents_[j])];
+        squares += (here.norm() - length) * (here.norm() - length);
+      }
+      result_.length_variation += std::sqrt(squares / static_cast<double>(frames_)) / length;
+      ++bones;
+    }
+    if (bones > 0) result_.length_variation /= bones;
+  }
+
+  const PositionsToPose& input_;
+  const std::vector<int>& parents_;
+  const std::vector<std::vector<int>> children_;
+  const std::size_t joints_, frames_;
+  std::vector<Vec3> measured_, placed_;  // [joints x frames]
+  std::vector<Quat> turns_;              // [joints x frames] from the reference pose, in world axes
+  std::vector<Vec3> offsets_;            // [joints] from the parent, in the reference pose
+  std::vector<double> weights_;          // [joints] by noise
+  std::vector<double> noise_;            // [joints]
+  std::vector<std::vector<int>> targets_;
+  std::vector<std::vector<Vec3>> shapes_;  // of the targets from the joint, in the reference pose
+  std::vector<bool> twisted_;              // a twist of its own was found
+  PoseFromPositions result_;
+};
+
+}  // namespace
+
+PoseFromPositions from_positions(const PositionsToPose& input) {
+  return Solver(input).solve();
+}
+
+}  // namespace krok

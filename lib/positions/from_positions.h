@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "roles/roles.h"
+#include "scene/clip.h"
+
+// Rotations from joint positions alone, as pose estimation and generative models give them.
+//
+// - Bone lengths are constant, by least squares over the clip; so are the offsets of all children
+//   of a joint that has several (generalised Procrustes analysis, Gower 1975).
+// - A joint with children in several directions takes the rotation that fits them best (Kabsch
+//   1976; Wahba 1965), from the root down, each bone towards where its child was measured.
+// - A joint with one child takes its parent's rotation, turned by the smallest angle that points
+// the
+//   bone at the child. The rest of the twist at the next joint that is known in full is spread over
+//   such a chain; that of a hand is given to the forearm, as in anatomy.
+// - Upper arms and upper legs are twisted so that elbow and knee bend about their hinges. Where the
+//   limb is straight the twist is carried over from before and after, by least squares over time.
+// - A joint without children keeps its rotation relative to its parent.
+// - White noise shows in the bone lengths, which would otherwise not change. Each joint is smoothed
+//   by as much as its noise exceeds what its own movement explains (Whittaker 1923); positions
+//   without noise are not changed.
+
+namespace krok {
+
+struct PositionsToPose {
+  // Names, parents and the reference pose, of which the directions of bones are taken, and the
+  // orientations of joints. An offset of length 0 is measured: the mean in the parent's frame.
+  Skeleton skeleton;
+  RoleMap roles;                    // of limbs with hinges; others need none
+  std::span<const Vec3> positions;  // [frames x joints], metres, +Y up, finite
+  double rate = 30;                 // frames per second
+  bool smooth = true;               // as far as there is noise
+  int jobs = 0;                     // threads, as in parallel_for; does not affect the result
+};
+
+struct PoseFromPositions {
+  // The skeleton has the bone lengths of the positions.
+  Clip clip;
+  double noise = 0;  // standard deviation of a coordinate, metres: root mean square of the joints
+  bool smoothed = false;
+  // Distance of joints in the clip to `positions`, metres.
+  double rms = 0, largest = 0;
+  int largest_joint = 0, largest_frame = 0;
+  // Mean over joints of the bones' standard deviations, per length: 0 for a rigid body.
+  double length_variation = 0;
+};
+
+// Same input, same result. Fewer than 5 frames are not smoothed. Positions in one place give the
+// reference pose's rotations.
+PoseFromPositions from_positions(const PositionsToPose& input);
+
+// The standard deviation of white noise in each coordinate of each joint, metres, by the second
+// differences of bone lengths. `tracks`: [joints x frames]. 0 for fewer than 5 frames.
+std::vector<double> noise_of(std::span<const int> parents, std::span<const Vec3> tracks);
+
+// Smooths a track of a joint with that noise; returns whether it changed.
+bool smooth_track(std::span<Vec3> track, double noise, double rate);
+
+}  // namespace krok

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "contacts/gait_metrics.h"
+#include "contacts/step_measures.h"
+#include "core/result.h"
+#include "roles/roles.h"
+#include "scene/clip.h"
+#include "scene/motion_keys.h"
+#include "tools/cli/tool.h"
+#include "tools/krok-keys/options.h"
+
+namespace krok::cli::keys {
+
+// What a motion's gait is like.
+struct GaitFacts {
+  GaitMetrics gait;
+  StepMeasures steps;
+  double slide_speed = 0;  // metres per second
+};
+GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes);
+
+// Writes --table: a row for each motion, with keytimes of its sidecar or detected. Motions that
+// cannot be read are reported and left out; the exit code then is kExitPartly.
+Result<int> write_gait_table(const Options& options, ToolContext& context);
+
+}  // namespace krok::cli::keys
