@@ -7,6 +7,7 @@
 
 #include "cli/motion_fixture.h"
 #include "core/index.h"
+#include "math/quaternion.h"
 #include "samples/generator/walk.h"
 
 namespace krok::test {
