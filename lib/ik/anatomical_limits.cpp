@@ -237,7 +237,8 @@ Limits anatomical_limits(const Skeleton& skeleton, const RoleMap& roles) {
 
 namespace {
 
-constexpr double kBody = 73;  // kilograms
+constexpr double kCollarPart = 0.25;  // of the mass above the lowest joint of the spine
+constexpr double kBody = 73;          // kilograms
 
 // Share of the body, and where the centre is on the way from the joint to the end of its part.
 struct Part {
@@ -309,6 +310,32 @@ BodyMasses body_masses(const Skeleton& skeleton, const RoleMap& roles) {
     for (const int joint : trunk) put(joint, kTrunk / static_cast<double>(trunk.size()));
   }
   return body;
+}
+
+std::vector<double> trunk_stiffness(const Skeleton& skeleton, const RoleMap& roles,
+                                    double whole_body) {
+  std::vector<double> stiffness(skeleton.names.size(), 0.0);
+  if (!roles.humanoid) return stiffness;
+  std::vector<double> carried = body_masses(skeleton, roles).masses;
+  for (std::size_t j = carried.size(); j-- > 1;) carried[at(skeleton.parents[j])] += carried[j];
+  const int upper_arm = roles.joint(Role::left_upper_arm);
+  if (upper_arm < 0) return stiffness;
+  const double arm = carried[at(upper_arm)];
+  std::vector<int> trunk = roles.joints(Role::spine);
+  for (const int joint : roles.joints(Role::chest)) trunk.push_back(joint);
+  const auto set = [&](int joint, double mass) {
+    if (joint < 0 || !(mass > arm)) return;
+    stiffness[at(joint)] = 1 - std::pow(arm / mass, 4 * (1 - whole_body));
+  };
+  double heaviest = 0;
+  for (const int joint : trunk) {
+    heaviest = std::max(heaviest, carried[at(joint)]);
+    set(joint, carried[at(joint)] * static_cast<double>(trunk.size()));
+  }
+  for (const Role collar : {Role::left_collar, Role::right_collar}) {
+    set(roles.joint(collar), kCollarPart * heaviest);
+  }
+  return stiffness;
 }
 
 }  // namespace krok::ik

@@ -33,4 +33,13 @@ struct BodyMasses {
 };
 BodyMasses body_masses(const Skeleton& skeleton, const RoleMap& roles);
 
+// Stiffness of joints, [joints], 0 to 1 (Options::stiffness), so that arms reach first, and collar
+// bones, spine and chest only as far as arms do not: the trunk's joints turn by the square of an
+// arm's mass over the mass that they carry, all of them together as one; collar bones count as a
+// quarter of the trunk. `whole_body`, 0 to 1, is how much the trunk takes part: 1 as any other
+// joint, 0.5 by the square, 0 by the fourth power. 0 for all where the roles are not those of a
+// humanoid.
+std::vector<double> trunk_stiffness(const Skeleton& skeleton, const RoleMap& roles,
+                                    double whole_body);
+
 }  // namespace krok::ik

@@ -114,6 +114,16 @@ Vec3 pole_for(const Tree& tree, int middle, const Vec3& root) {
   return Vec3::Zero();
 }
 
+// Without a pole the plane of the bend swings along with the limb, by the shortest way.
+void keep_plane(TwoBoneChain& chain, TwoBoneGoal& goal) {
+  const Vec3 upper = chain.middle - chain.root, lower = chain.end - chain.middle;
+  const Vec3 hinge = upper.cross(lower), line = chain.end - chain.root;
+  const bool bends = hinge.norm() > 1e-6 * upper.norm() * lower.norm();
+  if (chain.hinge.isZero() && bends) chain.hinge = hinge;
+  if (!goal.pole.isZero() || chain.hinge.isZero()) return;
+  goal.pole = shortest_arc(line, goal.target - chain.root) * line.cross(chain.hinge);
+}
+
 }  // namespace
 
 void solve_limbs(Tree& tree, const Options& options) {
@@ -138,6 +148,7 @@ void solve_limbs(Tree& tree, const Options& options) {
     TwoBoneGoal two;
     two.target = tree.target_of(g) - turned * goal.point;
     two.pole = pole_for(tree, middle, chain.root);
+    keep_plane(chain, two);
     const TwoBoneSolution solution = solve_two_bone(chain, two);
     const Quat keeps = effector.orientation;
     turn_joint(tree, root, solution.root_rotation);

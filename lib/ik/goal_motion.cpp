@@ -82,8 +82,7 @@ void fade_goal(Goal& goal, double strength, const Skeleton& skeleton,
   }
 }
 
-// Frames that one thread solves in a row.
-constexpr std::size_t kGrain = 32;
+constexpr double kForgets = 0.25;  // seconds, of the frame before
 // A motion that is beyond its limits by so much, radians, is blended by a goal's strength alone.
 constexpr double kWhollyBlended = 0.1;
 
@@ -218,8 +217,9 @@ namespace {
 // Solves one frame after the other; one for each thread.
 class FrameSolver {
  public:
-  FrameSolver(const Clip& clip, std::span<const KeyedGoal> goals, Solver solver)
-      : clip_(clip), goals_(goals), solver_(std::move(solver)) {
+  FrameSolver(const Clip& clip, std::span<const KeyedGoal> goals, std::span<const int> upright,
+              Solver solver)
+      : clip_(clip), goals_(goals), upright_(upright), solver_(std::move(solver)) {
     const std::size_t joints = clip.skeleton.names.size();
     given_.resize(joints);
     solved_.resize(joints);
@@ -236,15 +236,25 @@ class FrameSolver {
  private:
   Transform anchor(const KeyedGoal& goal, double time);
   void list_goals(double time);
+  void mark_chains();
+  void start_from_before(double strength);
+  void start_limbs();
+  void keep_change(double strength);
+  void keep_upright();
   bool blend_in(double strength);
   double excess_of_chains() const;
 
   const Clip& clip_;
   std::span<const KeyedGoal> goals_;
+  std::span<const int> upright_;
   Solver solver_;
   std::vector<Transform> given_, solved_, other_, scratch_, local_, before_solving_;
   std::vector<Goal> active_;
   std::vector<double> strengths_;
+  std::vector<std::uint8_t> in_chain_;  // [joints], of the frame's goals
+  // What goals turned in the frame before, in the joints' frames, and how strong they were.
+  std::vector<Vec3> change_;
+  double strength_before_ = 0;
 };
 
 // As the motion is given.
@@ -271,6 +281,90 @@ void FrameSolver::list_goals(double time) {
       goal.orientation = (frame.orientation.conjugate() * goal.orientation).normalized();
     }
     active_.push_back(std::move(goal));
+  }
+}
+
+void FrameSolver::mark_chains() {
+  const auto& parents = clip_.skeleton.parents;
+  in_chain_.assign(parents.size(), 0);
+  for (const Goal& goal : active_) {
+    if (goal.kind == Goal::Kind::balance) in_chain_.assign(parents.size(), 1);
+    if (goal.kind == Goal::Kind::balance) continue;
+    int left = goal.depth > 0 ? goal.depth : static_cast<int>(parents.size());
+    int joint = goal.joint;
+    if (goal.kind == Goal::Kind::pole) joint = goal.lower >= 0 ? goal.lower : joint + 1;
+    for (; joint >= 0 && left > 0; joint = parents[at(joint)], --left) in_chain_[at(joint)] = 1;
+  }
+}
+
+// The frame as it was, plus most of what goals changed in the frame before.
+void FrameSolver::start_from_before(double strength) {
+  solved_ = given_;
+  if (change_.empty()) return;
+  const auto& parents = clip_.skeleton.parents;
+  local_.resize(given_.size());
+  world_to_local(parents, given_, local_);
+  const double kept =
+      std::exp(-1 / (kForgets * clip_.rate)) * std::min(1.0, strength / strength_before_);
+  for (std::size_t j = 0; j < local_.size(); ++j) {
+    if (in_chain_[j] == 0 || change_[j].isZero()) continue;
+    local_[j].orientation = local_[j].orientation * from_rotation_vector(kept * change_[j]);
+  }
+  local_to_world(parents, local_, solved_);
+  if (solver_.options().method == Method::two_bone) start_limbs();
+}
+
+// In closed form a limb's own bend shows its plane, which a straight limb does not have, and its
+// end keeps where it faces.
+void FrameSolver::start_limbs() {
+  const auto& parents = clip_.skeleton.parents;
+  for (const Goal& goal : active_) {
+    const int middle = goal.kind == Goal::Kind::balance ? -1 : parents[at(goal.joint)];
+    if (middle < 0 || parents[at(middle)] < 0) continue;
+    local_[at(middle)].orientation =
+        given_[at(parents[at(middle)])].orientation.conjugate() * given_[at(middle)].orientation;
+    local_to_world(parents, local_, solved_);
+    local_[at(goal.joint)].orientation =
+        solved_[at(middle)].orientation.conjugate() * given_[at(goal.joint)].orientation;
+    local_to_world(parents, local_, solved_);
+  }
+}
+
+void FrameSolver::keep_change(double strength) {
+  const auto& parents = clip_.skeleton.parents;
+  local_.resize(given_.size());
+  before_solving_.resize(given_.size());
+  world_to_local(parents, solved_, local_);
+  world_to_local(parents, given_, before_solving_);
+  change_.resize(given_.size());
+  for (std::size_t j = 0; j < local_.size(); ++j) {
+    change_[j] =
+        rotation_vector(before_solving_[j].orientation.conjugate() * local_[j].orientation);
+  }
+  strength_before_ = strength;
+}
+
+// Turns joints back to where they faced, with all that hangs on them, but for what goals are for or
+// relative to.
+void FrameSolver::keep_upright() {
+  const auto& parents = clip_.skeleton.parents;
+  const Limits& limits = solver_.limits();
+  for (const int joint : upright_) {
+    const int parent = parents[at(joint)];
+    const auto hangs = [&](int j) {
+      while (j > joint) j = parents[at(j)];
+      return j == joint;
+    };
+    const bool sought = std::ranges::any_of(
+        active_, [&](const Goal& goal) { return hangs(goal.joint) || hangs(goal.anchor); });
+    if (sought || in_chain_[at(joint)] != 0 || parent < 0) continue;
+    const Quat& carrying = solved_[at(parent)].orientation;
+    if (angle_between(carrying, given_[at(parent)].orientation) < 1e-9) continue;
+    Quat local = carrying.conjugate() * given_[at(joint)].orientation;
+    if (!limits.empty()) local = clamped(limits[at(joint)], local);
+    world_to_local(parents, solved_, local_);
+    local_[at(joint)].orientation = local.normalized();
+    local_to_world(parents, local_, solved_);
   }
 }
 
@@ -323,13 +417,19 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
     strengths_.push_back(strength_at(goal, time, clip_.duration()));
     strength = std::max(strength, strengths_.back());
   }
-  if (!(strength > 0)) return {};
+  if (!(strength > 0)) {
+    change_.clear();
+    return {};
+  }
   clip_.get_pose(frame, given_);
   list_goals(time);
-  solved_ = given_;
+  mark_chains();
+  start_from_before(strength);
   const auto solution = solver_.solve(active_, solved_);
   if (!solution) return solution.error();
   const Outcome* const outcome = *solution;
+  keep_change(strength);
+  keep_upright();
   if (strength >= 1) excess = std::max(excess, excess_of_chains());
   std::vector<Residual> missed = outcome->goals;
   if (blend_in(strength)) {
@@ -350,6 +450,52 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
   return {};
 }
 
+// Frames in a row in which goals are active, both included.
+struct Stretch {
+  int first = 0, last = 0;
+};
+
+std::vector<Stretch> stretches_of(const Clip& clip, std::span<const KeyedGoal> goals) {
+  std::vector<Stretch> stretches;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const bool active = std::ranges::any_of(goals, [&](const KeyedGoal& goal) {
+      return strength_at(goal, f / clip.rate, clip.duration()) > 0;
+    });
+    if (!active) continue;
+    if (stretches.empty() || stretches.back().last + 1 < f) stretches.push_back({f, f});
+    stretches.back().last = f;
+  }
+  return stretches;
+}
+
+void measure_turns(const Clip& clip, GoalMotion& made) {
+  const auto& parents = clip.skeleton.parents;
+  const auto relative = [&](const Clip& of, int f, std::size_t j) -> Quat {
+    const Quat own = of.frame_orientations(f)[j].cast<double>();
+    return parents[j] < 0
+               ? own
+               : Quat(of.frame_orientations(f)[at(parents[j])].cast<double>().conjugate() * own);
+  };
+  for (std::size_t j = 0; j < parents.size(); ++j) {
+    double most = 0, before = 0;
+    int frame = -1;
+    bool changed = false;
+    for (int f = 1; f < clip.frame_count(); ++f) {
+      const Quat now = relative(made.clip, f, j), given = relative(clip, f, j);
+      changed = changed || angle_between(now, given) > 1e-6;
+      before = std::max(before, angle_between(relative(clip, f - 1, j), given));
+      const double turn = angle_between(relative(made.clip, f - 1, j), now);
+      if (turn > most) most = turn, frame = f;
+    }
+    if (!changed) continue;
+    made.input_turn = std::max(made.input_turn, before);
+    if (most <= made.largest_turn) continue;
+    made.largest_turn = most;
+    made.turning_joint = static_cast<int>(j);
+    made.turning_frame = frame;
+  }
+}
+
 }  // namespace
 
 Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
@@ -365,15 +511,17 @@ Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goal
   result.clip = clip;
   const std::size_t frames = at(clip.frame_count());
   std::vector<GoalFrame> report(frames * goals.size());
-  const std::size_t ranges = (frames + kGrain - 1) / kGrain;
-  std::vector<Status> failed(ranges);
-  std::vector<double> excesses(ranges, 0.0);
-  parallel_for(frames, kGrain, options.jobs, [&](std::size_t begin, std::size_t end) {
-    FrameSolver solver(clip, goals, *Solver::create(clip.skeleton.parents, limits, options.solver));
-    for (std::size_t f = begin; f < end && failed[begin / kGrain].ok(); ++f) {
-      failed[begin / kGrain] = solver.solve(
-          static_cast<int>(f), std::span(report).subspan(f * goals.size(), goals.size()),
-          result.clip, excesses[begin / kGrain]);
+  const std::vector<Stretch> stretches = stretches_of(clip, goals);
+  std::vector<Status> failed(stretches.size());
+  std::vector<double> excesses(stretches.size(), 0.0);
+  parallel_for(stretches.size(), 1, options.jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      FrameSolver solver(clip, goals, options.upright,
+                         *Solver::create(clip.skeleton.parents, limits, options.solver));
+      for (int f = stretches[s].first; f <= stretches[s].last && failed[s].ok(); ++f) {
+        failed[s] = solver.solve(f, std::span(report).subspan(at(f) * goals.size(), goals.size()),
+                                 result.clip, excesses[s]);
+      }
     }
   });
   for (const Status& status : failed) {
@@ -396,6 +544,7 @@ Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goal
     }
     result.changed_frames += changed ? 1 : 0;
   }
+  measure_turns(clip, result);
   return result;
 }
 

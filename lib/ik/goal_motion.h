@@ -61,17 +61,27 @@ struct GoalMotion {
   std::vector<std::vector<GoalFrame>> goals;  // [goals], the frames in which each is active
   int changed_frames = 0;
   double largest_excess = 0;  // of limits, radians, by joints in chains at full strength
+  // The largest turn of a joint relative to its parent from a frame to the next, of those that
+  // goals change: radians, the joint (-1: none), the later frame; and what the largest is in the
+  // input.
+  double largest_turn = 0, input_turn = 0;
+  int turning_joint = -1, turning_frame = -1;
 };
 
 struct GoalMotionOptions {
   Options solver;
-  int jobs = 0;
+  // Joints that keep their orientation in the world, but for their limits, where their own goals do
+  // not turn them: a head looks where it looked as the trunk leans.
+  std::vector<int> upright;
+  int jobs = 0;                  // for stretches of frames without goals between them
   Progress* progress = nullptr;  // may be null
 };
 
 // The motion with the goals brought about as well as they can be. Each frame is solved from the
-// frame as it was, so that what goals leave open stays as captured and nothing builds up over time;
-// frames in which no goal is active stay bit for bit. A joint that the motion itself holds beyond
+// frame as it was, plus what the goals changed in the frame before, so that nothing spins or flips
+// where they leave a choice or are out of reach. Of that change a quarter of a second forgets 1 -
+// 1/e: what goals leave open goes back to as captured, and nothing builds up over time. Frames in
+// which no goal is active stay bit for bit. A joint that the motion itself holds beyond
 // its limits is brought within them as the goals fade in.
 //
 // Codes: ik-goal for a goal that Solver refuses, keys whose times do not increase, no keys; those

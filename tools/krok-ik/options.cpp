@@ -131,6 +131,12 @@ void declare_solver(CommandOptions& command, Options& o) {
   command.add("--stiffness", o.stiffness,
               ValueKind<Stiffness>{"stiffness", "JOINT=NUMBER", parse_stiffness, {}},
               "How much a joint resists, 0 to 1 (does not turn): spine=0.7; repeatable");
+  command.add(
+      "--whole-body", o.whole_body, number({0, 1}),
+      "How much spine, chest and collar bones of a humanoid take part: 0.5 by the mass that "
+      "they carry, so that arms reach first; 1 as any other joint; 0 where nothing else "
+      "reaches. The head keeps its direction",
+      "0.5");
   command.add("--depth", o.depth, whole(0, 10000),
               "How many joints take part for each goal, from the joint's own upwards; 0: all; "
               "default: all below the hips");

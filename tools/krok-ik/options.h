@@ -40,6 +40,7 @@ struct Options {
   std::string write_limits;
   krok::ik::Options solver;
   std::vector<Stiffness> stiffness;
+  double whole_body = 0;  // how much the trunk takes part, 0 to 1
   std::optional<int> depth;
   std::string plot;  // an SVG file, or empty
   OrientationEncoding orientation = OrientationEncoding::xyz;

@@ -142,6 +142,11 @@ Json to_json(const Outcome& outcome) {
   Json json;
   json["frames"] = outcome.input.frame_count();
   json["changed_frames"] = outcome.motion.changed_frames;
+  json["largest_turn"] = {
+      {"angle", to_degrees(outcome.motion.largest_turn)},
+      {"joint", joint_name(outcome, outcome.motion.turning_joint)},
+      {"frame", outcome.motion.turning_frame < 0 ? Json() : Json(outcome.motion.turning_frame)},
+      {"input_angle", to_degrees(outcome.motion.input_turn)}};
   json["goals"] = Json::array();
   for (std::size_t g = 0; g < outcome.goals.size(); ++g) {
     const krok::ik::KeyedGoal& goal = outcome.goals[g];

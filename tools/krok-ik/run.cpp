@@ -336,7 +336,7 @@ Status Run::add_points() {
 }
 
 Status Run::set_stiffness() {
-  if (!options_.stiffness.empty()) solver_.stiffness.resize(clip_.skeleton.names.size(), 0.0);
+  solver_.stiffness.resize(clip_.skeleton.names.size(), 0.0);
   for (const Stiffness& stiffness : options_.stiffness) {
     const auto joint = joint_of("--stiffness", stiffness.joint);
     if (!joint) return joint.error();
@@ -346,6 +346,10 @@ Status Run::set_stiffness() {
     for (const int j : by_role ? roles_.joints(*role) : std::vector<int>{*joint}) {
       solver_.stiffness[at(j)] = stiffness.value;
     }
+  }
+  const auto trunk = krok::ik::trunk_stiffness(clip_.skeleton, roles_, options_.whole_body);
+  for (std::size_t j = 0; j < trunk.size(); ++j) {
+    solver_.stiffness[j] = 1 - (1 - solver_.stiffness[j]) * (1 - trunk[j]);
   }
   const krok::ik::BodyMasses body = krok::ik::body_masses(clip_.skeleton, roles_);
   solver_.masses = body.masses;
@@ -457,6 +461,7 @@ Result<int> Run::run() {
   krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
+  if (roles_.humanoid) how.upright = roles_.joints(Role::head);
   auto made = krok::ik::apply_goals(clip_, goals_, limits_, how);
   if (!made) {
     return std::move(made).error().in_file(options_.goals.empty() ? options_.input

@@ -7,6 +7,7 @@
 
 #include "cli/motion_fixture.h"
 #include "core/index.h"
+#include "math/quaternion.h"
 #include "samples/generator/walk.h"
 
 namespace krok::test {
@@ -169,10 +170,41 @@ TEST_F(KrokIk, StiffnessAndDepthReachTheSolver) {
     const Clip out = read("out.anim");
     return (place(out, 30, "Neck") - place(walk_, 30, "Neck")).norm();
   };
-  const double free = spine_moved({});
+  const double free = spine_moved({"--whole-body", "1"});
   EXPECT_GT(free, 0.01);
+  EXPECT_LT(spine_moved({}), 0.5 * free);
   EXPECT_LT(spine_moved({"--stiffness", "spine=0.9", "--stiffness", "chest=0.9"}), free);
   EXPECT_EQ(spine_moved({"--depth", "4"}), 0);
+}
+
+// A person who reaches what an arm reaches leans by a few degrees, and looks where he looked.
+TEST_F(KrokIk, ArmsReachBeforeTheTrunkAndTheHeadKeepsItsDirection) {
+  const Vec3 shoulder = place(walk_, 30, "RightArm");
+  const double arm = (place(walk_, 30, "RightForeArm") - shoulder).norm() +
+                     (place(walk_, 30, "RightHand") - place(walk_, 30, "RightForeArm")).norm();
+  const auto turned = [&](const Clip& clip, const char* joint) {
+    const auto j = at(clip.skeleton.find(joint));
+    return angle_between(walk_.frame_orientations(30)[j].cast<double>(),
+                         clip.frame_orientations(30)[j].cast<double>()) /
+           kRadiansPerDegree;
+  };
+  const std::pair<double, double> degrees[] = {{0.4, 3}, {0.7, 8}, {0.95, 20}, {1.05, 30}};
+  for (const auto& [lengths, most] : degrees) {
+    const Vec3 by =
+        shoulder + lengths * arm * Vec3(0, -0.3, 1).normalized() - place(walk_, 30, "RightHand");
+    const auto run = ik(
+        {"walk.anim", "--reach", reach(by), "-o", "out.anim", "--json", "--orientation", "xyzw"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const Clip out = read("out.anim");
+    EXPECT_LT((place(out, 30, "RightHand") - place(walk_, 30, "RightHand") - by).norm(), 1e-4);
+    EXPECT_LT(turned(out, walk_.skeleton
+                              .names[at(walk_.skeleton.parents[at(walk_.skeleton.find("Neck"))])]
+                              .c_str()),
+              most)
+        << lengths;
+    EXPECT_LT(turned(out, "Head"), 0.01) << lengths;
+    EXPECT_GT(json::parse(run.out)["result"]["largest_turn"]["angle"], 0);
+  }
 }
 
 TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {

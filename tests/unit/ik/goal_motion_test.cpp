@@ -225,6 +225,35 @@ TEST(GoalMotion, TheSameForAnyNumberOfThreads) {
   for (int f = 0; f < 200; ++f) EXPECT_TRUE(same_frame(one->clip, four->clip, f)) << f;
 }
 
+// A hand that follows a circle about its shoulder, near or out of reach, does not flip or spin: no
+// joint turns much more in a frame than the goal does.
+TEST(GoalMotion, NothingFlipsAlongAMovingGoal) {
+  const Clip clip = calm_human(180);
+  const Vec3 shoulder = place(clip, 0, "LeftArm");
+  const double arm = (place(clip, 0, "LeftForeArm") - shoulder).norm() +
+                     (place(clip, 0, "LeftHand") - place(clip, 0, "LeftForeArm")).norm();
+  for (const Method method : {Method::least_squares, Method::ccd, Method::two_bone}) {
+    for (const double lengths : {0.7, 1.5}) {
+      KeyedGoal goal = reach_of(clip, "LeftHand", 0, Vec3::Zero());
+      goal.goal.depth = 3;
+      goal.keys.clear();
+      for (int i = 0; i <= 12; ++i) {
+        const double angle = 2 * kPi * i / 12;
+        goal.keys.push_back({0.25 * i,
+                             shoulder + lengths * arm * Vec3(0.3, std::sin(angle), std::cos(angle)),
+                             Quat::Identity(),
+                             {}});
+      }
+      GoalMotionOptions options;
+      options.solver.method = method;
+      const auto made = apply_goals(clip, {&goal, 1}, {}, options);
+      ASSERT_TRUE(made.ok());
+      EXPECT_LT(made->largest_turn, 35 * kRadiansPerDegree)
+          << static_cast<int>(method) << " " << lengths << " frame " << made->turning_frame;
+    }
+  }
+}
+
 TEST(GoalMotion, WrongKeysAreRefused) {
   const Clip clip = calm_human(30);
   std::vector<KeyedGoal> bad(6, reach_of(clip, "LeftHand", 0.5, Vec3(0, 1, 0)));
