@@ -45,9 +45,9 @@ ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kin
                                        std::size_t least, char between = ',');
 // The same for a T of fixed size, a Vec3 or a std::array; values that may be missing are 0.
 template <typename T>
-ValueKind<T> numbers_as(std::vector<ValueKind<double>> kinds, std::size_t least,
+ValueKind<T> numbers_as(const std::vector<ValueKind<double>>& kinds, std::size_t least,
                         char between = ',') {
-  const auto list = numbers(std::move(kinds), least, between);
+  const auto list = numbers(kinds, least, between);
   return {list.name,
           list.value_name,
           [read = list.read](const std::string& text) -> Result<T> {
