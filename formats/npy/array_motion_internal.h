@@ -14,6 +14,8 @@ namespace krok::npy {
 struct ArrayMotion {
   Skeleton skeleton;  // the reference pose in its own axes, in the file's unit
   RoleMap roles;
+  // [joints] of the array: a joint's place is their mean. Of positions alone.
+  std::vector<std::vector<int>> columns;
   std::vector<Vec3> positions;     // [frames x joints], in the file's unit and axes
   std::vector<Quat> orientations;  // [frames x joints], joint to world; empty: to be found
   bool is_krok = false;            // in Krok's unit and axes
@@ -32,8 +34,8 @@ struct ArrayFile {
 
   // The first of the names that the file has; empty if none.
   std::string find(std::initializer_list<const char*> names) const;
-  // The numbers of an array, all finite (code npy-value; filled in where --repair is given). Shape
-  // as given: 0 is any size, which is set.
+  // The numbers of an array, all finite (code npy-value). Shape as given: 0 is any size, which is
+  // set.
   Result<std::vector<double>> numbers(const std::string& array,
                                       std::vector<std::size_t>& shape) const;
   // A single number; empty if there is none of the names.
@@ -51,6 +53,13 @@ void pose_frames(const std::vector<Quat>& rotations, const std::vector<Vec3>& ro
 // Contacts of joints, as krok-export writes them, or of Kimodo's feet.
 Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion);
 
+// Positions, [frames x joints x 3] or [motions x frames x joints x 3], of an array; of the only one
+// for an empty name. Codes npy-shape, npy-skeleton, npy-value.
+Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string& name);
+// The same with rotation matrices of all joints, [frames x joints x 3 x 3], global or relative to
+// the parents. Code npy-rotation, too.
+Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string& positions,
+                                        const std::string& rotations, bool global);
 Result<ArrayMotion> read_smpl(const ArrayFile& file);
 Result<ArrayMotion> read_krok(const ArrayFile& file);
 

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxDimensions = 32;  // as numpy
 constexpr std::uint64_t kSmallArray = std::uint64_t{32} << 20;
 
 Error damaged(std::string what) {
-  return Error("npy-damaged", std::move(what), "save the array anew with numpy.save");
+  return Error("npy-damaged", std::move(what), "save the array again with numpy.save");
 }
 
 std::string_view text_of(std::span<const std::byte> bytes) {
@@ -232,43 +232,6 @@ void in_row_order(const Array& array, const Take& take) {
   }
 }
 
-void append_utf8(std::uint32_t code, std::string& text) {
-  const auto add = [&](std::uint32_t byte) { text.push_back(static_cast<char>(byte)); };
-  if (code >= 0x110000 || (code >= 0xD800 && code < 0xE000)) code = 0xFFFD;
-  if (code < 0x80) return add(code);
-  if (code < 0x800) {
-    add(0xC0 | code >> 6);
-  } else {
-    if (code < 0x10000) {
-      add(0xE0 | code >> 12);
-    } else {
-      add(0xF0 | code >> 18);
-      add(0x80 | (code >> 12 & 0x3F));
-    }
-    add(0x80 | (code >> 6 & 0x3F));
-  }
-  add(0x80 | (code & 0x3F));
-}
-
-// The code points of UTF-8 text; bytes that are none become U+FFFD.
-std::vector<std::uint32_t> code_points(const std::string& text) {
-  std::vector<std::uint32_t> points;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i++]);
-    const int more = lead >= 0xF0 ? 3 : lead >= 0xE0 ? 2 : lead >= 0xC0 ? 1 : 0;
-    std::uint32_t code = lead < 0x80 ? lead : more == 0 ? 0xFFFD : lead & (0x3FU >> more);
-    for (int k = 0; k < more; ++k) {
-      if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) {
-        code = 0xFFFD;
-        break;
-      }
-      code = code << 6 | (static_cast<unsigned char>(text[i++]) & 0x3F);
-    }
-    points.push_back(code);
-  }
-  return points;
-}
-
 std::string type_of(const Array& array) {
   const char letter = "biufUS"[static_cast<std::size_t>(array.element)];
   const char order = array.item_size == 1 || letter == 'S' ? '|' : array.big_endian ? '>' : '<';
@@ -406,18 +369,18 @@ Array array_of_flags(std::span<const std::uint8_t> values, std::vector<std::size
 }
 
 Array array_of_texts(std::span<const std::string> texts) {
-  std::vector<std::vector<std::uint32_t>> points;
+  std::vector<std::u32string> points;
   std::size_t longest = 1;
   for (const std::string& text : texts) {
     points.push_back(code_points(text));
     longest = std::max(longest, points.back().size());
   }
-  std::vector<std::uint32_t> all;
-  for (std::vector<std::uint32_t>& text : points) {
+  std::u32string all;
+  for (std::u32string& text : points) {
     text.resize(longest, 0);
-    all.insert(all.end(), text.begin(), text.end());
+    all += text;
   }
-  Array array = make_array(Element::text, std::span<const std::uint32_t>(all), {texts.size()});
+  Array array = make_array(Element::text, std::span<const char32_t>(all), {texts.size()});
   array.item_size = 4 * longest;
   return array;
 }

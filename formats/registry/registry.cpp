@@ -216,7 +216,7 @@ std::vector<std::string> endings_of(Kind kind) {
   std::string_view rest = format == nullptr ? std::string_view() : format->endings;
   while (!rest.empty()) {
     const std::string_view one = rest.substr(0, rest.find(' '));
-    endings.push_back("." + std::string(one));
+    endings.emplace_back(".").append(one);
     rest.remove_prefix(std::min(one.size() + 1, rest.size()));
   }
   return endings;

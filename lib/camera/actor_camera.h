@@ -16,7 +16,7 @@ namespace krok {
 // What azimuth 0 refers to.
 enum class AzimuthFrom : unsigned char {
   start,  // the facing in the first frame
-  actor,  // the facing in each frame, smoothed, at most 90 degrees a second
+  actor,  // the facing in each frame, smoothed
   world   // +Z
 };
 
@@ -40,7 +40,7 @@ struct ActorCamera {
 
   // Smoothing time in seconds for the joint's path and the facing; see smooth_both_ways in
   // camera/spring.h. 0 disables smoothing. The facing is smoothed for longer where it turns faster
-  // than 90 degrees a second.
+  // than 90 degrees a second, but for at most 20 s: a steady spin is followed.
   double smoothing = 0.5;
   // Metres that the joint may move before the camera follows.
   double dead_zone = 0;

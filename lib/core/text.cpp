@@ -1,6 +1,7 @@
 #include "core/text.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace krok {
 
@@ -20,6 +21,25 @@ Lead lead_of(unsigned char byte) {
   if (byte >= 0xE0 && byte < 0xF0) return {3, byte & 0x0Fu, 0x800};
   if (byte >= 0xF0 && byte < 0xF5) return {4, byte & 0x07u, 0x10000};
   return {};
+}
+
+bool is_code_point(std::uint32_t code) {
+  return code <= 0x10FFFF && (code < 0xD800 || code > 0xDFFF);
+}
+
+// The character at `i`, which moves on behind it; empty where none is well-formed.
+std::optional<char32_t> next_character(std::string_view text, std::size_t& i) {
+  const Lead lead = lead_of(static_cast<unsigned char>(text[i]));
+  if (lead.length == 0 || lead.length > text.size() - i) return std::nullopt;
+  std::uint32_t character = lead.bits;
+  for (std::size_t k = 1; k < lead.length; ++k) {
+    const auto byte = static_cast<unsigned char>(text[i + k]);
+    if ((byte & 0xC0) != 0x80) return std::nullopt;
+    character = (character << 6) | (byte & 0x3Fu);
+  }
+  if (character < lead.least || !is_code_point(character)) return std::nullopt;
+  i += lead.length;
+  return character;
 }
 
 }  // namespace
@@ -73,19 +93,36 @@ Location locate(std::string_view text, std::size_t offset, const std::string& fi
 
 bool is_utf8(std::string_view text) {
   for (std::size_t i = 0; i < text.size();) {
-    const Lead lead = lead_of(static_cast<unsigned char>(text[i]));
-    if (lead.length == 0 || lead.length > text.size() - i) return false;
-    std::uint32_t character = lead.bits;
-    for (std::size_t k = 1; k < lead.length; ++k) {
-      const auto byte = static_cast<unsigned char>(text[i + k]);
-      if ((byte & 0xC0) != 0x80) return false;
-      character = (character << 6) | (byte & 0x3Fu);
-    }
-    const bool surrogate = character >= 0xD800 && character <= 0xDFFF;
-    if (character < lead.least || surrogate || character > 0x10FFFF) return false;
-    i += lead.length;
+    if (!next_character(text, i)) return false;
   }
   return true;
+}
+
+std::u32string code_points(std::string_view text) {
+  std::u32string result;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto character = next_character(text, i);
+    result += character.value_or(kReplacementCharacter);
+    if (!character) ++i;
+  }
+  return result;
+}
+
+void append_utf8(char32_t character, std::string& text) {
+  const std::uint32_t code = is_code_point(character) ? character : kReplacementCharacter;
+  const auto add = [&](std::uint32_t byte) { text += static_cast<char>(byte); };
+  if (code < 0x80) return add(code);
+  if (code < 0x800) {
+    add(0xC0 | code >> 6);
+  } else if (code < 0x10000) {
+    add(0xE0 | code >> 12);
+    add(0x80 | (code >> 6 & 0x3F));
+  } else {
+    add(0xF0 | code >> 18);
+    add(0x80 | (code >> 12 & 0x3F));
+    add(0x80 | (code >> 6 & 0x3F));
+  }
+  add(0x80 | (code & 0x3F));
 }
 
 bool is_name(std::string_view text) {
@@ -96,15 +133,7 @@ bool is_name(std::string_view text) {
 std::string to_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string utf8;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x80) {
-      utf8 += c;
-    } else {
-      utf8 += static_cast<char>(0xC0 | (code >> 6));
-      utf8 += static_cast<char>(0x80 | (code & 0x3F));
-    }
-  }
+  for (const char c : text) append_utf8(static_cast<unsigned char>(c), utf8);
   return utf8;
 }
 

@@ -65,6 +65,13 @@ Location locate(std::string_view text, std::size_t offset, const std::string& fi
 // overlong forms, no surrogates, nothing above U+10FFFF. Empty text is valid.
 bool is_utf8(std::string_view text);
 
+inline constexpr char32_t kReplacementCharacter = 0xFFFD;
+
+// The characters of UTF-8 text; kReplacementCharacter for each byte that is not part of one.
+std::u32string code_points(std::string_view text);
+// Appends a character; kReplacementCharacter for what is none.
+void append_utf8(char32_t character, std::string& text);
+
 // Whether `text` is valid as a name: UTF-8 without zero bytes, 1 to kLongestName bytes.
 inline constexpr std::size_t kLongestName = 1000;
 bool is_name(std::string_view text);

@@ -12,8 +12,8 @@ namespace krok::gait {
 namespace {
 
 constexpr double kDegree = kRadiansPerDegree;
-constexpr double kMostChange = 15 * kDegree;  // steeper slopes change no more
-constexpr double kTilt = 0.5;                 // of the grade: of the line from hip to ankle
+constexpr double kMaxChange = 15 * kDegree;  // steeper slopes change no more
+constexpr double kTilt = 0.5;                // of the grade: of the line from hip to ankle
 // Per radian downhill: a knee of 20 degrees at 7.5 in mid-stance, of 11 on the level.
 constexpr double kLower = 0.18;
 constexpr double kLeanUp = 0.6, kLeanDown = 0.25;  // of the grade
@@ -39,7 +39,7 @@ double duration_at(double grade) {
 SlopeGait slope_gait(double grade, double sole) {
   SlopeGait gait;
   const double tread = smoother_step((std::abs(grade - sole) - kTread) / kSureTread);
-  const double slope = (1 - tread) * std::clamp(grade, -kMostChange, kMostChange);
+  const double slope = (1 - tread) * std::clamp(grade, -kMaxChange, kMaxChange);
   gait.duration = duration_at(slope);
   gait.length = std::min(gait.duration, 1.0);
   gait.ahead = -std::tan(kTilt * slope);

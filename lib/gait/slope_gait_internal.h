@@ -18,6 +18,8 @@
 //   15, 2002): on stairs the forefoot strikes first, up and down, at every inclination.
 // - McIntosh, Beatty, Dwan, Vickers, "Gait dynamics on an inclined walkway" (Journal of
 //   Biomechanics 39, 2006): ankle dorsiflexion at the strike grows uphill, and stays downhill.
+// Of the last three only the directions are taken: how far the trunk leans and the forefoot points
+// is chosen here, and the pelvis is lowered so that the knee in mid-stance is Reznick's.
 
 namespace krok::gait {
 

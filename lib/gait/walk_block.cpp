@@ -24,7 +24,7 @@ constexpr double kMiddle = 0.4;   // of the single support: the foot is flat
 constexpr double kHeelRise = 0.4;
 constexpr double kMoreRoll = 25 * kRadiansPerDegree;  // more than in the blend
 constexpr double kMaxPitch = 75 * kRadiansPerDegree;  // of a foot on its ball
-constexpr double kLeastShare = 0.45;  // of the roll, below which the pelvis gives way
+constexpr double kMinShare = 0.45;  // of the roll, below which the pelvis gives way
 constexpr int kRollSteps = 16;
 constexpr double kHeelDown = 0.5;  // of the time to the middle: after a forefoot strike
 
@@ -215,7 +215,7 @@ void WalkBlock::roll_over_ball(std::size_t print) {
     for (std::size_t i = 0; i < frames.blend.size(); ++i) {
       const double time = parts_.time_of(frames.first + static_cast<int>(i));
       const double share = smoother_step((time - from) / (stance.off - from));
-      if (share < kLeastShare || time > stance.off) continue;
+      if (share < kMinShare || time > stance.off) continue;
       const FootPose& blend = frames.blend[i][side];
       const Vec3& hip = frames.hips[i][side];
       const double longest = longest_reach(leg, (hip - blend.foot.position).norm());

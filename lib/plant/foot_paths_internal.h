@@ -13,7 +13,7 @@
 namespace krok::plant {
 
 // Drift of standing heels and balls, in leg lengths, up to which they need no correction.
-inline constexpr double kStands = 0.0004;
+inline constexpr double kMaxDrift = 0.0004;
 
 // One leg's points over the frames, as captured, and the stays that fix them.
 struct Footing {

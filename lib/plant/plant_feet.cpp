@@ -202,7 +202,7 @@ class Planter {
     }
     planted.clip = clip_;
     note_stays(body_, captured, captured, planted);
-    if (planted.drift_before <= plant::kStands * body_.leg_length) return planted;
+    if (planted.drift_before <= plant::kMaxDrift * body_.leg_length) return planted;
     auto footings = captured;
     const double pelvis_jitter = plant::pelvis_jitter(body_, clip_);
     // Twice: places are known better once the body is steady.
@@ -289,13 +289,13 @@ Result<Pass> plant_once(const Clip& clip, const RoleMap& roles,
   const auto found = find_contacts(clip, roles);
   if (!found) return found.error();
   const Planter planter(clip, roles, *body, contacts);
-  const double stands = plant::kStands * body->leg_length;
+  const double max_drift = plant::kMaxDrift * body->leg_length;
   std::vector<Stay> more;
   auto planted = planter.plant(*found, more);
   for (int round = 1; !contacts && planted && round < kRounds; ++round) {
     const auto shown = find_contacts(planted->clip, roles);
     if (!shown) return shown.error();
-    if (planter.drift_in(planted->clip, *shown) <= stands) break;
+    if (planter.drift_in(planted->clip, *shown) <= max_drift) break;
     more.insert(more.end(), shown->stays.begin(), shown->stays.end());
     planted = planter.plant(*found, more);
   }
@@ -305,7 +305,7 @@ Result<Pass> plant_once(const Clip& clip, const RoleMap& roles,
       planted->warnings.push_back(std::move(warning));
     }
   }
-  const bool unchanged = planted->drift_before <= stands;
+  const bool unchanged = planted->drift_before <= max_drift;
   return Pass{*std::move(planted), unchanged};
 }
 

@@ -62,10 +62,11 @@ struct PlantedFeet {
 // the rest of a stay that was found, by 0.012 of the leg and three deviations of its jitter, are of
 // a step: a heel that rises is not pressed down.
 //
-// Planting twice is planting once, with the same contacts and with contacts found anew: the passes
-// go on, 8 at most, until one finds no heel and no ball that moves by more than 0.0004 of the leg
-// while it stands. Of a stay that was found and in which a point is that still for half of the time
-// or more, the rest is of steps. A clip in which nothing is to correct is returned as it is.
+// Planting twice is planting once, with the same contacts and with contacts detected again: the
+// passes go on, 8 at most, until one finds no heel and no ball that moves by more than 0.0004 of
+// the leg while it stands. Of a stay that was found and in which a point is that still for half of
+// the time or more, the rest is of steps. A clip in which nothing is to correct is returned as it
+// is.
 //
 // Everything outside the legs keeps its orientation, and its position relative to the hips; joints
 // above the hips do not move. Bones keep their lengths. Root and reference pose do not matter.

@@ -230,7 +230,7 @@ class StayFixer {
     std::vector<Part> parts;
     int still = 0;
     for (int from = stay.first, to = from; from <= stay.last; from = ++to) {
-      while (to < stay.last && drift_of(track, from, to + 1) <= kStands * body_.leg_length) ++to;
+      while (to < stay.last && drift_of(track, from, to + 1) <= kMaxDrift * body_.leg_length) ++to;
       if (to == from) continue;
       parts.emplace_back(from, to);
       still += to - from + 1;

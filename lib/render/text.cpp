@@ -15,22 +15,6 @@ namespace krok::render {
 
 namespace {
 
-// Decodes UTF-8 into characters.
-std::vector<char32_t> characters(const std::string& text) {
-  std::vector<char32_t> result;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto first = static_cast<unsigned char>(text[i]);
-    const std::size_t length = first < 0x80 ? 1 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : 4;
-    char32_t character = length == 1 ? first : first & (0xFFU >> (length + 1));
-    for (std::size_t k = 1; k < length; ++k) {
-      character = character << 6 | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
-    }
-    result.push_back(character);
-    i += length;
-  }
-  return result;
-}
-
 constexpr char32_t kEllipsis = 0x2026;
 constexpr double kMaxTextCoordinate = 1e6;  // pixels
 constexpr double kFixed = 64.0;             // FreeType uses 26.6 fixed point
@@ -60,7 +44,7 @@ struct TextPainter::Face {
     return FT_Load_Char(face, character, how) == 0;
   }
 
-  double width(const std::vector<char32_t>& text) const {
+  double width(const std::u32string& text) const {
     double sum = 0;
     for (const char32_t character : text) {
       if (load(character, false)) sum += static_cast<double>(face->glyph->linearHoriAdvance);
@@ -88,14 +72,14 @@ Result<TextPainter> TextPainter::create() {
 
 double TextPainter::width(std::string_view text, double size) {
   face_->set_size(size);
-  return face_->width(characters(to_utf8(text)));
+  return face_->width(code_points(to_utf8(text)));
 }
 
 void TextPainter::draw(Image& image, const Vec2& place, std::string_view text, double size,
                        Colour colour, Align align) {
   if (!(place.cwiseAbs().maxCoeff() < kMaxTextCoordinate)) return;
   face_->set_size(size);
-  const auto letters = characters(to_utf8(text));
+  const auto letters = code_points(to_utf8(text));
   double x = place.x();
   if (align != Align::left) x -= face_->width(letters) * (align == Align::centre ? 0.5 : 1.0);
   const double line = std::round(place.y());
@@ -124,7 +108,7 @@ void TextPainter::draw(Image& image, const Vec2& place, std::string_view text, d
 std::string TextPainter::fitted(std::string_view text, double size, double most) {
   const std::string whole = to_utf8(text);
   face_->set_size(size);
-  auto letters = characters(whole);
+  auto letters = code_points(whole);
   if (face_->width(letters) <= most) return whole;
   while (!letters.empty()) {
     letters.back() = kEllipsis;
@@ -132,15 +116,9 @@ std::string TextPainter::fitted(std::string_view text, double size, double most)
     letters.pop_back();
   }
   if (letters.empty()) return {};
-  // The number of bytes that remain: those before character number size - 1.
-  std::size_t bytes = 0;
-  for (std::size_t kept = 0; kept + 1 < letters.size(); ++kept) {
-    ++bytes;
-    while (bytes < whole.size() && (static_cast<unsigned char>(whole[bytes]) & 0xC0U) == 0x80U) {
-      ++bytes;
-    }
-  }
-  return whole.substr(0, bytes) + "\u2026";
+  std::string result;
+  for (const char32_t letter : letters) append_utf8(letter, result);
+  return result;
 }
 
 }  // namespace krok::render

@@ -373,7 +373,14 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     if (error.hint.empty()) error.hint = fmt::format("see {} --help", tool_);
     return error;
   }
-  if (form_ == Form::single && default_output_ && output.empty()) output = default_output_();
+  if (form_ == Form::single && default_output_ && output.empty()) {
+    output = default_output_();
+    std::error_code unknown;
+    if (!output.empty() && std::filesystem::exists(output, unknown)) {
+      return usage(fmt::format("no output given, and {} exists already", shown(output)),
+                   "-o OUTPUT names another, or replaces it");
+    }
+  }
   if (form_ == Form::single && needs_output_ && output.empty()) return no_output();
   if (Status status = open_folders(); !status) return status.error();
   // Those of a list stand in part on its lines.

@@ -17,7 +17,7 @@ namespace {
 
 // Warnings with one code that are shown and kept in a result: a file with tens of thousands of
 // joints can have one for each.
-constexpr int kMostAlike = 20;
+constexpr int kMaxAlike = 20;
 
 }  // namespace
 
@@ -36,10 +36,10 @@ void ToolContext::diagnose(Diagnostic diagnostic) {
                      (!quiet && (verbose || diagnostic.severity != Severity::note));
   const bool counts = !verbose && diagnostic.severity != Severity::error;
   const int alike = shown && counts ? ++alike_[diagnostic.code] : 1;
-  if (shown && alike <= kMostAlike) {
+  if (shown && alike <= kMaxAlike) {
     put_message(message_of(report.tool, diagnostic), counts ? diagnostic.code : "");
   }
-  if (shown && alike == kMostAlike + 1) {
+  if (shown && alike == kMaxAlike + 1) {
     put_message(fmt::format("  more of these warnings are not shown; -v and --json have all [{}]\n",
                             diagnostic.code),
                 diagnostic.code);
@@ -146,7 +146,7 @@ Provenance ToolContext::provenance() const {
   }
   std::map<std::string, int> alike;
   for (const Diagnostic& issue : report.issues) {
-    if (issue.severity == Severity::warning && ++alike[issue.code] <= kMostAlike) {
+    if (issue.severity == Severity::warning && ++alike[issue.code] <= kMaxAlike) {
       provenance.warnings.push_back(to_utf8(fmt::format("{} [{}]", issue.message, issue.code)));
     }
   }

@@ -157,7 +157,8 @@ struct ToolSpec {
   bool needs_output = true;                 // -o is required
   std::optional<registry::Kind> writes;     // what -o is, if it is always the same
   std::vector<std::string> output_endings;  // that -o may have, of what is no Kind; none: any
-  // Where the output goes without -o, after the options are parsed: "" for nowhere. May be empty.
+  // Where the output goes without -o, after the options are parsed: "" for nowhere. No file there
+  // is replaced. May be empty.
   std::function<std::string()> default_output;
   std::optional<Batch> batch;
   // In a list of inputs, and without a Batch, a folder stands for all its files with one of these

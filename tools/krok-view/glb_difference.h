@@ -9,7 +9,8 @@
 namespace krok::cli::view {
 
 // How far the vertices of `file` are from those of `other`, in the animations that both play first,
-// as krok-diff compares them. None if they have no vertices to compare.
+// as krok-diff compares them. None if they have no vertices to compare, or
+// too many times.
 Result<std::optional<draw::ViewedDifference>> difference_of(const Files::Glb& other,
                                                             const Files::Glb& file,
                                                             ToolContext& context);

@@ -36,7 +36,7 @@ TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   EXPECT_LT(measures.height, 0.001);
   EXPECT_LT(measures.stretch, 5e-6);
   EXPECT_EQ(feet->out_of_reach, 0);
-  // Twice is once, with the same contacts and with contacts found anew.
+  // Twice is once, with the same contacts and with contacts detected again.
   const auto again = plant_feet(feet->clip, roles);
   ASSERT_TRUE(again.ok());
   EXPECT_LT(test::apart(feet->clip, again->clip), 0.00005);

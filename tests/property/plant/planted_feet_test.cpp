@@ -105,8 +105,8 @@ TEST(PlantedFeet, WhoStandsStaysAsHeIs) {
   }
 }
 
-// A second pass finds nothing to correct, with the same contacts and with contacts found anew. If
-// this fails, a motion changes whenever a pipeline runs over its own results.
+// A second pass finds nothing to correct, with the same contacts and with contacts detected again.
+// If this fails, a motion changes whenever a pipeline runs over its own results.
 TEST(PlantedFeet, PlantedTwiceIsPlantedOnce) {
   for (unsigned seed = 0; seed < kWalks; ++seed) {
     const Clip walk = sliding_walk(seed);
@@ -114,8 +114,8 @@ TEST(PlantedFeet, PlantedTwiceIsPlantedOnce) {
     ASSERT_TRUE(found.ok());
     const Clip once = planted(walk, found->contacts).clip;
     EXPECT_LT(test::apart(once, planted(once, found->contacts).clip), kTwice) << seed;
-    const Clip anew = planted(walk).clip;
-    EXPECT_LT(test::apart(anew, planted(anew).clip), kTwice) << seed;
+    const Clip detected = planted(walk).clip;
+    EXPECT_LT(test::apart(detected, planted(detected).clip), kTwice) << seed;
   }
 }
 

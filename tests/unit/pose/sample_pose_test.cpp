@@ -120,11 +120,11 @@ TEST(SamplePose, LagsBehindSlerpNoMoreThanSaid) {
 
 TEST(SamplePose, HoldsTheEndsAndTakesNoNumberForTheBeginning) {
   const PackedClip packed = pack_clip(test::random_clip(5, 4, 3u));
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  for (const double time : {-1.0, -kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
+  constexpr double endless = std::numeric_limits<double>::infinity();
+  for (const double time : {-1.0, -endless, std::numeric_limits<double>::quiet_NaN()}) {
     EXPECT_TRUE(test::same_bits(sampled(packed, time), packed.frame(0))) << time;
   }
-  for (const double time : {0.2, 7.0, kInfinity}) {
+  for (const double time : {0.2, 7.0, endless}) {
     EXPECT_TRUE(test::same_bits(sampled(packed, time), packed.frame(3))) << time;
   }
 }

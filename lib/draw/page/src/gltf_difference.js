@@ -50,9 +50,9 @@ export class GltfDifference extends ComparedPair {
       mesh.material = painted;
       mesh.geometry.setAttribute('color', new BufferAttribute(new Float32Array(3 * countOf(mesh)), 3));
     }
-    const told = one.item.difference;
-    if (told && told.from === other.item.name && told.animation === one.animation && told.other_animation === other.animation) {
-      this.take(told);
+    const measured = one.item.difference;
+    if (measured?.from === other.item.name && measured.animation === one.animation && measured.other_animation === other.animation) {
+      this.take(measured);
       return;
     }
     const vertices = this.pairs.reduce((sum, { mesh }) => sum + countOf(mesh), 0);

@@ -1,0 +1,236 @@
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/npy/array_motion_internal.h"
+#include "math/quaternion.h"
+
+// Positions of joints, alone or with rotations.
+
+namespace krok::npy {
+
+namespace {
+
+constexpr const char* kSkeletonHint = "say what its joints are: --skeleton NAME or NAME.json";
+
+// Fills values that are not finite from the frames before and after; false if a column has none.
+bool fill_gaps(std::vector<double>& values, std::size_t frames) {
+  const std::size_t columns = values.size() / frames;
+  for (std::size_t c = 0; c < columns; ++c) {
+    std::size_t before = frames;
+    for (std::size_t f = 0; f < frames; ++f) {
+      if (!std::isfinite(values[f * columns + c])) continue;
+      const std::size_t first = before == frames ? 0 : before + 1;
+      for (std::size_t g = first; g < f; ++g) {
+        const double from = values[(before == frames ? f : before) * columns + c];
+        const double share = before == frames ? 1 : double(g - before) / double(f - before);
+        values[g * columns + c] = from + share * (values[f * columns + c] - from);
+      }
+      before = f;
+    }
+    if (before == frames) return false;
+    for (std::size_t g = before + 1; g < frames; ++g) {
+      values[g * columns + c] = values[before * columns + c];
+    }
+  }
+  return true;
+}
+
+// How to bring an array into order, if an axis has three elements.
+std::string advice_on_axes(std::span<const std::size_t> shape) {
+  const auto three = std::ranges::find(shape, 3U);
+  if (shape.size() == 2 && shape[1] % 3 == 0) {
+    return fmt::format("x, y, z of {} joints in a row? then a.reshape(-1, {}, 3)", shape[1] / 3,
+                       shape[1] / 3);
+  }
+  if (three == shape.end()) return "save the array with the axes frames, joints, x y z";
+  const std::ptrdiff_t axis = three - shape.begin();
+  if (shape.size() == 4 && axis == 2) {
+    return "motions, joints, x y z, frames? then a.transpose(0, 3, 1, 2)";
+  }
+  return fmt::format("axis {} has three elements: numpy.moveaxis(a, {}, -1) makes it the last",
+                     axis, axis);
+}
+
+}  // namespace
+
+Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string& name) {
+  auto array = file.arrays.read(name);
+  if (!array) return array.error();
+  ArrayMotion motion;
+  motion.upright = true;
+  std::vector<std::size_t>& shape = array->shape;
+  const std::string text = shape_text(shape);
+  const std::string what = name.empty() ? "the array" : name;
+  if (!array->is_number() || shape.size() < 3 || shape.size() > 4 || shape.back() != 3) {
+    return Error("npy-shape",
+                 fmt::format("{} has the shape {}; (frames, joints, 3) is needed, or (motions, "
+                             "frames, joints, 3)",
+                             what, text),
+                 advice_on_axes(shape));
+  }
+  if (array->data.empty()) return Error("npy-shape", fmt::format("{} has no frames", what));
+  const std::size_t columns = shape[shape.size() - 2], frames = shape[shape.size() - 3];
+  auto arranged = skeleton_for(file, columns, motion.usual_rate, motion.diagnostics);
+  if (!arranged) {
+    if (!skeleton_of_columns(frames).empty()) {
+      arranged.error().hint =
+          fmt::format("joints before frames? numpy.swapaxes(a, {}, {}) exchanges them",
+                      shape.size() - 3, shape.size() - 2);
+    }
+    arranged.error().message += fmt::format("; the shape is {}", text);
+    return arranged.error();
+  }
+  std::vector<double> values = array->numbers();
+  if (shape.size() == 4) {
+    motion.motions = shape[0];
+    const int wanted = file.options.motion.value_or(0);
+    if (wanted < 0 || at(wanted) >= motion.motions) {
+      return Error("npy-shape", fmt::format("there is no motion {} among {}", wanted, shape[0]),
+                   "motions are counted from 0");
+    }
+    if (motion.motions > 1 && !file.options.motion) {
+      motion.diagnostics.push_back(make_warning(
+          "npy-motion", fmt::format("the file holds {} motions, the first is used", shape[0]),
+          "krok-import --clip NUMBER takes another, --clip all writes all"));
+    }
+    const std::size_t size = frames * columns * 3;
+    values.erase(values.begin() + static_cast<std::ptrdiff_t>((at(wanted) + 1) * size),
+                 values.end());
+    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at(wanted) * size));
+  }
+  const auto wrong = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
+  if (wrong != values.end()) {
+    const auto place = static_cast<std::size_t>(wrong - values.begin());
+    Error error("npy-value", fmt::format("{} has {} for a coordinate", what, *wrong),
+                "--repair fills gaps from the frames before and after");
+    error.frame = static_cast<std::int64_t>(place / (3 * columns));
+    for (std::size_t j = 0; j < arranged->columns.size(); ++j) {
+      if (arranged->columns[j] == std::vector{static_cast<int>(place / 3 % columns)}) {
+        error.joint = arranged->skeleton.names[j];
+      }
+    }
+    const bool filled = file.options.strictness == Strictness::repair && fill_gaps(values, frames);
+    if (!filled) return error;
+    error.severity = Severity::warning;
+    error.code = "npy-repair";
+    error.message += "; gaps are filled from the frames before and after";
+    error.hint.clear();
+    motion.diagnostics.push_back(error);
+  }
+  std::vector<Vec3> places(frames * columns);
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3(&values[3 * i]);
+  motion.positions = places_of(*arranged, places, columns);
+  motion.skeleton = std::move(arranged->skeleton);
+  motion.roles = std::move(arranged->roles);
+  motion.columns = std::move(arranged->columns);
+  return motion;
+}
+
+Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string& positions,
+                                        const std::string& rotations, bool global) {
+  auto motion = motion_of_positions(file, positions);
+  if (!motion) return motion;
+  const std::size_t joints = motion->skeleton.names.size();
+  const std::size_t frames = motion->positions.size() / joints;
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (motion->columns[j].size() == 1) continue;
+    return Error("npy-skeleton",
+                 fmt::format("{} is the mean of several joints, so that {} has no rotation of it",
+                             motion->skeleton.names[j], rotations),
+                 kSkeletonHint);
+  }
+  std::vector<std::size_t> shape = {frames, joints, 3, 3};
+  const auto values = file.numbers(rotations, shape);
+  if (!values) return values.error();
+  motion->orientations.resize(frames * joints);
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const std::size_t column = at(motion->columns[j][0]);
+      const Mat3 matrix = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(
+          &(*values)[9 * (f * joints + column)]);
+      if (!(matrix * matrix.transpose()).isIdentity(0.02) || !(matrix.determinant() > 0)) {
+        Error error("npy-rotation", fmt::format("{} has a matrix that is no rotation", rotations),
+                    "save rotation matrices, each with its rows and columns");
+        error.joint = motion->skeleton.names[j];
+        error.frame = static_cast<std::int64_t>(f);
+        return error;
+      }
+      Quat turn = Quat(matrix).normalized();
+      const int parent = motion->skeleton.parents[j];
+      if (!global && parent >= 0) turn = motion->orientations[f * joints + at(parent)] * turn;
+      motion->orientations[f * joints + j] = turn.normalized();
+    }
+  }
+  motion->upright = false;
+  // Bones as the rotations have them: the mean in their parents' frames.
+  double worst = 0;
+  for (std::size_t j = 1; j < joints; ++j) {
+    const std::size_t parent = at(motion->skeleton.parents[j]);
+    const auto offset = [&](std::size_t f) -> Vec3 {
+      return motion->orientations[f * joints + parent].conjugate() *
+             (motion->positions[f * joints + j] - motion->positions[f * joints + parent]);
+    };
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t f = 0; f < frames; ++f) mean += offset(f) / static_cast<double>(frames);
+    for (std::size_t f = 0; f < frames; ++f) {
+      worst = std::max(worst, (offset(f) - mean).norm() / std::max(mean.norm(), 1e-3));
+    }
+    motion->skeleton.reference[j].position = motion->skeleton.reference[parent].position + mean;
+  }
+  if (worst > 0.05) {
+    motion->diagnostics.push_back(make_warning(
+        "npy-rotation",
+        fmt::format("the positions do not follow the rotations in {}: a bone moves by {}% of its "
+                    "length in the frame of its parent",
+                    rotations, readable(100 * worst, 3)),
+        "are they of other axes, or of other frames?"));
+  }
+  return motion;
+}
+
+Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns,
+                                      double& usual_rate, Diagnostics& diagnostics) {
+  const auto other_number = [&](int expected) {
+    return Error("npy-skeleton",
+                 fmt::format("there are {} joints, {} has {}", columns,
+                             shown(file.options.columns_name), expected),
+                 kSkeletonHint);
+  };
+  if (file.options.skeleton) {
+    ArrangedSkeleton arranged;
+    arranged.skeleton = *file.options.skeleton;
+    const int joints = arranged.skeleton.joint_count();
+    if (at(joints) != columns) return other_number(joints);
+    arranged.roles = find_roles(arranged.skeleton);
+    for (int j = 0; j < joints; ++j) arranged.columns.push_back({j});
+    return arranged;
+  }
+  std::optional<PositionSkeleton> skeleton = file.options.columns;
+  if (!skeleton) {
+    const std::string_view name = skeleton_of_columns(columns);
+    if (name.empty()) {
+      return Error("npy-skeleton",
+                   fmt::format("there are {} joints, of no skeleton that is known "
+                               "by its number",
+                               columns),
+                   kSkeletonHint);
+    }
+    skeleton = named_skeleton(name);
+    if (file.find({"global_rot_mats", "local_rot_mats"}).empty()) {
+      diagnostics.push_back(make_warning(
+          "npy-skeleton", fmt::format("{} joints are taken for {}", columns, name), kSkeletonHint));
+      diagnostics.back().where.file = file.name;
+    }
+  }
+  if (at(skeleton->columns()) != columns) return other_number(skeleton->columns());
+  usual_rate = skeleton->rate;
+  return arrange(*skeleton);
+}
+
+}  // namespace krok::npy
