@@ -128,7 +128,8 @@ std::optional<std::string> find_program(const std::string& name) {
   for (;;) {
     const std::size_t end = std::min(left.find(':'), left.size());
     const std::string folder(left.substr(0, end));
-    const std::string path = folder + "/" + name;
+    std::string path = folder;
+    path.append("/").append(name);
     struct stat status {};
     if (!folder.empty() && stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
         access(path.c_str(), X_OK) == 0) {

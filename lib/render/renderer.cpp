@@ -266,8 +266,8 @@ class ViewPainter {
     Light sum = Light::Zero();
     bool changed = open < 1;
     for (int sample = 0; sample < kSamples; ++sample) {
-      const Vec2 place(x + (sample % kAcross + 0.5) / kAcross,
-                       y + (sample / kAcross + 0.5) / kAcross);
+      const int row = sample / kAcross, column = sample % kAcross;
+      const Vec2 place(x + (column + 0.5) / kAcross, y + (row + 0.5) / kAcross);
       all.clear();
       look(place, sample, tile, all);
       changed = changed || !all.empty();

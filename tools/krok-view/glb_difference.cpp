@@ -19,8 +19,8 @@ Result<Scene> scene_of_glb(const Files::Glb& glb) {
   if (!made) return std::move(made).error().in_file(glb.path);
   if (made->animations.empty()) return made;
   const int shown = glb.animation;
-  Scene::Animation animation = made->animations[static_cast<std::size_t>(shown)];
-  made->animations.assign(1, std::move(animation));
+  const Scene::Animation animation = made->animations[static_cast<std::size_t>(shown)];
+  made->animations.assign(1, animation);
   made->evaluate = [inner = std::move(made->evaluate), shown](int chosen, double time,
                                                               SceneState& state) {
     inner(chosen < 0 ? chosen : shown, time, state);
