@@ -157,7 +157,10 @@ void declare(CommandOptions& command, Options& o) {
   command.add_flag("--log-y", o.log_y,
                    "Logarithmic y axis; for motions, of speeds and differences");
   command.add_option("--title WORDS", o.title, "Title; default: the name of the input");
-  command.add("--columns", o.columns, whole(1, 20), "Number of panels per row; default: 2");
+  command.add(
+      "--columns", o.columns, whole(1, 20),
+      "Number of panels per row; default: 2. With --sheet: of motions side by side; default: 1 for "
+      "up to 12, then as many as keep the sheet about as high as wide");
   command.add("--panel WIDTHxHEIGHT", o.panel,
               ValueKind<std::array<double, 2>>{"pixels", "WIDTHxHEIGHT", parse_panel, {}},
               "Size of each panel in pixels, at 96 dpi [340x170, a single one 640x260]");

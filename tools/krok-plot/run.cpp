@@ -122,6 +122,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   std::vector<std::string> done;
   if (images) {
     SheetOptions sheet = options.sheet;
+    sheet.columns = options.columns;
+    sheet.size_given = options.given("--actor-size");
     sheet.from = options.motion.from;
     sheet.to = options.motion.to;
     sheet.ground = options.motion.ground;
