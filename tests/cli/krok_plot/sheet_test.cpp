@@ -277,8 +277,8 @@ TEST_F(KrokPlotSheet, ManyMotionsAreAGridOfASizeThatFits) {
   ASSERT_EQ(plot(inputs).exit_code, 0);
   const json cells = report()["sheet"]["cells"];
   ASSERT_EQ(cells.size(), 60U);
-  EXPECT_EQ(cells[0]["top"], cells[11]["top"]);
-  EXPECT_LT(cells[0]["top"], cells[12]["top"]);
+  EXPECT_EQ(cells[0]["box"][1], cells[11]["box"][1]);
+  EXPECT_LT(cells[0]["box"][1], cells[12]["box"][1]);
 }
 
 }  // namespace
