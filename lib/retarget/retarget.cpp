@@ -202,7 +202,8 @@ class Transfer {
     plan_.touches.emplace(source_, from, to, report_.scale, source_floor_.motion,
                           leg_length(source_.skeleton, source_roles_), stands,
                           options_.feet == Feet::keep);
-    plan_.touches->report_feet(contacts, from, to, source_floor_, target_floor_, source_.rate);
+    plan_.touches->report_feet(contacts, from, to, source_floor_, target_floor_, source_.rate,
+                               stands);
   }
 
   // How much both feet stand, [2][frames], empty where a leg is missing.

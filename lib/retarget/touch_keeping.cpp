@@ -408,7 +408,8 @@ void TouchKeeping::place_arms(int frame, std::span<const Transform> source_pose,
 
 void TouchKeeping::report_feet(std::span<const Contact> contacts, const Actor& source,
                                const Actor& target, const Floor& source_floor,
-                               const Floor& target_floor, double rate) {
+                               const Floor& target_floor, double rate,
+                               std::span<const std::vector<double>> standing) {
   for (const Contact& contact : contacts) {
     const Role role = source.roles.roles[at(contact.joint)];
     for (const bool is_left : {true, false}) {
@@ -427,6 +428,10 @@ void TouchKeeping::report_feet(std::span<const Contact> contacts, const Actor& s
                     static_cast<int>(std::floor(contact.end * rate + 1e-6))};
       entry.rise =
           height(target, onto, target_floor) - scale_ * height(source, contact.joint, source_floor);
+      // A foot that lies on the ground, as in kneeling, is found on its own.
+      const std::vector<double>& stands = standing[is_left ? 0 : 1];
+      const int middle = (entry.stay.first + entry.stay.last) / 2;
+      if (!stands.empty() && stands[at(middle)] < 0.5) continue;
       if (entry.stay.last > entry.stay.first) standing_.push_back(std::move(entry));
     }
   }

@@ -89,9 +89,10 @@ class TouchKeeping {
                   std::span<const Transform> local, std::span<Transform> pose) const;
 
   // Adds contacts of feet that stand, kept elsewhere, to what is reported. Heights are those above
-  // the actors' floors.
+  // the actors' floors, `standing` as above.
   void report_feet(std::span<const Contact> contacts, const Actor& source, const Actor& target,
-                   const Floor& source_floor, const Floor& target_floor, double rate);
+                   const Floor& source_floor, const Floor& target_floor, double rate,
+                   std::span<const std::vector<double>> standing);
 
   // Every stay, as it is in `result`.
   std::vector<ContactReport> report(const Clip& source, const Clip& result) const;
