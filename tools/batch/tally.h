@@ -29,8 +29,8 @@ class BatchTally {
 
   void add(FileState state, const std::string& name, bool warned);
 
-  // Whether a file's message is printed: of warnings or errors with one code, those of the first few
-  // files.
+  // Whether a file's message is printed: of warnings or errors with one code, those of the first
+  // few files.
   bool is_shown(const std::string& code, const std::string& name);
   // Lines that name the codes whose messages were not all printed, and in how many files.
   std::string more_messages() const;

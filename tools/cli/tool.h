@@ -71,8 +71,8 @@ class ToolContext : public io::Inputs {
   Json result_options = Json::object();
 
   // Prints a diagnostic on standard error (notes only with -v, only errors with -q, without -v at
-  // most 20 warnings or errors with one code), prefixed with the tool's name if it has no file, and adds it
-  // to the report.
+  // most 20 warnings or errors with one code), prefixed with the tool's name if it has no file, and
+  // adds it to the report.
   void diagnose(Diagnostic diagnostic) override;
   using io::Inputs::diagnose;
   void warn(std::string code, std::string message, std::string hint = {});
