@@ -65,9 +65,7 @@ class SheetPainter {
   }
 
   void paint_row(const SheetRow& row, const RowLayout& place) {
-    const double left = kMargin + kGutter;
-    const double right =
-        left + static_cast<double>(row.cells.size()) * static_cast<double>(layout_.cell_width);
+    const double left = place.left, right = place.right;
     fill(image_, {{left, place.top}, {right, place.bottom}}, kPanel);
     if (row.elevation > kRaised) return;
     const double step = layout_.height_step;
@@ -111,8 +109,9 @@ class SheetPainter {
 
   void paint_header(const SheetRow& row, const RowLayout& place) {
     const double line = place.header + 16;
-    const double right = layout_.width - kMargin;
-    double x = kMargin + kGutter;
+    // A title alone may be wider than its cells.
+    const double right = sheet_.columns == 1 ? layout_.width - kMargin : place.right;
+    double x = place.left;
     const std::string title = text_.fitted(row.title, kTitleSize, right - x);
     text_.draw(image_, {x, line}, title, kTitleSize, kInk);
     x += text_.width(title, kTitleSize) + (title.empty() ? 0 : 10);
@@ -201,6 +200,12 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
       }
     }
   }
+  for (const Actor* actor : actors) {
+    if (Status status = check(*actor); !status) return status.error();
+  }
+  // Before the work, so that a sheet that is too large costs little.
+  auto layout = lay_out(sheet, options);
+  if (!layout) return layout.error();
   const auto tracer = Tracer::create();
   if (!tracer) return tracer.error();
   std::vector<TracedActor> traced;
@@ -210,8 +215,6 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
     if (!ready) return ready.error();
     traced.push_back(std::move(*ready));
   }
-  auto layout = lay_out(sheet, options);
-  if (!layout) return layout.error();
   auto text = TextPainter::create();
   if (!text) return text.error();
 

@@ -53,6 +53,7 @@ struct SheetRow {
 
 struct Sheet {
   std::vector<SheetRow> rows;
+  int columns = 1;               // rows side by side, at least 1; filled from left to right
   std::optional<ColourKey> key;  // shown below
 };
 

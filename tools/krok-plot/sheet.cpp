@@ -179,15 +179,29 @@ Status write(const render::Sheet& sheet, const render::SheetOptions& options,
   return {};
 }
 
+constexpr int kSmallest = 64;  // pixels: of actors on a sheet of many
+
+// Rows side by side: one until a sheet of them would be a long ribbon.
+int usual_columns(std::size_t rows) {
+  constexpr double kFew = 12;
+  return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(rows) / kFew)));
+}
+
 Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
                   const SheetOptions& options, const SheetGround& ground, Results& results) {
   const auto all = show_all(actors, options, ground, kSheetMoments, results.context.jobs);
   if (!all) return all.error();
+  render::Sheet sheet = contact_sheet(*all, sides, options);
+  sheet.columns = options.columns.value_or(usual_columns(sheet.rows.size()));
   render::SheetOptions how;
-  how.row_height = options.image.size;
-  how.cell_width = 2 * options.image.size;
   how.jobs = results.context.jobs;
-  return write(contact_sheet(*all, sides, options), how, options.sheet, *all, results, "sheet");
+  for (int size = options.image.size;; size = size * 4 / 5) {
+    how.row_height = size;
+    how.cell_width = 2 * size;
+    Status status = write(sheet, how, options.sheet, *all, results, "sheet");
+    const bool too_large = !status && status.error().code == "sheet-size";
+    if (!too_large || options.size_given || size < kSmallest) return status;
+  }
 }
 
 Status make_strip(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
