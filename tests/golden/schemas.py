@@ -39,9 +39,12 @@ def main():
             faults.append(f"{name}: no JSON Schema: {fault.message}")
             continue
         validator = Draft202012Validator(schema)
-        validators[schema["properties"]["schema"]["const"]] = validator
+        kind = schema["properties"]["schema"]["const"]
+        validators[kind] = validator
         page = path.parent / "SPEC.md"
-        examples = EXAMPLE.findall(page.read_text(encoding="utf-8"))
+        # A page may describe several formats.
+        examples = [example for example in EXAMPLE.findall(page.read_text(encoding="utf-8"))
+                    if json.loads(example).get("schema", kind) == kind]
         if not examples:
             faults.append(f"{page.relative_to(root)}: has no example")
         for number, example in enumerate(examples, 1):
