@@ -33,11 +33,12 @@ struct ChosenSampling {
   double keys_to = 0;
 };
 
-// Frames from the first key of the animation to the last, over all its channels, so that motion,
+// Frames from the first key of the animation, or from 0 if it is no more than two frames later, to
+// the last, over all its channels, so that motion,
 // camera and weights of one animation stay in sync. If the last key is between two frames, one more
 // frame holds it.
 //
-// The rate: as requested; or that of the keys, if they are evenly spaced at 20 fps or more, snapped
+// The rate: as requested; or that of the file, if all keys are on its frames; or that of the keys, if they are evenly spaced at 20 fps or more, snapped
 // to a common rate; or a common rate whose frames include all keys; or 60. With `source_rate` the
 // keys must be evenly spaced or on the frames of one rate, and those are taken as frames at
 // `source_rate`.

@@ -180,8 +180,10 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
   std::string text;
   if (a.material != nullptr && b.material != nullptr) {
     const double tolerance = comparison.options.tolerance.ratio;
-    auto found = differences(*a.material, *b.material, tolerance);
-    for (std::string& one : differences(a.material_parameters, b.material_parameters, tolerance)) {
+    const ImageDistance& images = comparison.options.images;
+    auto found = differences(*a.material, *b.material, tolerance, images);
+    for (std::string& one :
+         differences(a.material_parameters, b.material_parameters, tolerance, images)) {
       found.push_back(std::move(one));
     }
     const std::string &one = a.material->name, &other = b.material->name;
