@@ -108,7 +108,7 @@ Status add_morphs(Document& document, const Model& model,
     const MorphWeights* weights = clips[i].weights;
     if (weights == nullptr && i == 0) weights = options.weights;
     const auto& times = clips[i].tracks->times;
-    if (weights != nullptr) {
+    if (weights != nullptr && (!times.empty() || clips.size() == 1)) {
       Status status = add_weight_keys(document, meshes, *weights, clips[i].name, animation);
       if (!status) return status;
     }

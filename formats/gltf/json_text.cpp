@@ -340,7 +340,12 @@ void mark_fallbacks(const Json& json, std::vector<BufferEntry>& buffers) {
     const auto buffer = index->get<std::uint64_t>();
     if (buffer >= buffers.size()) continue;
     ++views[buffer];
-    packed[buffer] += meshopt_of(view) != nullptr ? 1 : 0;
+    const Json* const source = meshopt_of(view);
+    packed[buffer] += source != nullptr ? 1 : 0;
+    const Json from = source == nullptr ? Json() : source->value("buffer", Json());
+    if (from.is_number_unsigned() && from.get<std::uint64_t>() < buffers.size()) {
+      ++views[from.get<std::uint64_t>()];  // it has data
+    }
   }
   for (std::size_t i = 0; i < buffers.size(); ++i) {
     if (views[i] > 0 && views[i] == packed[i] && !buffers[i].has_uri) buffers[i].fallback = true;

@@ -21,7 +21,6 @@ constexpr std::array kCommonRates = {30.0,         24.0,         25.0,          
 constexpr double kMinRate = 20.0;  // below this, keys are too sparse to be frames
 constexpr double kUsualRate = 30.0;
 constexpr double kUnevenRate = 60.0;
-constexpr double kFirstFrames = 2.01;  // that hold the pose of a first key after 0
 constexpr double kLeastRate = 0.001, kMostRate = 100'000;  // of files, see check_frame_rate()
 constexpr double kMaxFrames = 1e7;
 
@@ -148,10 +147,6 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   }
   const FoundRate found = find_rate(times, animation.rate);
   Sampling& sampling = chosen.sampling;
-  // Many programs count frames from 1: up to there viewers show the first pose.
-  const bool from_zero = chosen.keys_from > 0 && found.on_keys &&
-                         chosen.keys_from * found.rate <= kFirstFrames;
-  if (from_zero && !options.source_rate) chosen.keys_from = 0;
   sampling.start = chosen.keys_from;
   sampling.rate = found.rate;
   chosen.rate = {readable(found.rate), found.reason, found.confidence};

@@ -33,8 +33,7 @@ struct ChosenSampling {
   double keys_to = 0;
 };
 
-// Frames from the first key of the animation, or from 0 if it is no more than two frames later, to
-// the last, over all its channels, so that motion,
+// Frames from the first key of the animation to the last, over all its channels, so that motion,
 // camera and weights of one animation stay in sync. If the last key is between two frames, one more
 // frame holds it.
 //

@@ -258,6 +258,7 @@ void match_scene_meshes(SceneComparison& comparison) {
                               ? match_meshes(comparison)
                               : match_lists(first, second, comparison.options.matching);
   say_partners_missing(comparison, match, first, second);
+  bool hint = false;
   for (const auto& [i, j] : match.pairs) {
     if (first.size() == second.size()) {
       const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(i)];
@@ -272,14 +273,14 @@ void match_scene_meshes(SceneComparison& comparison) {
     const std::size_t a = comparison.first.meshes[static_cast<std::size_t>(i)].vertex_count;
     const std::size_t b = comparison.second.meshes[static_cast<std::size_t>(j)].vertex_count;
     if (a != b) {
-      comparison.say(
-          fmt::format("{}: {} vertices in the first, {} in the second; --match nearest "
-                      "compares surfaces, whatever their vertices",
-                      label("mesh", first[static_cast<std::size_t>(i)], i), a, b));
+      comparison.say(fmt::format("{}: {} vertices in the first, {} in the second",
+                                 label("mesh", first[static_cast<std::size_t>(i)], i), a, b));
+      hint = true;
       continue;
     }
     comparison.meshes.emplace_back(i, j);
   }
+  if (hint) comparison.note("--match nearest compares surfaces, whatever their vertices");
 }
 
 }  // namespace krok::compare

@@ -91,9 +91,11 @@ void add_between(SceneComparison& comparison, const CommonTime& next) {
     comparison.moments.push_back(moment);
   };
   int parts = std::max(a.parts, b.parts);
-  const bool in_world = animation(comparison.first, last.first_animation).in_world !=
-                        animation(comparison.second, last.second_animation).in_world;
-  if (in_world && parts > 1 && !a.bends && !b.bends) {
+  // Of motions, which are interpolated in world space, it is unknown how another file had them.
+  const std::string& first = animation(comparison.first, last.first_animation).interpolation;
+  const std::string& second = animation(comparison.second, last.second_animation).interpolation;
+  const bool splines = (first + second).find("spline") != std::string::npos;
+  if (first.empty() != second.empty() && parts > 1 && !splines) {
     ++comparison.turning_gaps;
     parts = 1;
   }

@@ -65,6 +65,11 @@ void compare_targets(SceneComparison& comparison, std::pair<int, int> meshes,
     const auto target = displaced(comparison.first_placement, a, meshes.first, i, first_memory);
     const auto other = displaced(comparison.second_placement, b, meshes.second, j, second_memory);
     place.target = i;
+    const Matching matching = comparison.options.matching;
+    if (!is_bake_of(a, b) && matching != Matching::order) {
+      report_name(comparison, "morph target", a.targets[static_cast<std::size_t>(i)].name,
+                  b.targets[static_cast<std::size_t>(j)].name, true);
+    }
     add_distances(or_none(target.positions), or_none(other.positions), place,
                   comparison.result.target_positions);
     if (!target.normals.empty() || !other.normals.empty()) {

@@ -19,6 +19,7 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kSamples = 100'000;  // of a surface, for holes
 constexpr int kMaxDivisions = 64;          // of a triangle's edge, the same
+constexpr double kBackFace = -0.5;         // cosine of the angle to a face seen from behind
 constexpr double kSameArea = 1e-3;         // of it: less is rounding
 
 // The triangles of a material in a group of meshes, at the first time.
@@ -62,6 +63,15 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
     const SurfaceMatch* match = nullptr;
     Triangle corners{};
     double area = 0, gap = 0;
+    bool turned = false;  // its back is where the other shows its front
+  };
+  const auto front_of = [](const SurfaceMoments& scene, int mesh, const std::array<Vec3, 3>& t) {
+    return Vec3(winding_of(scene.states[0].windings, mesh) *
+                (t[1] - t[0]).cross(t[2] - t[0]).stableNormalized());
+  };
+  const auto cosine_to = [&](std::uint32_t index, const Vec3& normal) {
+    const Facet& facet = surfaces.tree.facet(index);
+    return front_of(surfaces.other, facet.mesh, facet.points).dot(normal);
   };
   std::vector<Sampled> triangles;
   for (const SurfaceMatch& match : matches) {
@@ -82,6 +92,9 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
       Sampled& one = triangles[t];
       const auto m = static_cast<std::size_t>(one.match->mesh);
       const Points& points = surfaces.own.states[0].positions[m];
+      const auto& [a, b, c] = one.corners;
+      const Vec3 normal =
+          front_of(surfaces.own, one.match->mesh, {points[a], points[b], points[c]});
       // What the corners are off counts elsewhere.
       double allowed = about;
       for (const std::uint32_t corner : one.corners) {
@@ -95,9 +108,17 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
         const Vec3 place = u * points[one.corners[0]] + v * points[one.corners[1]] +
                            (1 - u - v) * points[one.corners[2]];
         surfaces.tree.find(place, found);
+        bool backs = true;
         for (const FoundFacet& facet : found) {
           if (facet.distance > allowed) one.gap = std::max(one.gap, facet.distance);
+          backs = backs && cosine_to(facet.facet, normal) < kBackFace;
         }
+        if (!backs || one.turned || one.gap > 0) return;
+        // Others that are about as near may face this way, as the sides of a sheet do.
+        surfaces.tree.find(place, found, allowed);
+        one.turned = std::ranges::all_of(found, [&](const FoundFacet& facet) {
+          return cosine_to(facet.facet, normal) < kBackFace;
+        });
       };
       for (int i = 0; i < parts; ++i) {
         const double along = (i + 0.5) / parts;  // on the edges
@@ -111,6 +132,16 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
       }
     }
   });
+  const auto turned = std::ranges::find_if(triangles, &Sampled::turned);
+  if (turned != triangles.end()) {
+    const auto m = static_cast<std::size_t>(turned->match->mesh);
+    comparison.say(fmt::format(
+        "{}{}: {} wound the other way: the first at vertices {}, {}, {}",
+        turned->match->in_second ? "the second's " : "",
+        label("mesh", surfaces.own.meshes[m].name, turned->match->mesh),
+        counted(std::ranges::count_if(triangles, &Sampled::turned), "triangle is", "triangles are"),
+        turned->corners[0], turned->corners[1], turned->corners[2]));
+  }
   double missing = 0;
   std::size_t count = 0;
   const Sampled* worst = nullptr;

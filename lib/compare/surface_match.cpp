@@ -172,7 +172,16 @@ Reach reach_of(const SurfaceMoments& own, const std::vector<int>& meshes, const 
   return {near, std::min(std::max(near, largest), most)};
 }
 
-// For each vertex of a mesh, the nearest point of the other surface.
+// 1 for the vertices that show: those of triangles, or of a cloud of points all.
+std::vector<char> shown_vertices(const SceneMesh& mesh) {
+  std::vector<char> shown(mesh.vertex_count, mesh.triangles.empty() ? 1 : 0);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t corner : t) shown[corner] = 1;
+  }
+  return shown;
+}
+
+// For each vertex of a mesh that shows, the nearest point of the other surface.
 SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
   const FacetTree& tree = surfaces.tree;
   const Points& vertices = surfaces.own.states[0].positions[static_cast<std::size_t>(mesh)];
@@ -180,6 +189,8 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
   match.mesh = mesh;
   match.points.resize(vertices.size());
   match.fits.resize(vertices.size());
+  const std::vector<char> shown =
+      shown_vertices(surfaces.own.meshes[static_cast<std::size_t>(mesh)]);
   // Coincident vertices, as at seams or in a collapsed prop, share a search.
   const std::vector<std::uint32_t> order = by_place(vertices);
   parallel_for(order.size(), 1024, jobs, [&](std::size_t begin, std::size_t end) {
@@ -187,7 +198,8 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
     std::vector<SurfacePoint> points;
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t v = order[i];
-      if (i == begin || vertices[v] != vertices[order[i - 1]]) {
+      if (shown[v] == 0) continue;
+      if (points.empty() || vertices[v] != vertices[order[i - 1]]) {
         tree.find(vertices[v], found, surfaces.tried);
         points = distinct_points(tree, vertices[v], found);
       }
@@ -215,7 +227,7 @@ void report_tangents_left_out(SceneComparison& comparison) {
     const SceneMesh& mesh = own[static_cast<std::size_t>(match.mesh)];
     const auto with =
         std::count_if(match.fits.begin(), match.fits.end(), [&](const SurfacePoint& point) {
-          return other[static_cast<std::size_t>(point.mesh)].has_tangents;
+          return point.mesh < 0 || other[static_cast<std::size_t>(point.mesh)].has_tangents;
         });
     const auto all = static_cast<std::ptrdiff_t>(match.fits.size());
     if (!mesh.has_tangents || with == 0 || with == all) continue;
@@ -224,6 +236,26 @@ void report_tangents_left_out(SceneComparison& comparison) {
         match.in_second ? "the second's " : "", label("mesh", mesh.name, match.mesh), all - with,
         all));
   }
+}
+
+// Reports attributes that a mesh has and the surface next to it has not. The other way round comes
+// with the other direction.
+void report_missing_on(SceneComparison& comparison, const SceneMesh& mesh, const SceneMesh& other,
+                       bool in_second, const std::string& name) {
+  if (mesh.only_points || other.only_points) return;
+  const auto report = [&](bool has, bool other_has, const char* what, bool counts) {
+    if (!has || other_has) return;
+    std::string text =
+        fmt::format("{}: only the {} has {}", name, in_second ? "second" : "first", what);
+    auto& texts = counts ? comparison.result.structure : comparison.result.notes;
+    if (std::ranges::find(texts, text) == texts.end()) texts.push_back(std::move(text));
+  };
+  report(mesh.has_normals, other.has_normals, "normals", true);
+  report(!mesh.texture_coordinates.empty(), !other.texture_coordinates.empty(),
+         "texture coordinates", true);
+  report(mesh.is_painted(), !other.colours.empty(), "vertex colours", comparison.options.materials);
+  report(mesh.has_tangents && has_normal_texture(mesh) && has_normal_texture(other),
+         other.has_tangents, "tangents, which normal textures need", true);
 }
 
 // The static data of a mesh at its nearest points: texture coordinates, colours, sides, materials.
@@ -237,6 +269,7 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   std::size_t behind = 0;
   for (std::size_t v = 0; v < match.points.size(); ++v) {
     const SurfacePoint& point = match.fits[v];
+    if (point.mesh < 0) continue;
     const SceneMesh& other = mesh_of(point, surfaces.other);
     place.vertex = static_cast<int>(v);
     ++on_mesh[point.mesh];
@@ -261,6 +294,7 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   for (const auto& [index, count] : on_mesh) {
     const SceneMesh& other = surfaces.other.meshes[static_cast<std::size_t>(index)];
     if (count <= few) continue;
+    report_missing_on(comparison, mesh, other, match.in_second, name);
     compare_materials(comparison, match.in_second ? other : mesh, match.in_second ? mesh : other,
                       name);
     if (other.visible == mesh.visible) continue;

@@ -68,7 +68,7 @@ KeyGap gap_of(const Channel& channel, std::size_t key) {
   const double turn = channel.path == Path::rotation ? turn_of(channel, key) : 0;
   if (!spline) return {turn > kLargeTurn ? kSplineParts : 1, false};
   const double parts = std::ceil(std::min<double>(turn / kTurnOfPart, kMaxParts));
-  return {std::max(kSplineParts, static_cast<int>(parts)), false, true};
+  return {std::max(kSplineParts, static_cast<int>(parts)), false};
 }
 
 }  // namespace
@@ -83,7 +83,6 @@ std::vector<KeyGap> key_gaps(const Animation& animation, std::span<const double>
       while (at < gaps.size() && times[at] < static_cast<double>((*channel.times)[key])) ++at;
       for (; at < gaps.size() && times[at] < end; ++at) {
         gaps[at].parts = std::max(gaps[at].parts, gap.parts);
-        gaps[at].bends = gaps[at].bends || gap.bends;
         gaps[at].jumps = gaps[at].jumps || (gap.jumps && times[at + 1] >= end);
       }
     }

@@ -8,7 +8,6 @@ struct KeyGap {
   // cubic splines and for rotations by large angles, whose shorter way depends on rounding.
   int parts = 1;
   bool jumps = false;  // a step: a value jumps at the end
-  bool bends = false;  // a spline
 
   friend bool operator==(const KeyGap&, const KeyGap&) = default;
 };

@@ -107,7 +107,6 @@ struct Scene {
     std::vector<double> key_times;  // seconds, rising
     std::vector<KeyGap> gaps{};     // [key_times - 1], or empty if all are straight
     std::string interpolation{};    // "linear and step"; empty if unknown
-    bool in_world = false;          // joints are interpolated in world space, not in their parents'
   };
   std::vector<Animation> animations;
 

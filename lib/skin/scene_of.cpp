@@ -213,8 +213,7 @@ Scene scene_of(std::shared_ptr<const Actor> actor, const ActorSceneOptions& opti
     scene.meshes.push_back(player->mesh_of_all());
   }
   for (std::size_t i = 0; i < actor->motions.size(); ++i) {
-    scene.animations.push_back(
-        {.name = actor->motions[i].name, .key_times = player->times(i), .in_world = true});
+    scene.animations.push_back({actor->motions[i].name, player->times(i)});
   }
   scene.evaluate = [player](int animation, double time, SceneState& state) {
     player->evaluate(animation, time, state);

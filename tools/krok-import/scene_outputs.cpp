@@ -430,14 +430,13 @@ void SceneImporter::report_sampling(const ChosenClip& chosen, const nodes::Anima
                                                chosen.animation, sampling, kWanted, context_.jobs);
   if (error.joint >= 0) facts["sampling_error"] = error.largest;
   if (error.largest <= kWanted) return;
-  warn("import-sampling",
-       fmt::format("{}: between frames joints are up to {} mm from the file's curves ({} at {} s)",
-                   shown(chosen.name), readable(1e3 * error.largest, 3),
-                   shown(rig_->skeleton.names[at(error.joint)]), readable(error.time, 4)),
-       error.rate ? fmt::format("--rate {} keeps them within 0.1 mm", readable(*error.rate))
-       : error.jumps
-           ? "keys that step become ramps of one frame; a higher --rate makes them shorter"
-           : "use a higher --rate");
+  context_.log(fmt::format(
+      "{}: between frames joints are up to {} mm from the file's curves ({} at {} s){}",
+      shown(chosen.name), readable(1e3 * error.largest, 3),
+      shown(rig_->skeleton.names[at(error.joint)]), readable(error.time, 4),
+      error.rate    ? fmt::format("; --rate {} keeps them within 0.1 mm", readable(*error.rate))
+      : error.jumps ? "; keys that step become ramps of one frame"
+                    : ""));
 }
 
 Status SceneImporter::add_camera(const ChosenClip& clip,

@@ -112,14 +112,6 @@ TEST(Sampling, TheRateOfTheFileIsKept) {
   EXPECT_EQ(chosen(few).sampling.frames, 8);
 }
 
-// Programs that count frames from 1: time 0 stays time 0.
-TEST(Sampling, AFirstKeyOnTheNextFrameIsHeldBefore) {
-  const auto result = chosen(keyed(even_times(24, 24, 1 / 24.0)));
-  EXPECT_EQ(result.sampling.start, 0);
-  EXPECT_EQ(result.sampling.frames, 25);
-  EXPECT_NEAR(result.sampling.time(1), 1 / 24.0, 1e-9);
-}
-
 TEST(Sampling, GivenRatesRetime) {
   SamplingOptions options;
   options.source_rate = 60;

@@ -392,7 +392,7 @@ const std::vector<Change> kChanges = {
                   for (int p : {0, 1}) file.primitive(p)["attributes"].erase("COLOR_0");
                 }),
     json_change("a triangle is dropped",
-                [](File& file) { file.accessor(kClothIndices)["count"] = 3 * 47 + 0 * kSide; }),
+                [](File& file) { file.accessor(kClothIndices)["count"] = 3 * 35; }),
     {"a triangle inside is dropped",
      [](File& file) {
        std::uint16_t* const t = file.triangle(kIndices, 9);
@@ -402,8 +402,7 @@ const std::vector<Change> kChanges = {
      [](File& file) {
        std::uint16_t* const t = file.triangle(kIndices, 9);
        std::swap(t[1], t[2]);
-     },
-     kAll & ~kNearest},
+     }},
     {"all triangles of the cloth are wound the other way",
      [](File& file) {
        const int count = file.accessor(kClothIndices)["count"].get<int>() / 3;
@@ -443,7 +442,7 @@ const std::vector<Change> kChanges = {
                 [](File& file) {
                   file.json["skins"][0]["joints"] = {kRoot, kLower, kUpper};
                 }),
-    json_change("the face is bound",
+    json_change("the face is 1 mm higher",
                 [](File& file) {
                   file.node(kFace)["translation"] = {3, 0.001, 0};
                 }),
@@ -491,11 +490,8 @@ const std::vector<Change> kChanges = {
                   file.json["extensionsUsed"] = {"KHR_node_visibility"};
                   file.node(kFace)["extensions"] = {{"KHR_node_visibility", {{"visible", false}}}};
                 }),
-    json_change("the face and the hat have changed meshes",
-                [](File& file) {
-                  file.node(kHat)["mesh"] = 0;
-                  file.json["animations"][1]["channels"].erase(1);
-                }),
+    json_change("the hat has the mesh of the body",
+                [](File& file) { file.node(kHat)["mesh"] = 0; }),
     // Looks.
     json_change("base colour",
                 [](File& file) {

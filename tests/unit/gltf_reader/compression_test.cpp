@@ -384,7 +384,7 @@ TEST(GltfCompression, RefusesWhatCannotBeUnpacked) {
   EXPECT_EQ(meshopt("buffer", 1), "gltf-compression");  // the one without data
   EXPECT_EQ(meshopt("byteOffset", 1u << 30), "gltf-compression");
   EXPECT_EQ(meshopt("byteLength", 3), "gltf-compression");
-  EXPECT_EQ(meshopt("count", 1e3), "gltf-structure");
+  EXPECT_EQ(meshopt("count", 1000.5), "gltf-structure");
   EXPECT_EQ(meshopt("count", -1), "gltf-structure");
   EXPECT_EQ(meshopt("count", 100, 5), "gltf-compression");
   EXPECT_EQ(meshopt("count", std::uint64_t{1} << 62), "gltf-too-large");
