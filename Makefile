@@ -12,7 +12,7 @@ BUILD_PACKAGES := ca-certificates cmake g++ ninja-build libeigen3-dev libfmt-dev
   libcli11-dev help2man libembree-dev libpng-dev libjpeg-dev libfreetype-dev libceres-dev \
   libbullet-dev libmeshoptimizer-dev libdraco-dev libzip-dev zlib1g-dev fonts-dejavu-core
 TEST_PACKAGES := libgtest-dev libgmock-dev libbenchmark-dev clang-format python3 \
-  chromium openexr python3-jsonschema python3-numpy python3-pandas python3-xxhash liborocos-kdl-dev pkg-config ffmpeg
+  chromium openexr python3-jsonschema python3-numpy python3-pandas python3-xxhash liborocos-kdl-dev pkg-config ffmpeg librsvg2-bin
 LINT_PACKAGES := clang-tidy
 DEB_PACKAGES := debhelper dh-python python3-all fakeroot lintian
 FUZZ_PACKAGES := afl++

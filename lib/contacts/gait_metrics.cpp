@@ -9,17 +9,16 @@ namespace {
 
 constexpr double kLongest = 3;  // seconds
 
-struct Cycle {
-  double strike = 0, off = 0, next = 0;
-};
+}  // namespace
 
-std::vector<Cycle> cycles_of(const std::vector<Keytime>& keytimes, const std::string& side) {
-  std::vector<Cycle> cycles;
+std::vector<GaitCycle> gait_cycles(const std::vector<Keytime>& keytimes, FootSide side) {
+  const std::string foot = name_of(side);
+  std::vector<GaitCycle> cycles;
   double strike = -1, off = -1;
   for (const Keytime& key : keytimes) {
-    if (key.name == side + "_off") {
+    if (key.name == foot + "_off") {
       off = key.time;
-    } else if (key.name == side + "_strike") {
+    } else if (key.name == foot + "_strike") {
       if (strike >= 0 && off > strike && key.time - strike < kLongest) {
         cycles.push_back({strike, off, key.time});
       }
@@ -28,8 +27,6 @@ std::vector<Cycle> cycles_of(const std::vector<Keytime>& keytimes, const std::st
   }
   return cycles;
 }
-
-}  // namespace
 
 std::vector<StanceTimes> stance_times(const std::vector<Keytime>& keytimes, FootSide side) {
   const std::string foot = name_of(side);
@@ -46,11 +43,11 @@ std::vector<StanceTimes> stance_times(const std::vector<Keytime>& keytimes, Foot
 
 GaitMetrics gait_metrics(const std::vector<Keytime>& keytimes) {
   GaitMetrics metrics;
-  const std::array<std::vector<Cycle>, 2> cycles = {cycles_of(keytimes, "left"),
-                                                    cycles_of(keytimes, "right")};
+  const std::array<std::vector<GaitCycle>, 2> cycles = {gait_cycles(keytimes, FootSide::left),
+                                                        gait_cycles(keytimes, FootSide::right)};
   double length = 0;
   for (std::size_t s = 0; s < 2; ++s) {
-    for (const Cycle& cycle : cycles[s]) {
+    for (const GaitCycle& cycle : cycles[s]) {
       ++metrics.cycles;
       length += cycle.next - cycle.strike;
       metrics.stance[s] += (cycle.off - cycle.strike) / (cycle.next - cycle.strike);

@@ -19,6 +19,12 @@ struct GaitMetrics {
 };
 GaitMetrics gait_metrics(const std::vector<Keytime>& keytimes);
 
+// The whole cycles of a foot that gait metrics count, ascending, seconds.
+struct GaitCycle {
+  double strike = 0, off = 0, next = 0;  // `next` is its next strike
+};
+std::vector<GaitCycle> gait_cycles(const std::vector<Keytime>& keytimes, FootSide side);
+
 // From a strike of a foot to the toe-off after it, seconds.
 struct StanceTimes {
   double strike = 0, off = 0;

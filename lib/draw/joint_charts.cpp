@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <string_view>
 
+#include "contacts/gait_metrics.h"
 #include "draw/chart_style_internal.h"
 
 namespace krok::draw {
@@ -72,7 +74,112 @@ std::vector<Panel> three_curve_panels(std::span<const ChartedMotion> motions,
   return panels;
 }
 
+constexpr int kParts = 100;  // of a cycle
+
+// The values of a curve over a cycle, [kParts + 1], linear between frames; empty if it reaches
+// beyond the frames shown.
+std::vector<double> over_cycle(const ChartedMotion& motion, std::span<const double> curve,
+                               const GaitCycle& cycle) {
+  const double rate = motion.clip->rate;
+  if (cycle.strike * rate < motion.frames.first - 0.5 ||
+      cycle.next * rate > motion.frames.last + 0.5) {
+    return {};
+  }
+  std::vector<double> values;
+  for (int i = 0; i <= kParts; ++i) {
+    const double time = cycle.strike + (cycle.next - cycle.strike) * i / kParts;
+    const double place =
+        std::clamp(time * rate - motion.frames.first, 0.0, static_cast<double>(curve.size() - 1));
+    const auto before = std::min(static_cast<std::size_t>(place), curve.size() - 1);
+    const std::size_t after = std::min(before + 1, curve.size() - 1);
+    values.push_back(curve[before] +
+                     (place - static_cast<double>(before)) * (curve[after] - curve[before]));
+  }
+  return values;
+}
+
+// The mean of curves and a band of a standard deviation about it.
+void add_mean(const std::vector<std::vector<double>>& curves, Side side, Panel& panel) {
+  std::vector<double> percent, mean, around;
+  for (int i = 0; i <= kParts; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    double sum = 0, squares = 0;
+    const auto count = static_cast<double>(curves.size());
+    for (const auto& curve : curves) sum += curve[at] / count;
+    for (const auto& curve : curves) squares += (curve[at] - sum) * (curve[at] - sum);
+    percent.push_back(100.0 * i / kParts);
+    mean.push_back(sum);
+    around.push_back(curves.size() > 1 ? std::sqrt(squares / (count - 1)) : 0);
+  }
+  if (curves.size() > 1) {
+    Series band;
+    for (const int way : {1, -1}) {
+      for (std::size_t i = 0; i < mean.size(); ++i) {
+        const std::size_t at = way > 0 ? i : mean.size() - 1 - i;
+        band.x.push_back(percent[at]);
+        band.y.push_back(mean[at] + way * around[at]);
+      }
+    }
+    band.colour = side_colour(side);
+    band.dash = 0;
+    band.faint = band.filled = true;
+    panel.series.push_back(std::move(band));
+  }
+  Series line;
+  line.name = side == Side::left ? "left" : "right";
+  line.x = std::move(percent);
+  line.y = std::move(mean);
+  line.colour = side_colour(side);
+  line.dash = side == Side::left ? 0 : 1;
+  panel.series.push_back(std::move(line));
+}
+
 }  // namespace
+
+CycleCharts cycle_charts(std::span<const ChartedMotion> motions) {
+  CycleCharts charts;
+  std::array<double, 2> off{};  // sums of percents
+  std::vector<bool> has_cycle(motions.size(), false);
+  for (const BodyAngleName& name : kBodyAngles) {
+    Panel panel;
+    panel.title = name.title;
+    panel.x = {"gait cycle", "%", Scale::linear, 0, 100};
+    panel.y = {"angle", kDegrees};
+    for (const Side side : {Side::left, Side::right}) {
+      std::vector<std::vector<double>> curves;
+      std::size_t s = side == Side::left ? 0 : 1;
+      for (std::size_t m = 0; m < motions.size(); ++m) {
+        const ChartedMotion& motion = motions[m];
+        const auto angles =
+            body_angle(*motion.clip, *motion.roles, name.angle, side, motion.frames);
+        if (angles.empty()) continue;
+        for (const GaitCycle& cycle :
+             gait_cycles(motion.keys.keytimes, s == 0 ? FootSide::left : FootSide::right)) {
+          auto values = over_cycle(motion, angles, cycle);
+          if (values.empty() ||
+              !std::ranges::all_of(values, [](double v) { return std::isfinite(v); })) {
+            continue;
+          }
+          curves.push_back(std::move(values));
+          has_cycle[m] = true;
+          if (charts.panels.empty()) {
+            ++charts.counts[s];
+            off[s] += 100 * (cycle.off - cycle.strike) / (cycle.next - cycle.strike);
+          }
+        }
+      }
+      if (!curves.empty()) add_mean(curves, side, panel);
+    }
+    if (panel.series.empty()) continue;
+    for (std::size_t s = 0; s < 2; ++s) {
+      if (charts.counts[s] == 0) continue;
+      panel.moments.push_back({off[s] / charts.counts[s], s == 0 ? "L off" : "R off"});
+    }
+    charts.panels.push_back(std::move(panel));
+  }
+  charts.motions = static_cast<int>(std::ranges::count(has_cycle, true));
+  return charts;
+}
 
 std::vector<Panel> body_angle_panels(std::span<const ChartedMotion> motions) {
   std::vector<Panel> panels;

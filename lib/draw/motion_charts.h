@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -64,6 +65,17 @@ std::vector<Panel> foot_panels(std::span<const ChartedMotion> motions, Scale spe
 
 // Hips, knees, ankles, shoulders, elbows: see body_angle. One panel for each that any motion has.
 std::vector<Panel> body_angle_panels(std::span<const ChartedMotion> motions);
+
+// The same angles over the gait cycle of their side, from strike to strike in percent: the mean of
+// all whole cycles (gait_cycles()) of all motions within the frames shown, and a band of one
+// standard deviation (of the sample; none for a single cycle) about it. A line marks the mean
+// toe-off.
+struct CycleCharts {
+  std::vector<Panel> panels;    // none without a cycle
+  std::array<int, 2> counts{};  // cycles of the left and right side
+  int motions = 0;              // that have a cycle
+};
+CycleCharts cycle_charts(std::span<const ChartedMotion> motions);
 
 // World positions of joints (metres). For one motion, a panel per joint; for several, a panel per
 // joint and axis with a line for each motion that has a joint of that name.

@@ -20,8 +20,35 @@ constexpr double kNoLength = 1e-5;  // metres: a bone without a direction
 constexpr std::size_t kGrain = 256;
 constexpr std::size_t kFramesOfShape = 2000;
 
-// The rotation nearest to a sum of outer products target * source^T.
+// The rotation nearest to a sum of outer products target * source^T, without its singular values:
+// the root of their sum's polynomial by Newton's method, and the rotation from it (Markley,
+// "Attitude determination using vector observations: a fast optimal matrix algorithm", 1993). Where
+// two singular values nearly vanish, which loses digits, it is found from the decomposition.
 Quat nearest_rotation(const Mat3& products) {
+  const double size = products.norm();
+  if (!(size > 0)) return Quat::Identity();
+  const Mat3 b = products / size;
+  Mat3 adjugate;
+  adjugate.col(0) = b.row(1).cross(b.row(2));
+  adjugate.col(1) = b.row(2).cross(b.row(0));
+  adjugate.col(2) = b.row(0).cross(b.row(1));
+  const double determinant = b.row(0).dot(adjugate.col(0));
+  const double squares = adjugate.squaredNorm();
+  double sum = 1.7320508075688773;  // of singular values: at most sqrt(3) of the norm
+  for (int i = 0; i < 20; ++i) {
+    const double above = sum * sum - 1;
+    const double value = above * above - 8 * sum * determinant - 4 * squares;
+    const double slope = 4 * sum * above - 8 * determinant;
+    if (!(slope > 0)) break;
+    const double step = value / slope;
+    sum -= step;
+    if (std::abs(step) < 1e-14) break;
+  }
+  const double kappa = (sum * sum - 1) / 2, zeta = kappa * sum - determinant;
+  if (zeta > 1e-4) {
+    return Quat(Mat3(((kappa + 1) * b + sum * adjugate.transpose() - b * b.transpose() * b) / zeta))
+        .normalized();
+  }
   const Eigen::JacobiSVD<Mat3> parts(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 u = parts.matrixU();
   if ((u * parts.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;

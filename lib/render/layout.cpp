@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
+#include "core/index.h"
 #include "render/layout_internal.h"
 
 namespace krok::render {
@@ -96,6 +98,7 @@ Status check_options(const Sheet& sheet, const SheetOptions& options) {
   if (std::none_of(sheet.rows.begin(), sheet.rows.end(), has_cells)) {
     return Error("sheet-empty", "the sheet has no cells");
   }
+  if (sheet.columns < 1) return Error("sheet-size", "a sheet has at least one column");
   if (options.row_height < 32 || options.row_height > 4000) {
     return Error("sheet-size", fmt::format("row height {} is out of range", options.row_height),
                  "expected 32 to 4000 pixels");
@@ -107,7 +110,7 @@ Status check_options(const Sheet& sheet, const SheetOptions& options) {
   return {};
 }
 
-// What all rows show together.
+// What all rows show together, in metres at the sheet's scale.
 struct Extent {
   std::vector<Window> rows;
   double left = std::numeric_limits<double>::infinity();  // of all windows, metres
@@ -122,6 +125,8 @@ Extent measure_rows(const Sheet& sheet, std::vector<RowLayout>& places) {
     Window window = window_of(sheet.rows[r], places[r]);
     extent.columns = std::max(extent.columns, sheet.rows[r].cells.size());
     if (window.empty()) window.add(Vec2::Zero());
+    window.low *= sheet.rows[r].scale;
+    window.high *= sheet.rows[r].scale;
     extent.left = std::min(extent.left, window.low.x());
     extent.right = std::max(extent.right, window.high.x());
     extent.height = std::max(extent.height, window.high.y() - window.low.y());
@@ -166,6 +171,17 @@ void place_row(const SheetRow& row, const Window& window, double y, double heigh
   place.high = (place.ground - place.top) / per_metre;
 }
 
+// Rows side by side share a window, so that they stand on one line.
+void join_windows(std::size_t columns, std::vector<Window>& rows) {
+  for (std::size_t first = 0; first < rows.size(); first += columns) {
+    const std::span<Window> side_by_side =
+        std::span(rows).subspan(first, std::min(columns, rows.size() - first));
+    Window all;
+    for (const Window& window : side_by_side) all.add(window);
+    std::ranges::fill(side_by_side, all);
+  }
+}
+
 // Adds the cells of a placed row; `centre` is the middle of all windows, metres.
 void add_cells(const SheetRow& row, std::size_t index, double centre, Layout& layout) {
   const RowLayout& place = layout.rows[index];
@@ -174,12 +190,12 @@ void add_cells(const SheetRow& row, std::size_t index, double centre, Layout& la
     CellLayout cell;
     cell.row = static_cast<int>(index);
     cell.column = static_cast<int>(c);
-    cell.left = kMargin + kGutter + static_cast<int>(c) * layout.cell_width;
+    cell.left = place.left + static_cast<int>(c) * layout.cell_width;
     cell.right = cell.left + layout.cell_width;
     cell.top = place.top;
     cell.bottom = place.bottom;
     const double middle = 0.5 * (cell.left + cell.right) - centre * per_metre;
-    cell.camera = {row.cells[c].centre, row.yaw, row.elevation, per_metre,
+    cell.camera = {row.cells[c].centre, row.yaw, row.elevation, per_metre * row.scale,
                    Vec2(middle, place.ground)};
     layout.cells.push_back(cell);
   }
@@ -199,22 +215,32 @@ Result<Layout> lay_out(const Sheet& sheet, const SheetOptions& options) {
   if (Status status = check_options(sheet, options); !status) return status.error();
   Layout layout;
   layout.rows.resize(sheet.rows.size());
-  const Extent extent = measure_rows(sheet, layout.rows);
+  Extent extent = measure_rows(sheet, layout.rows);
+  const std::size_t columns = std::min(at(sheet.columns), sheet.rows.size());
+  join_windows(columns, extent.rows);
   choose_scale(extent, options, layout);
 
-  const double wide = 2.0 * kMargin + kGutter +
-                      static_cast<double>(extent.columns) * static_cast<double>(layout.cell_width);
-  double y = kMargin;
+  const double cells_wide =
+      static_cast<double>(extent.columns) * static_cast<double>(layout.cell_width);
+  const double wide = 2.0 * kMargin + static_cast<double>(columns) * (kGutter + cells_wide);
+  double y = kMargin, next = y;
   for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    const std::size_t column = r % columns;
+    if (column == 0) y = next;
     RowLayout& place = layout.rows[r];
     const Window& window = extent.rows[r];
     const double high = (window.high.y() - window.low.y()) * layout.pixels_per_metre;
     const double bottom = y + kHeader + std::ceil(high) + 2 * kAir + kGroundBand;
     if (Status status = check_image_size(wide, bottom); !status) return status.error();
+    place.left =
+        static_cast<int>(kMargin + kGutter + static_cast<double>(column) * (kGutter + cells_wide));
+    place.right = place.left + static_cast<int>(sheet.rows[r].cells.size()) * layout.cell_width;
     place_row(sheet.rows[r], window, y, high, layout.pixels_per_metre, place);
     add_cells(sheet.rows[r], r, 0.5 * (extent.left + extent.right), layout);
-    y = place.bottom + (place.has_labels ? kLabel : 0) + (place.has_notes ? kLabel : 0) + kRowGap;
+    const int labels = (place.has_labels ? kLabel : 0) + (place.has_notes ? kLabel : 0);
+    next = std::max(next, static_cast<double>(place.bottom + labels + kRowGap));
   }
+  y = next;
   layout.key_top = static_cast<int>(y);
   layout.width = static_cast<int>(wide);
   layout.height = layout.key_top + (sheet.key ? kKey : 0) + kMargin - kRowGap;

@@ -32,6 +32,7 @@ inline constexpr double kRaised = 2 * kRadiansPerDegree;
 
 struct RowLayout {
   int header = 0;           // top edge of its title
+  int left = 0, right = 0;  // of its cells
   int top = 0, bottom = 0;  // of its cells
   double ground = 0;        // pixel row of y = 0 at the cells' centres
   bool shows_ground = true;

@@ -37,7 +37,9 @@ class SheetPainter {
     }
     for (const CellLayout& cell : layout_.cells) {
       const SheetRow& row = sheet_.rows[static_cast<std::size_t>(cell.row)];
-      if (row.elevation > kRaised && !row.own_ground) paint_grid(cell);
+      if (row.elevation > kRaised && !row.own_ground) {
+        paint_grid(cell, layout_.height_step / row.scale);
+      }
       paint_path(content(cell).path, cell);
     }
   }
@@ -65,9 +67,7 @@ class SheetPainter {
   }
 
   void paint_row(const SheetRow& row, const RowLayout& place) {
-    const double left = kMargin + kGutter;
-    const double right =
-        left + static_cast<double>(row.cells.size()) * static_cast<double>(layout_.cell_width);
+    const double left = place.left, right = place.right;
     fill(image_, {{left, place.top}, {right, place.bottom}}, kPanel);
     if (row.elevation > kRaised) return;
     const double step = layout_.height_step;
@@ -78,7 +78,7 @@ class SheetPainter {
       const double y = std::round(place.ground - height * layout_.pixels_per_metre);
       if (y < place.top + 5 || y > place.bottom - 4) continue;
       if (i != 0) fill(image_, {{left, y}, {right, y + 1}}, kHeightLine);
-      const std::string words = i == 0 ? "0" : readable(height) + " m";
+      const std::string words = i == 0 ? "0" : readable(height / row.scale) + " m";
       text_.draw(image_, {left - 6, y + 4}, words, kSmallSize, kSoft, Align::right);
     }
     if (!place.shows_ground) return;
@@ -87,13 +87,13 @@ class SheetPainter {
   }
 
   // A ground grid with the spacing of the height lines.
-  void paint_grid(const CellLayout& cell) {
+  void paint_grid(const CellLayout& cell, double step) {
     View view;
     view.camera = cell.camera;
     const double reach =
         std::hypot(cell.right - cell.left, cell.bottom - cell.top) / cell.camera.pixels_per_metre;
-    render::paint_grid(Projection(view), {cell.camera.target, layout_.height_step, reach, 24},
-                       box_of(cell), image_);
+    render::paint_grid(Projection(view), {cell.camera.target, step, reach, 24}, box_of(cell),
+                       image_);
   }
 
   void paint_path(const std::vector<Vec3>& path, const CellLayout& cell) {
@@ -111,8 +111,9 @@ class SheetPainter {
 
   void paint_header(const SheetRow& row, const RowLayout& place) {
     const double line = place.header + 16;
-    const double right = layout_.width - kMargin;
-    double x = kMargin + kGutter;
+    // A title alone may be wider than its cells.
+    const double right = sheet_.columns == 1 ? layout_.width - kMargin : place.right;
+    double x = place.left;
     const std::string title = text_.fitted(row.title, kTitleSize, right - x);
     text_.draw(image_, {x, line}, title, kTitleSize, kInk);
     x += text_.width(title, kTitleSize) + (title.empty() ? 0 : 10);
@@ -201,6 +202,12 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
       }
     }
   }
+  for (const Actor* actor : actors) {
+    if (Status status = check(*actor); !status) return status.error();
+  }
+  // Before the work, so that a sheet that is too large costs little.
+  auto layout = lay_out(sheet, options);
+  if (!layout) return layout.error();
   const auto tracer = Tracer::create();
   if (!tracer) return tracer.error();
   std::vector<TracedActor> traced;
@@ -210,8 +217,6 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
     if (!ready) return ready.error();
     traced.push_back(std::move(*ready));
   }
-  auto layout = lay_out(sheet, options);
-  if (!layout) return layout.error();
   auto text = TextPainter::create();
   if (!text) return text.error();
 

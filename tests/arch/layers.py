@@ -46,6 +46,7 @@ ALLOWED = {
     "formats/registry": {"lib/core"},
     "formats/io": BASE | {"lib/capture", "lib/character", "lib/roles", "lib/nodes", "lib/skin", "lib/terrain"},
     "formats/json": BASE,
+    "formats/chart": {"lib/core"},
     "formats/role_map": BASE | {"lib/roles", "formats/json"},
     "formats/timeline": BASE | {"lib/motion", "lib/blend", "lib/timeline", "formats/json"},
     "formats/sequences": {"lib/core", "lib/scene", "formats/json"},

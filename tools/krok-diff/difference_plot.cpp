@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "draw/difference_chart.h"
+#include "formats/chart/chart_writer.h"
 #include "roles/roles.h"
 #include "tools/cli/output_set.h"
 
@@ -155,7 +156,8 @@ Status write_plot(const Result<Plot>& plot, const std::string& path, ToolContext
     context.warn("diff-plot",
                  fmt::format("{} more animations that differ are not drawn", plot->left_out));
   }
-  return write_output(context, path, [&](OutputFile& file) { return file.write(plot->svg); });
+  return write_output(context, path,
+                      [&](OutputFile& file) { return chart::write(path, plot->svg, file); });
 }
 
 }  // namespace krok::cli::diff

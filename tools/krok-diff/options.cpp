@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/file.h"
+#include "formats/chart/chart_writer.h"
 #include "tools/krok-diff/tolerance_options.h"
 
 namespace krok::cli::diff {
@@ -30,8 +31,9 @@ void declare(CommandOptions& command, Options& o) {
   command.only_with({"--sheet"});
   declare_image_options(command, o.sheet.image, kDifferenceMoments);
   command.only_with({});
-  command.add("--plot OUT.svg", o.plot, output({".svg"}),
-              "Charts of the distances and angles over time, as SVG; for motions and glTF");
+  command.add("--plot OUT.svg", o.plot, output(chart::endings()),
+              "Charts of the distances and angles over time, as SVG, PDF or PNG; for motions and "
+              "glTF");
   command.add("--heatmap OUT.glb", o.heatmap, output({".glb", ".gltf"}),
               "A's mesh in the pose of the max difference, with each vertex coloured by its max "
               "distance over all times; for glTF and models");

@@ -6,6 +6,7 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/chart/chart_writer.h"
 #include "formats/io/formats.h"
 #include "tools/shared/shared_options.h"
 
@@ -164,8 +165,9 @@ void declare(CommandOptions& command, Options& o) {
   command.group("Output");
   add_orientation_option(command, o.orientation);
   command
-      .add("--plot OUT.svg", o.plot, output({".svg"}),
-           "Write a chart: by how much each goal is missed over time, which joints' limits hold it "
+      .add("--plot OUT.svg", o.plot, output(chart::endings()),
+           "Write a chart (SVG, PDF, PNG): by how much each goal is missed over time, which "
+           "joints' limits hold it "
            "back, rotations beyond limits before and after")
       .only_with({"--goals", "--reach", "--look-at"});
 }

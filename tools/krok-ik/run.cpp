@@ -14,6 +14,7 @@
 #include "core/text.h"
 #include "draw/plot.h"
 #include "formats/anim/anim.h"
+#include "formats/chart/chart_writer.h"
 #include "formats/goals/goals.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
@@ -199,7 +200,7 @@ class Run {
   Result<int> finish_without_goals();
   void note_provenance(Clip& clip, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
-  Status write(const Clip* made, const std::string& chart = {});
+  Status write(const Clip* made, const std::string& svg = {});
 
   const Options& options_;
   ToolContext& context_;
@@ -404,7 +405,7 @@ Result<int> Run::finish_without_goals() {
   return kExitDone;
 }
 
-Status Run::write(const Clip* made, const std::string& chart) {
+Status Run::write(const Clip* made, const std::string& svg) {
   OutputSet outputs(context_);
   if (!options_.write_limits.empty()) {
     const std::string text = limits::write(limits_, clip_.skeleton);
@@ -426,9 +427,9 @@ Status Run::write(const Clip* made, const std::string& chart) {
     }
   }
   if (!options_.plot.empty()) {
-    if (Status status = outputs.add(
-            options_.plot,
-            [&](OutputFile& file) { return file.write(std::as_bytes(std::span(chart))); });
+    if (Status status =
+            outputs.add(options_.plot,
+                        [&](OutputFile& file) { return chart::write(options_.plot, svg, file); });
         !status) {
       return status;
     }

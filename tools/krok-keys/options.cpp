@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/text.h"
+#include "formats/chart/chart_writer.h"
 #include "formats/io/formats.h"
 #include "tools/shared/shared_options.h"
 
@@ -72,8 +73,9 @@ void declare(CommandOptions& command, Options& o) {
       .add_flag("--discard-edits", o.discard_edits,
                 "Detect everything again and discard manual edits")
       .not_with("--find none");
-  command.add("--plot OUT.svg", o.plot, output({".svg"}),
-              "Plot (SVG) of heights and speeds of the feet over time, with contacts and keytimes");
+  command.add("--plot OUT.svg", o.plot, output(chart::endings()),
+              "Plot (SVG, PDF, PNG) of heights and speeds of the feet over time, with contacts and "
+              "keytimes");
   command
       .add(
           "--table OUT.csv", o.table, output({".csv"}),

@@ -11,6 +11,7 @@
 #include "core/numbers.h"
 #include "core/result.h"
 #include "draw/plot.h"
+#include "formats/chart/chart_writer.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/keys/keys.h"
@@ -253,8 +254,8 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
     }
     const auto svg = feet_plot(name_of_input(options.input()), clip, *found, sidecar.keys);
     if (!svg) return svg.error();
-    const Status status =
-        outputs.add(options.plot, [&](OutputFile& file) { return file.write(*svg); });
+    const Status status = outputs.add(
+        options.plot, [&](OutputFile& file) { return chart::write(options.plot, *svg, file); });
     if (!status) return status;
   }
   return outputs.finish();

@@ -94,6 +94,8 @@ class MotionChart {
       case ChartKind::angles:
         add_angles();
         return {};
+      case ChartKind::cycles:
+        return add_cycles();
       case ChartKind::positions:
         append(chart_.panels, draw::position_panels(motions, joints_or_carriers()));
         return {};
@@ -125,6 +127,29 @@ class MotionChart {
     append(chart_.panels, options_.motion.euler
                               ? draw::euler_panels(motions, joints_, *options_.motion.euler)
                               : draw::turn_panels(motions, joints_));
+  }
+
+  Status add_cycles() {
+    draw::CycleCharts cycles = draw::cycle_charts(motions_.charted);
+    if (cycles.panels.empty()) {
+      return Error("plot-cycles",
+                   fmt::format("no whole gait cycle, strike to strike of a foot, in {}",
+                               counted(static_cast<long long>(motions_.files.size()), "motion")),
+                   "krok keys MOTION shows what is found of steps");
+    }
+    Json json;
+    json["left"] = cycles.counts[0];
+    json["right"] = cycles.counts[1];
+    json["motions"] = cycles.motions;
+    context_.report.result["cycles"] = std::move(json);
+    if (cycles.motions < static_cast<int>(motions_.files.size())) {
+      context_.warn("plot-cycles",
+                    fmt::format("{} of {} have no whole gait cycle and are left out",
+                                motions_.files.size() - static_cast<std::size_t>(cycles.motions),
+                                counted(static_cast<long long>(motions_.files.size()), "motion")));
+    }
+    append(chart_.panels, std::move(cycles.panels));
+    return {};
   }
 
   // For skeletons without a human body.

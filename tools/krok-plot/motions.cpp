@@ -40,8 +40,11 @@ Result<draw::FrameRange> frames_of(const Clip& clip, const MotionOptions& option
   return draw::FrameRange{static_cast<int>(first), static_cast<int>(last)};
 }
 
-Result<MotionKeys> read_keys(const std::string& option, const std::string& motion, const Clip& clip,
+// Keys that are not given are detected if `needed`; without any, there are none.
+Result<MotionKeys> read_keys(const std::string& option, const Motions::Motion& file, bool needed,
                              ToolContext& context) {
+  const std::string& motion = file.path;
+  const Clip& clip = file.clip;
   if (option == "none") return MotionKeys();
   if (option != "auto") {
     auto given = read_keys_file(option, clip, context);
@@ -55,7 +58,10 @@ Result<MotionKeys> read_keys(const std::string& option, const std::string& motio
     }
     return beside.error();
   }
-  return *beside ? std::move((*beside)->keys) : MotionKeys();
+  if (*beside) return std::move((*beside)->keys);
+  if (!needed) return MotionKeys();
+  auto found = find_keys(clip, file.roles, context);
+  return found ? *std::move(found) : MotionKeys();
 }
 
 // The ground and the footprints of --ground and --prints.
@@ -91,6 +97,8 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
   const auto find_roles_of = io::open_role_map(options.map, context);
   if (!find_roles_of) return find_roles_of.error();
   Motions motions;
+  const auto charts = options.charts();
+  const bool of_cycles = std::ranges::find(charts, ChartKind::cycles) != charts.end();
   for (const std::string& path : inputs) {
     auto clip = io::open_motion(path, context);
     if (!clip) return std::move(clip).error().in_file(path);
@@ -106,7 +114,7 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
     const auto frames = frames_of(file.clip, options);
     if (!frames) return Error(frames.error()).in_file(path);
     charted.frames = *frames;
-    auto keys = read_keys(options.keys, path, file.clip, context);
+    auto keys = read_keys(options.keys, file, of_cycles, context);
     if (!keys) return keys.error();
     charted.keys = std::move(*keys);
     motions.charted.push_back(std::move(charted));

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/chart/chart_writer.h"
 #include "formats/io/formats.h"
 #include "tools/cli/file_name.h"
 #include "tools/shared/shared_options.h"
@@ -23,6 +24,7 @@ ValueKind<std::vector<ChartKind>> charts() {
   const auto one = choice<ChartKind>({{"path", ChartKind::path},
                                       {"feet", ChartKind::feet},
                                       {"angles", ChartKind::angles},
+                                      {"cycles", ChartKind::cycles},
                                       {"positions", ChartKind::positions},
                                       {"difference", ChartKind::difference}});
   return {"charts",
@@ -77,10 +79,12 @@ Result<std::pair<std::string, std::string>> parse_condition(const std::string& t
 
 void declare_motions(CommandOptions& command, MotionOptions& o) {
   command.group("Motions");
-  command.add("--show", o.shown, charts(),
-              "Charts to draw, in order: path (from above), feet (height, speed), angles (of hips, "
-              "knees, ankles, shoulders, elbows), positions, difference; comma-separated. Default: "
-              "path, feet and angles, as far as the skeleton has them");
+  command.add(
+      "--show", o.shown, charts(),
+      "Charts to draw, in order: path (from above), feet (height, speed), angles (of hips, "
+      "knees, ankles, shoulders, elbows), cycles (these angles over the gait cycle, mean and "
+      "standard deviation over all cycles of all motions), positions, difference; "
+      "comma-separated. Default: path, feet and angles, as far as the skeleton has them");
   command
       .add_option("--joint NAME", o.joints,
                   "Show this joint: its position, and its rotation from the reference pose "
@@ -153,7 +157,10 @@ void declare(CommandOptions& command, Options& o) {
   command.add_flag("--log-y", o.log_y,
                    "Logarithmic y axis; for motions, of speeds and differences");
   command.add_option("--title WORDS", o.title, "Title; default: the name of the input");
-  command.add("--columns", o.columns, whole(1, 20), "Number of panels per row; default: 2");
+  command.add(
+      "--columns", o.columns, whole(1, 20),
+      "Number of panels per row; default: 2. With --sheet: of motions side by side; default: 1 for "
+      "up to 12, then as many as keep the sheet about as high as wide");
   command.add("--panel WIDTHxHEIGHT", o.panel,
               ValueKind<std::array<double, 2>>{"pixels", "WIDTHxHEIGHT", parse_panel, {}},
               "Size of each panel in pixels, at 96 dpi [340x170, a single one 640x260]");
@@ -203,7 +210,7 @@ bool Options::plots_tables() const {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-plot", options, declare, nullptr, run);
-  spec.summary = "Plots motions and numeric tables as charts in one SVG";
+  spec.summary = "Plots motions and numeric tables as charts: SVG, PDF, PNG";
   spec.details = "Contact sheets and strips of a motion are PNG.";
   spec.inputs = "IN...";
   spec.examples = {
@@ -219,13 +226,15 @@ ToolSpec make_spec() {
        "any table of numbers; the unit is read from the column's name"},
       {"krok-plot walk.anim --show path,feet --ground hills.exr --prints prints.csv -o ways.svg",
        "a walk on its ground from above, with its footprints, and how high the soles are over it"},
+      {"krok-plot walks --show cycles -o cycles.pdf",
+       "joint angles over the gait cycle: mean and deviation of all walks of a folder"},
       {"krok-plot walk.bvh --sheet walk.png", "images of the character at eight times"},
       {"krok-plot hero.character walk.anim --strip hero.png",
        "an animated character with the colours and textures of its materials; without "
        "a motion, in its reference pose"}};
   spec.needs_output = false;  // --sheet and --strip have their own output files
   spec.folder_endings = io::motion_endings();
-  spec.output_endings = {".svg"};
+  spec.output_endings = chart::endings();
   spec.default_output = [options] {
     return options->sheet.wanted() ? "" : beside(options->inputs.front(), ".svg");
   };

@@ -18,7 +18,7 @@
 
 namespace krok::cli::plot {
 
-enum class ChartKind : unsigned char { path, feet, angles, positions, difference };
+enum class ChartKind : unsigned char { path, feet, angles, cycles, positions, difference };
 
 struct MotionOptions {
   std::vector<std::vector<ChartKind>> shown;  // of each --show

@@ -8,6 +8,7 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/chart/chart_writer.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-plot/charts.h"
@@ -98,8 +99,8 @@ Status add_charts(const Options& options, ToolContext& context, OutputSet& outpu
   lay_out(options, *chart);
   const auto svg = draw::to_svg(*chart);
   if (!svg) return svg.error();
-  const Status status =
-      outputs.add(context.output, [&](OutputFile& file) { return file.write(*svg); });
+  const Status status = outputs.add(
+      context.output, [&](OutputFile& file) { return chart::write(context.output, *svg, file); });
   if (!status) return status;
   context.report.result["panels"] = summary_of(*chart);
   done.push_back(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
@@ -121,6 +122,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   std::vector<std::string> done;
   if (images) {
     SheetOptions sheet = options.sheet;
+    sheet.columns = options.columns;
+    sheet.size_given = options.given("--actor-size");
     sheet.from = options.motion.from;
     sheet.to = options.motion.to;
     sheet.ground = options.motion.ground;

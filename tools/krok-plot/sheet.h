@@ -20,8 +20,10 @@ enum class Front : unsigned char {
 };
 
 struct SheetOptions {
-  std::string sheet, strip;  // paths; empty for none
+  std::string sheet, strip;    // paths; empty for none
+  std::optional<int> columns;  // actors side by side on the sheet
   ImageOptions image;
+  bool size_given = false;  // otherwise smaller than image.size where the sheet would be too large
   std::optional<ClipTime> from, to;
   GroundChoice ground;  // empty: level at 0
   std::string prints;   // a file of footprints on it, or empty

@@ -9,6 +9,7 @@
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
+#include "core/fed_program.h"
 #include "support/this_build.h"
 
 namespace krok::test {
@@ -45,6 +46,46 @@ class KrokPlot : public CliTest {
     EXPECT_FALSE(std::filesystem::exists(path("out.svg")));
   }
 };
+
+TEST_F(KrokPlot, CyclesAreOfAllTakesAndKeysNeedNotBeThere) {
+  ASSERT_EQ(plot({kWalk, kTurn, "--show", "cycles"}).exit_code, 0);
+  const json result = json::parse(get(path("report.json")))["result"];
+  EXPECT_EQ(result["cycles"]["motions"], 2);
+  const int both = result["cycles"]["left"];
+  ASSERT_EQ(plot({kWalk, "--show", "cycles"}).exit_code, 0);
+  const json alone = json::parse(get(path("report.json")))["result"];
+  EXPECT_LT(alone["cycles"]["left"], both);
+  EXPECT_GE(alone["cycles"]["left"], 1);
+  EXPECT_THAT(titles(), ElementsAre("Hip flexion", "Knee flexion", "Ankle dorsiflexion",
+                                    "Shoulder elevation", "Elbow flexion"));
+  EXPECT_EQ(alone["panels"][1]["x"]["unit"], "%");
+  // Knees of walkers bend by 45 to 70 degrees in swing (Winter 1991).
+  EXPECT_GT(alone["panels"][1]["lines"][0]["largest"], 45);
+  EXPECT_LT(alone["panels"][1]["lines"][0]["largest"], 75);
+  expect_trouble({kWalk, "--show", "cycles", "--to", "0.3s"}, "plot-cycles", "no whole gait cycle");
+}
+
+TEST_F(KrokPlot, ChartsAreWhatTheirNamesSay) {
+  const auto into = [&](const std::string& name, const std::string& folders) {
+    return test::run({"/usr/bin/env", "PATH=" + folders, test::tools_folder() + "/krok-plot", kWalk,
+                      "--show", "feet", "-o", path(name)});
+  };
+  const ToolRun without = into("w.pdf", "/nowhere");
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_TRUE(has_code(without.err, "chart-program")) << without.err;
+  EXPECT_THAT(without.err, HasSubstr("librsvg2-bin"));
+  EXPECT_FALSE(std::filesystem::exists(path("w.pdf")));
+  if (!find_program("rsvg-convert")) GTEST_SKIP() << "rsvg-convert is not installed";
+  for (const auto& [ending, magic] :
+       {std::pair<std::string, std::string>{".pdf", "%PDF"}, {".png", "\x89PNG"}}) {
+    for (const std::string name : {"a", "b"}) {
+      const ToolRun run = into(name + ending, "/usr/bin:/bin");
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+      EXPECT_EQ(get(path(name + ending)).substr(0, 4), magic);
+    }
+    EXPECT_TRUE(get(path("a" + ending)) == get(path("b" + ending))) << ending;
+  }
+}
 
 TEST_F(KrokPlot, ShowsWhatMattersOfAPersonWithoutOptions) {
   const ToolRun run = plot({kWalk});

@@ -266,5 +266,20 @@ TEST_F(KrokPlotSheet, TakesOneFrameAndNoFrames) {
   }
 }
 
+// A sheet of a folder was a ribbon of 30,000 pixels, refused after all had been drawn.
+TEST_F(KrokPlotSheet, ManyMotionsAreAGridOfASizeThatFits) {
+  std::vector<std::string> inputs(30, kWalk);
+  inputs.insert(inputs.end(), {"--sheet", path("all.png"), "--moments", "2", "--body", "none"});
+  ASSERT_EQ(plot(inputs).exit_code, 0);
+  const render::Image grid = image("all.png");
+  EXPECT_LT(grid.height, 3 * grid.width);
+  inputs.insert(inputs.end(), {"--columns", "6"});
+  ASSERT_EQ(plot(inputs).exit_code, 0);
+  const json cells = report()["sheet"]["cells"];
+  ASSERT_EQ(cells.size(), 60U);
+  EXPECT_EQ(cells[0]["box"][1], cells[11]["box"][1]);
+  EXPECT_LT(cells[0]["box"][1], cells[12]["box"][1]);
+}
+
 }  // namespace
 }  // namespace krok::test

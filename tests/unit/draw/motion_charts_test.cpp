@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "unit/draw/moving_actors.h"
@@ -142,6 +143,51 @@ TEST(MotionCharts, TwoMotionsShareAPanelAndDifferByPattern) {
   ASSERT_THAT(panels[0].series, SizeIs(4));
   EXPECT_EQ(panels[0].series[0].colour, panels[0].series[2].colour);
   EXPECT_NE(panels[0].series[0].dash, panels[0].series[2].dash);
+}
+
+// A mean over other cycles, or stretched otherwise, would show angles that nobody had.
+TEST(CycleCharts, AreTheMeanAndDeviationOfCycles) {
+  std::vector<Turns> poses;
+  for (int f = 0; f <= 20; ++f) poses.push_back({{"LeftLeg", about(krok::Axis::x, 3.0 * f)}});
+  Shown shown(posed(poses));
+  const double last = shown.charted.clip->duration();
+  const std::array<double, 3> strikes = {0, 0.4 * last, last};
+  shown.charted.keys.keytimes = {{strikes[0], "left_strike"},
+                                 {0.3 * last, "left_off"},
+                                 {strikes[1], "left_strike"},
+                                 {0.7 * last, "left_off"},
+                                 {strikes[2], "left_strike"}};
+  const CycleCharts charts = cycle_charts({&shown.charted, 1});
+  EXPECT_THAT(charts.counts, ElementsAre(2, 0));
+  EXPECT_EQ(charts.motions, 1);
+  ASSERT_THAT(charts.panels, SizeIs(5));
+  const Panel& knee = charts.panels[1];
+  ASSERT_THAT(knee.series, SizeIs(2));  // a band and a line
+  const auto angles = body_angle(*shown.charted.clip, *shown.charted.roles, BodyAngle::knee,
+                                 Side::left, shown.charted.frames);
+  const auto angle_at = [&](double time) {
+    const double place = time * shown.charted.clip->rate;
+    const auto before = std::min(static_cast<std::size_t>(place), angles.size() - 2);
+    const double part = place - static_cast<double>(before);
+    return (1 - part) * angles[before] + part * angles[before + 1];
+  };
+  for (const std::size_t percent : {0U, 25U, 60U, 100U}) {
+    const double share = static_cast<double>(percent) / 100;
+    const double first = angle_at(strikes[0] + share * (strikes[1] - strikes[0]));
+    const double second = angle_at(strikes[1] + share * (strikes[2] - strikes[1]));
+    EXPECT_DOUBLE_EQ(knee.series[1].x[percent], static_cast<double>(percent));
+    EXPECT_GT(std::abs(first - second), 5) << percent;
+    EXPECT_NEAR(knee.series[1].y[percent], (first + second) / 2, 1e-9);
+    EXPECT_NEAR(knee.series[0].y[percent],
+                (first + second) / 2 + std::abs(first - second) / std::sqrt(2.0), 1e-9);
+  }
+  ASSERT_THAT(knee.moments, SizeIs(1));
+  EXPECT_NEAR(knee.moments[0].at, (75 + 50) / 2.0, 1e-9);
+  // Cycles that reach beyond the frames shown do not count.
+  shown.charted.frames.last /= 2;
+  EXPECT_THAT(cycle_charts({&shown.charted, 1}).counts, ElementsAre(1, 0));
+  shown.charted.keys.keytimes.clear();
+  EXPECT_THAT(cycle_charts({&shown.charted, 1}).panels, IsEmpty());
 }
 
 // A sample in another colour than the line leaves the reader to guess which motion it is.

@@ -147,6 +147,56 @@ TEST(Sheet, OneScaleForAllCellsWhereverTheyStand) {
   EXPECT_NEAR(both / coloured_pixels(one, 60), 5, 0.1) << "areas of 1 and 4";
 }
 
+TEST(Sheet, ARowAtASmallerScaleIsThatMuchSmaller) {
+  Actor actor;
+  actor.bones = {ball({-3, 1, 5}, 1, kRed)};
+  actor.centre = {-3, 0, 5};
+  Sheet sheet = sheet_of(actor);
+  sheet.rows.push_back(sheet.rows[0]);
+  sheet.rows[1].scale = 0.5;
+  const auto image = make_sheet(sheet, {.row_height = 300});
+  ASSERT_TRUE(image.ok());
+  ASSERT_EQ(image->cells.size(), 2U);
+  EXPECT_EQ(image->cells[1].camera.pixels_per_metre, image->pixels_per_metre / 2);
+  SheetImage first = *image, second = *image;
+  first.cells.resize(1);
+  second.cells.erase(second.cells.begin());
+  EXPECT_NEAR(double(coloured_pixels(first, 60)) / coloured_pixels(second, 60), 4, 0.1);
+}
+
+// Motions of a folder side by side: beyond the first row of them a ground at another height, or a
+// cell over its neighbour, would mislead.
+TEST(Sheet, RowsSideBySideStandOnOneLineAndDoNotOverlap) {
+  Actor small, large;
+  small.bones = {ball({0, 0.5, 0}, 0.5, kRed)};
+  large.bones = {ball({0, 1, 0}, 1, kRed)};
+  Sheet sheet;
+  sheet.columns = 2;
+  for (const Actor* actor : {&small, &large, &large, &small, &small}) {
+    SheetRow row = sheet_of(*actor).rows[0];
+    row.cells.push_back(row.cells[0]);
+    row.title = "a title that is far wider than the two cells below it, and goes on and on and on";
+    sheet.rows.push_back(std::move(row));
+  }
+  const auto image = make_sheet(sheet, {.row_height = 100});
+  ASSERT_TRUE(image.ok());
+  ASSERT_EQ(image->cells.size(), 10U);
+  for (std::size_t a = 0; a < 10; ++a) {
+    const CellLayout& cell = image->cells[a];
+    EXPECT_EQ(cell.row, static_cast<int>(a / 2));
+    EXPECT_LE(cell.right, image->image.width);
+    EXPECT_LE(cell.bottom, image->image.height);
+    for (std::size_t b = 0; b < a; ++b) {
+      const CellLayout& other = image->cells[b];
+      EXPECT_TRUE(cell.left >= other.right || cell.top >= other.bottom) << a << " " << b;
+      if (a / 4 != b / 4) continue;
+      EXPECT_EQ(cell.camera.project(Vec3::Zero()).y(), other.camera.project(Vec3::Zero()).y());
+    }
+  }
+  // The fifth row stands alone in the third line, below the first column.
+  EXPECT_EQ(image->cells[8].left, image->cells[0].left);
+}
+
 TEST(Sheet, LinesOfEqualHeightAreRoundNumbersApart) {
   for (const double size : {0.003, 0.2, 1.7, 40.0}) {
     Actor actor;
