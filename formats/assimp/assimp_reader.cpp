@@ -19,6 +19,7 @@
 #include "core/path_inside.h"
 #include "core/result.h"
 #include "core/text.h"
+#include "formats/assimp/fbx_text_internal.h"
 #include "formats/assimp/mend_input_internal.h"
 #include "formats/assimp/run_assimp_internal.h"
 #include "formats/assimp/scene_transfer.h"
@@ -365,6 +366,8 @@ using registry::Kind;
 
 namespace {
 
+constexpr int kOldestFbx = 7100;  // that Assimp reads
+
 constexpr std::string_view kHint =
     "the file is probably damaged; try to open and save it in another program, preferably as glTF "
     "(.glb)";
@@ -466,6 +469,15 @@ Result<nodes::Scene> read_file(const std::string& path, const ReadOptions& optio
       path, kind, file->text(), options.most_file_bytes - std::min(size, options.most_file_bytes));
   for (const Companions::Entry& companion : companions.files) {
     files.push_back({companion.name, companion.bytes()});
+  }
+  if (const int version = kind == Kind::fbx ? fbx_version(file->text()) : 0;
+      version > 0 && version < kOldestFbx) {
+    return Error("assimp-version",
+                 fmt::format("is FBX {}.{}; 7.1 (2011) is the oldest that is read", version / 1000,
+                             version / 100 % 10),
+                 "convert it to FBX 2013 with Autodesk's FBX Converter (free), or open it in Maya, "
+                 "MotionBuilder or 3ds Max and export it anew; Blender does not read it either")
+        .in_file(path);
   }
   auto scene = read_in_child(files, kind, options);
   if (!scene) return std::move(scene.error()).in_file(path);

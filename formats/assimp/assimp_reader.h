@@ -17,7 +17,8 @@
 // Error codes: those of InputFile; assimp-refused (Assimp rejects the file), assimp-crash,
 // assimp-time, assimp-memory (Assimp crashed or was stopped at a limit), assimp-result (invalid
 // result), assimp-start (the child process could not be started), assimp-kind (not one of these
-// formats), assimp-empty (nothing that Krok uses). Notes and warnings have codes assimp-*.
+// formats), assimp-version (an FBX older than 7.1), assimp-empty (nothing that Krok uses). Notes
+// and warnings have codes assimp-*.
 
 namespace krok::assimp {
 

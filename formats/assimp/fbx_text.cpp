@@ -1,7 +1,10 @@
 #include "formats/assimp/fbx_text_internal.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 
+#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/assimp/fbx_elements_internal.h"
 
@@ -17,6 +20,22 @@ std::vector<double> fbx_target_weights(std::string_view text) {
     }
   }
   return weights;
+}
+
+int fbx_version(std::string_view text) {
+  constexpr std::string_view kBinary = "Kaydara FBX Binary  ", kAscii = "FBXVersion:";
+  constexpr std::size_t kVersionAt = 23;
+  if (text.starts_with(kBinary)) {
+    std::uint32_t version = 0;
+    if (text.size() < kVersionAt + sizeof version) return 0;
+    std::memcpy(&version, text.data() + kVersionAt, sizeof version);
+    return static_cast<int>(std::min<std::uint32_t>(version, 100000));
+  }
+  const std::size_t place = text.substr(0, 4096).find(kAscii);
+  if (place == std::string_view::npos) return 0;
+  const std::string_view number = text.substr(place + kAscii.size(), 16);
+  return static_cast<int>(
+      parse_integer(trimmed(number.substr(0, number.find_first_of("\r\n")))).value_or(0));
 }
 
 std::size_t fbx_object_count(std::string_view text, std::string_view kind) {

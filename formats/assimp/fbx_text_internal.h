@@ -10,6 +10,9 @@ namespace krok::assimp {
 // Default weights of all morph targets (DeformPercent / 100), in file order; ASCII or binary FBX.
 std::vector<double> fbx_target_weights(std::string_view text);
 
+// The version of an FBX file, 7400 for 7.4; 0 if it is not said. ASCII or binary.
+int fbx_version(std::string_view text);
+
 // Number of objects of a kind ("AnimationLayer"); ASCII or binary FBX.
 std::size_t fbx_object_count(std::string_view text, std::string_view kind);
 

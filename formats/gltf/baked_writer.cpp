@@ -8,7 +8,6 @@
 #include "formats/gltf/joint_tracks.h"
 #include "formats/gltf/mesh_shape_internal.h"
 #include "math/vector_arrays.h"
-#include "scene/tangents.h"
 
 namespace krok::gltf {
 
@@ -25,6 +24,14 @@ void subtract_and_pack(std::span<const Vec4f> base, std::span<Vec4f> tangents) {
 
 std::span<const std::byte> packed_bytes(std::span<const Vec4f> tangents) {
   return std::as_bytes(tangents).first(tangents.size() * 3 * sizeof(float));
+}
+
+// Only its textures show tangents, which take a third of a baked motion.
+bool has_normal_texture(const Model& model, std::span<const Material> materials) {
+  return std::ranges::any_of(model.parts, [&](const Model::Part& part) {
+    const Material* const material = find_material(materials, part.material);
+    return part.triangle_count > 0 && material != nullptr && material->normal_texture;
+  });
 }
 
 Error not_finite(int frame) {
@@ -78,7 +85,7 @@ class BakedClip {
   std::size_t targets() const { return bounds_.size(); }
 
   bool with_tangents() const {
-    return motion_.tangents && needs_tangents(model_, options_.materials);
+    return motion_.tangents && has_normal_texture(model_, options_.materials);
   }
 
   Status add_first_frame() {
@@ -170,7 +177,8 @@ class BakedClip {
 std::uint64_t baked_bytes(const Model& model, std::int64_t frames,
                           std::span<const Material> materials) {
   const std::uint64_t vertex =
-      (model.normals.empty() ? 12 : 24) + (needs_tangents(model, materials) ? 12 : 0);
+      (model.normals.empty() ? 12 : 24) +
+      (!model.tangents.empty() && has_normal_texture(model, materials) ? 12 : 0);
   const auto count = static_cast<std::uint64_t>(std::max<std::int64_t>(frames, 1));
   return count * model.positions.size() * vertex + count * (count - 1) * sizeof(float);
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/child_process.h"
 #include "core/result.h"
@@ -13,10 +15,20 @@
 
 namespace krok::gltf {
 
-// EXT_meshopt_compression: each packed buffer view, with libmeshoptimizer. Codes: gltf-compression
+// EXT_meshopt_compression and KHR_meshopt_compression: each packed buffer view, with
+// libmeshoptimizer, or the functions below for what only the second has. Codes: gltf-compression
 // (parameters or data are invalid), gltf-too-large. Source: the extension's page in the glTF
 // registry, appendices A (bitstreams) and B (filters).
 Status unpack_meshopt(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_bytes);
+
+// Version 1 of the attribute codec, which libmeshoptimizer has since 0.23, and the COLOR filter.
+// Source: KHR_meshopt_compression, appendices A and B. `to` has elements of `stride` bytes, a
+// multiple of 4 up to 256 (colours: 4 or 8). (vertex_codec.cpp)
+bool is_second_codec(std::span<const std::byte> packed);
+// False if the data is invalid.
+bool unpack_second_codec(std::span<const std::byte> packed, std::size_t stride,
+                         std::span<std::byte> to);
+void unfilter_colours(std::span<std::byte> colours, std::size_t stride);
 
 // KHR_draco_mesh_compression: the indices and attributes of each packed primitive, with libdraco.
 // Its decoder runs in a process of its own with limits, as it takes memory by what the data claims

@@ -38,6 +38,11 @@ tinygltf::Value provenance_value(const Provenance& provenance) {
   return tinygltf::Value(tinygltf::Value::Object{{"provenance", tinygltf::Value(value)}});
 }
 
+// extras of an animation. Keys may be fewer than frames, and none at all of their frames' rate.
+tinygltf::Value rate_value(double rate) {
+  return tinygltf::Value(tinygltf::Value::Object{{kRate, tinygltf::Value(rate)}});
+}
+
 template <typename Vector>
 std::vector<double> as_list(const Vector& values) {
   return {values.data(), values.data() + values.size()};
@@ -295,16 +300,13 @@ void Document::add_animation(const JointTracks& tracks, const std::string& name)
   assert(tracks.joints.size() == inner.size());
   tinygltf::Animation animation;
   animation.name = name;
-  std::map<std::vector<int>, int> time_accessors;
-  // The times of some frames, or of all; tracks with the same key frames share an accessor.
+  if (tracks.rate > 0) animation.extras = rate_value(tracks.rate);
+  // The times of some frames, or of all; tracks of any clip with the same share an accessor.
   const auto times = [&](const std::vector<int>& frames) {
-    const auto [place, made] = time_accessors.emplace(frames, 0);
-    if (made) {
-      std::vector<float> chosen;
-      for (const int frame : frames) chosen.push_back(tracks.times[frame]);
-      place->second =
-          add_floats(frames.empty() ? tracks.times : chosen, TINYGLTF_TYPE_SCALAR, Use::data, true);
-    }
+    std::vector<float> chosen;
+    for (const int frame : frames) chosen.push_back(tracks.times[frame]);
+    const auto [place, made] = times_.emplace(frames.empty() ? tracks.times : chosen, 0);
+    if (made) place->second = add_floats(place->first, TINYGLTF_TYPE_SCALAR, Use::data, true);
     return place->second;
   };
   for (std::size_t j = 0; j < inner.size(); ++j) {
@@ -383,7 +385,8 @@ Result<std::vector<Document::MeshNode>> Document::add_meshes(
   }
   for_each_own_primitive(
       meshes, [&](tinygltf::Primitive& primitive, const VertexRange& range, bool is_first) {
-        primitive.attributes = attributes_of(attributes, range, is_first);
+        primitive.attributes =
+            attributes_of(own_attributes(primitive, attributes, range), range, is_first);
       });
   for (MeshNode& made : meshes) {
     const std::string& wanted = gltf.meshes[static_cast<std::size_t>(made.mesh)].name;

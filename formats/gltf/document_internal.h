@@ -37,6 +37,10 @@ class Document {
                  Keep keep = Keep::copy);
   int add_positions(std::span<const Vec3f> values, Use use = Use::vertices);  // with bounds
   int add_vectors(std::span<const Vec3f> values, Use use = Use::vertices);
+  // Displacements that are mostly none, as sparse accessors where that takes less than half of the
+  // bytes: until set_targets() the accessor has no data. Not in compressed files, which are as
+  // small without. (part_vertices.cpp)
+  int add_displacements(std::vector<Vec3f> values, bool bounds);
   int add_integers(std::span<const std::uint32_t> values, int type, std::uint32_t largest, Use use);
 
   // Vertex values of a fixed number of bytes each, the last of them padding if they are fewer.
@@ -56,8 +60,8 @@ class Document {
                    const std::string& name, const Mat4& stored_to_model = Mat4::Identity());
 
   // The material of this name from WriteOptions::materials, or a default one; added once, as are
-  // its images. Textures are left out for meshes without texture coordinates, normal textures also
-  // without tangents (`attributes` are the same in all calls). Codes: those of image_info().
+  // its images. Textures are left out for meshes without texture coordinates (`attributes` are the
+  // same in all calls). Codes: those of image_info().
   // (materials.cpp)
   Result<int> add_material(const std::string& name, const std::map<std::string, int>& attributes);
 
@@ -84,12 +88,13 @@ class Document {
                    const std::vector<std::map<std::string, int>>& targets,
                    std::span<const std::string> names);
 
-  // Keys for the morph weights [times x targets] of the meshes, in the first animation, or in a new
-  // one called `name`.
+  // Keys for the morph weights [times x targets] of the meshes, in an animation, or after the last
+  // in a new one called `name`.
   void add_weight_keys(std::span<const MeshNode> meshes, std::span<const float> times,
-                       std::span<const float> weights, const std::string& name);
+                       std::span<const float> weights, const std::string& name,
+                       std::size_t animation = 0);
   void add_weight_channels(std::span<const MeshNode> meshes, int times, int weights,
-                           const std::string& name);
+                           const std::string& name, std::size_t animation = 0);
 
   // As add_floats(), for data streamed while the file is written, after all other data: append()
   // gets the bytes, in the order of these calls.
@@ -133,6 +138,13 @@ class Document {
   void for_each_own_primitive(
       std::span<const MeshNode> meshes,
       const std::function<void(tinygltf::Primitive&, const VertexRange&, bool is_first)>& take);
+  // Without texture coordinates that are all 0 and that no texture uses: a model has one list for
+  // all parts, whether or not each had some.
+  std::map<std::string, int> own_attributes(const tinygltf::Primitive& primitive,
+                                            const std::map<std::string, int>& whole,
+                                            const VertexRange& range) const;
+  // Gives an accessor of add_displacements() the data of a range.
+  void fill_displacements(std::span<const Vec3f> values, tinygltf::Accessor& accessor);
   Result<tinygltf::Primitive> primitive_of(const Model& model, const Model::Part& part,
                                            const std::map<std::string, int>& attributes,
                                            const VertexRange& range);
@@ -167,11 +179,13 @@ class Document {
   const WriteOptions& options_;
   std::vector<Part> parts_;
   std::vector<int> outer_;  // [joints] the node that places a joint: its own, or the one above it
-  std::map<int, Filter> filters_;                   // of buffer views
-  std::map<int, std::vector<VertexRange>> ranges_;  // of the primitives of a mesh
-  std::uint64_t size_ = 0;                          // bytes of the parts and the streamed data
-  std::uint64_t promised_ = 0;                      // bytes of the streamed data
-  std::size_t bounds_ = 0;                          // bounds that are not filled in yet
+  std::map<int, Filter> filters_;                    // of buffer views
+  std::map<int, std::vector<VertexRange>> ranges_;   // of the primitives of a mesh
+  std::map<int, std::vector<Vec3f>> displacements_;  // of accessors without data
+  std::map<std::vector<float>, int> times_;          // accessors of key times
+  std::uint64_t size_ = 0;                           // bytes of the parts and the streamed data
+  std::uint64_t promised_ = 0;                       // bytes of the streamed data
+  std::size_t bounds_ = 0;                           // bounds that are not filled in yet
   OutputFile* file_ = nullptr;
   std::string json_;                  // with space reserved for the bounds
   std::vector<std::byte> unencoded_;  // the last bytes, fewer than one Base64 group

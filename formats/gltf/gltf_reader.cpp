@@ -138,6 +138,32 @@ Status link_nodes(std::vector<Node>& nodes) {
   return {};
 }
 
+// A scene lists roots alone. Of one that lists other nodes, too, those stay where their parents put
+// them; the trees that they are in take their place.
+void replace_by_trees(Scene& scene) {
+  std::vector<int> trees;
+  std::vector<bool> taken(scene.nodes.size(), false);
+  std::string nested;
+  for (const int listed : scene.roots) {
+    int top = listed;
+    while (scene.nodes[static_cast<std::size_t>(top)].parent >= 0) {
+      top = scene.nodes[static_cast<std::size_t>(top)].parent;
+    }
+    if (top != listed && nested.empty()) {
+      const auto index = static_cast<std::size_t>(listed);
+      nested = label("node", index, scene.nodes[index].name);
+    }
+    if (!taken[static_cast<std::size_t>(top)]) trees.push_back(top);
+    taken[static_cast<std::size_t>(top)] = true;
+  }
+  if (nested.empty()) return;
+  scene.roots = std::move(trees);
+  warn(scene.diagnostics, "gltf-node",
+       fmt::format("the scene lists {}, which is a child of another node; it is shown where that "
+                   "puts it",
+                   nested));
+}
+
 // Sets which nodes are visible.
 Status read_scene(const tinygltf::Model& model, Scene& scene) {
   auto& nodes = scene.nodes;
@@ -156,11 +182,6 @@ Status read_scene(const tinygltf::Model& model, Scene& scene) {
       if (!exists(root, nodes.size())) {
         return Error("gltf-node", fmt::format("the scene has node {}, which does not exist", root));
       }
-      if (nodes[static_cast<std::size_t>(root)].parent != -1) {
-        return Error("gltf-node",
-                     fmt::format("the scene has node {}, which is a child of another node", root),
-                     "a scene lists root nodes only");
-      }
       if (std::find(scene.roots.begin(), scene.roots.end(), root) == scene.roots.end()) {
         scene.roots.push_back(root);
       }
@@ -169,9 +190,11 @@ Status read_scene(const tinygltf::Model& model, Scene& scene) {
   std::vector<int> reached = scene.roots;
   for (std::size_t k = 0; k < reached.size(); ++k) {
     Node& node = nodes[static_cast<std::size_t>(reached[k])];
+    if (node.in_scene) continue;
     node.in_scene = true;
     reached.insert(reached.end(), node.children.begin(), node.children.end());
   }
+  replace_by_trees(scene);
   return {};
 }
 

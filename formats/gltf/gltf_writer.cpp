@@ -13,7 +13,6 @@
 #include "formats/gltf/quantize_internal.h"
 #include "scene/influences.h"
 #include "scene/model.h"
-#include "scene/tangents.h"
 
 namespace krok::gltf {
 
@@ -52,10 +51,26 @@ Status check_morphs(const Model& model, const WriteOptions& options) {
                                           options.morphs->vertex_count, model.vertex_count()));
 }
 
-// Adds them to the model's meshes, which have `attributes`, and to the animation of their nodes.
+// The clip's name, as the options give it.
+const std::string& clip_name(const WriteOptions& options) {
+  return options.clip_name.empty() ? options.name : options.clip_name;
+}
+
+Status add_weight_keys(Document& document, std::span<const Document::MeshNode> meshes,
+                       const MorphWeights& weights, const std::string& name,
+                       std::size_t animation = 0) {
+  if (weights.frame_count() < 2) return {};
+  const auto times = key_times(weights.frame_count(), weights.rate);
+  if (!times) return times.error();
+  document.add_weight_keys(meshes, *times, weights.values, name, animation);
+  return {};
+}
+
+// Adds them to the model's meshes, which have `attributes`, and to the animations of their nodes.
 Status add_morphs(Document& document, const Model& model,
                   const std::map<std::string, int>& attributes,
-                  std::span<const Document::MeshNode> meshes, const WriteOptions& options) {
+                  std::span<const Document::MeshNode> meshes, std::span<const NamedTracks> clips,
+                  const WriteOptions& options) {
   if (options.morphs == nullptr || options.morphs->names.empty()) return {};
   const MorphSet& morphs = *options.morphs;
   std::vector<std::map<std::string, int>> targets(morphs.names.size());
@@ -66,25 +81,38 @@ Status add_morphs(Document& document, const Model& model,
                                     PositionGrid::of(model.positions, *options.quantized));
       continue;
     }
-    target["POSITION"] =
-        document.add_positions(displacements(morphs.target_positions(t), model.positions));
+    target["POSITION"] = document.add_displacements(
+        displacements(morphs.target_positions(t), model.positions), true);
     // In glTF a target may only have attributes that the mesh has.
     if (morphs.normals.empty() || model.normals.empty() || !attributes.contains("NORMAL")) continue;
-    target["NORMAL"] = document.add_vectors(displacements(morphs.target_normals(t), model.normals));
+    target["NORMAL"] =
+        document.add_displacements(displacements(morphs.target_normals(t), model.normals), false);
   }
   document.set_targets(meshes, targets, morphs.names);
-  if (options.weights == nullptr) return {};
-  const MorphWeights& weights = *options.weights;
-  if (weights.frame_count() == 1) {
+  if (options.weights != nullptr && options.weights->frame_count() > 0) {
+    const std::size_t count = morphs.names.size();
+    const bool still = options.weights->frame_count() == 1;
     for (const Document::MeshNode& made : meshes) {
-      document.gltf.meshes[static_cast<std::size_t>(made.mesh)].weights.assign(
-          weights.values.begin(), weights.values.end());
+      std::vector<double>& rest = document.gltf.meshes[static_cast<std::size_t>(made.mesh)].weights;
+      if (still) {
+        rest.assign(options.weights->values.begin(),
+                    options.weights->values.begin() + static_cast<std::ptrdiff_t>(count));
+      }
     }
-  } else if (weights.frame_count() > 1) {
-    const auto times = key_times(weights.frame_count(), weights.rate);
-    if (!times) return times.error();
-    document.add_weight_keys(meshes, *times, weights.values,
-                             options.clip_name.empty() ? options.name : options.clip_name);
+  }
+  if (clips.empty() && options.weights != nullptr) {
+    return add_weight_keys(document, meshes, *options.weights, clip_name(options));
+  }
+  std::size_t animation = 0;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const MorphWeights* weights = clips[i].weights;
+    if (weights == nullptr && i == 0) weights = options.weights;
+    const auto& times = clips[i].tracks->times;
+    if (weights != nullptr && (!times.empty() || clips.size() == 1)) {
+      Status status = add_weight_keys(document, meshes, *weights, clips[i].name, animation);
+      if (!status) return status;
+    }
+    animation += times.empty() ? 0 : 1;
   }
   return {};
 }
@@ -122,36 +150,23 @@ void add_influences(Document& document, const Model& model,
   }
 }
 
-// The clip's name, as the options give it.
-const std::string& clip_name(const WriteOptions& options) {
-  return options.clip_name.empty() ? options.name : options.clip_name;
-}
-
-// Tangents, if a normal texture needs them and the shape has none.
-std::vector<Vec4f> missing_tangents(const Model& model, const MeshShape& shape,
-                                    const WriteOptions& options) {
-  if (!shape.tangents.empty() || shape.normals.empty() ||
-      !needs_tangents(model, options.materials)) {
-    return {};
-  }
-  return make_tangents(shape.positions, shape.normals, model.texture_coordinates, model.triangles);
-}
-
 }  // namespace
 
 void Document::add_weight_keys(std::span<const MeshNode> meshes, std::span<const float> times,
-                               std::span<const float> weights, const std::string& name) {
-  const int input = add_floats(times, TINYGLTF_TYPE_SCALAR, Use::data, true);
+                               std::span<const float> weights, const std::string& name,
+                               std::size_t animation) {
+  const auto [place, made] = times_.emplace(std::vector<float>(times.begin(), times.end()), 0);
+  if (made) place->second = add_floats(times, TINYGLTF_TYPE_SCALAR, Use::data, true);
+  const int input = place->second;
   const int output = add_floats(weights, TINYGLTF_TYPE_SCALAR, Use::data, false);
-  add_weight_channels(meshes, input, output, name);
+  add_weight_channels(meshes, input, output, name, animation);
 }
 
 void Document::add_weight_channels(std::span<const MeshNode> meshes, int times, int weights,
-                                   const std::string& name) {
-  if (gltf.animations.empty()) gltf.animations.emplace_back().name = name;
-  for (const MeshNode& made : meshes) {
-    add_channel(gltf.animations.front(), made.node, "weights", times, weights);
-  }
+                                   const std::string& name, std::size_t animation) {
+  if (animation >= gltf.animations.size()) gltf.animations.emplace_back().name = name;
+  auto& to = gltf.animations[std::min(animation, gltf.animations.size() - 1)];
+  for (const MeshNode& made : meshes) add_channel(to, made.node, "weights", times, weights);
 }
 
 Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile& file) {
@@ -199,45 +214,42 @@ Status write_rig(const Model& model, std::span<const NamedTracks> clips,
                  const WriteOptions& options, OutputFile& file) {
   if (Status status = check_mesh(model); !status) return status;
   if (Status status = check_morphs(model, options); !status) return status;
+  for (const NamedTracks& clip : clips) {
+    if (clip.weights == nullptr) continue;
+    if (Status status = check_weights(*clip.weights, options.morphs); !status) return status;
+  }
   Document document(options);
   const PositionGrid grid =
       options.quantized ? PositionGrid::of(model.positions, *options.quantized) : PositionGrid();
   const int skin = document.add_skeleton(model.skeleton, clips, options.name, grid.to_model());
   if (Status status = document.add_eyes(model.skeleton, skin, options.eyes); !status) return status;
-  MeshShape shape{model.positions, model.normals, model.tangents};
-  const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
-  if (!tangents.empty()) shape.tangents = tangents;
   std::map<std::string, int> attributes;
   if (options.quantized) {
     Model stored = model;
-    if (!tangents.empty()) stored.tangents = tangents;
     normalize_influences(stored);
     limit_influences(stored, used_influences(stored));
     attributes = add_quantized_shape(document, stored, grid, *options.quantized);
     document.gltf.extensionsUsed.emplace_back("KHR_mesh_quantization");
     document.gltf.extensionsRequired.emplace_back("KHR_mesh_quantization");
   } else {
-    attributes = add_shape(document, model, shape);
+    attributes = add_shape(document, model, {model.positions, model.normals, model.tangents});
     add_influences(document, model, attributes);
   }
   const auto meshes = document.add_meshes(model, attributes, skin, mesh_name(options), true);
   if (!meshes) return meshes.error();
-  Status status = add_morphs(document, model, attributes, *meshes, options);
+  Status status = add_morphs(document, model, attributes, *meshes, clips, options);
   return status ? document.write(file) : status;
 }
 
-Status write_mesh(const Model& model, const MeshShape& given, const WriteOptions& options,
+Status write_mesh(const Model& model, const MeshShape& shape, const WriteOptions& options,
                   OutputFile& file) {
   if (Status status = check_mesh(model); !status) return status;
   if (Status status = check_morphs(model, options); !status) return status;
   Document document(options);
-  MeshShape shape = given;
-  const std::vector<Vec4f> tangents = missing_tangents(model, shape, options);
-  if (!tangents.empty()) shape.tangents = tangents;
   const auto attributes = add_shape(document, model, shape);
   const auto meshes = document.add_meshes(model, attributes, -1, mesh_name(options), true);
   if (!meshes) return meshes.error();
-  Status status = add_morphs(document, model, attributes, *meshes, options);
+  Status status = add_morphs(document, model, attributes, *meshes, {}, options);
   return status ? document.write(file) : status;
 }
 

@@ -32,9 +32,8 @@ struct WriteOptions {
   std::string name = "krok";
   std::string clip_name = {};  // of the animation; empty: `name`
   // Materials of the model's parts, by name, with image bytes; parts with other materials are light
-  // grey. Must outlive the call. Textures need texture coordinates. Normal textures also need
-  // tangents, which are computed if the model has none; baked clips without tangents leave normal
-  // textures out.
+  // grey. Must outlive the call. Textures need texture coordinates. Tangents are written where the
+  // model has some; without them loaders compute those of a normal texture (glTF 2.0, 3.7.2.1).
   std::span<const Material> materials{};
   // Eye nodes as children of their joints, named like "left_eye"; write_rig only.
   std::span<const Character::Eye> eyes{};
@@ -44,7 +43,7 @@ struct WriteOptions {
   // for filters (Quantization, JointTrack). Best after order_for_compression().
   bool compressed = false;
   // For write_rig and write_mesh: morph targets of the model and their weights over time (constant
-  // if one frame), in the same animation as the joints. Code: gltf-morphs.
+  // if one frame), in the first animation. Code: gltf-morphs.
   const MorphSet* morphs = nullptr;
   const MorphWeights* weights = nullptr;  // of `morphs`, in its order
 };
@@ -52,7 +51,8 @@ struct WriteOptions {
 // One of the animations of a file.
 struct NamedTracks {
   std::string name;
-  const JointTracks* tracks = nullptr;  // of the file's skeleton; none if it has no times
+  const JointTracks* tracks = nullptr;    // of the file's skeleton; none if it has no times
+  const MorphWeights* weights = nullptr;  // of its frames, for WriteOptions::morphs; or null
 };
 
 // A skeleton and its motion: one node per joint, in the reference pose; a skin that marks them as
@@ -73,7 +73,7 @@ Status write_skeleton(const Skeleton& skeleton, const JointTracks& tracks,
 Status write_rig(const Model& model, const JointTracks& tracks, const WriteOptions& options,
                  OutputFile& file);
 
-// As above, with several animations. Weights go into the first.
+// As above, with several animations.
 Status write_skeleton(const Skeleton& skeleton, std::span<const NamedTracks> clips,
                       const WriteOptions& options, OutputFile& file);
 Status write_rig(const Model& model, std::span<const NamedTracks> clips,

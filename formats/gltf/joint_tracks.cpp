@@ -226,6 +226,7 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source
   if (!times) return times.error();
   JointTracks tracks = rest_tracks(rest);
   tracks.times = std::move(*times);
+  tracks.rate = source.rate;
   TrackBuilder builder(rest, source, tolerance, jobs, tracks);
   if (Status status = builder.build(); !status) return status.error();
   return tracks;

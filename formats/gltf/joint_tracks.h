@@ -38,6 +38,7 @@ struct JointTrack {
 
 struct JointTracks {
   std::vector<float> times;        // [frames], seconds, strictly increasing from 0
+  double rate = 0;                 // of the frames
   std::vector<JointTrack> joints;  // [joints]
 
   bool are_stretched() const;  // whether a joint has scales

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -97,15 +98,20 @@ Status check_asset(const Json& json) {
 constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
 constexpr std::string_view kVisibility = "KHR_node_visibility";
 constexpr std::string_view kPointer = "KHR_animation_pointer";
-constexpr std::string_view kMeshopt = "EXT_meshopt_compression";
+constexpr std::array<std::string_view, 2> kMeshopt = {"EXT_meshopt_compression",
+                                                      "KHR_meshopt_compression"};
 constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
+
+bool is_meshopt(std::string_view extension) {
+  return std::ranges::find(kMeshopt, extension) != kMeshopt.end();
+}
 
 // Extensions that are read, or affect appearance but not geometry.
 bool is_supported(std::string_view extension) {
   constexpr std::array kPrefixes = {"KHR_materials_", "KHR_texture_",         "EXT_texture_",
                                     "MSFT_texture_",  "KHR_lights_",          "EXT_lights_",
                                     "KHR_xmp",        "KHR_techniques_webgl", "MSFT_lod"};
-  return extension == "KHR_mesh_quantization" || extension == kMeshopt || extension == kDraco ||
+  return extension == "KHR_mesh_quantization" || is_meshopt(extension) || extension == kDraco ||
          extension == kInstancing || extension == kVisibility || extension == kPointer ||
          std::any_of(kPrefixes.begin(), kPrefixes.end(),
                      [&](const char* prefix) { return extension.starts_with(prefix); });
@@ -133,6 +139,12 @@ const Json* extension_of(const Json& object, std::string_view extension) {
   return found == all->end() || !found->is_object() ? nullptr : &*found;
 }
 
+// That of meshopt under either of its names.
+const Json* meshopt_of(const Json& object) {
+  const Json* const first = extension_of(object, kMeshopt[0]);
+  return first != nullptr ? first : extension_of(object, kMeshopt[1]);
+}
+
 // The entries of a list of the file; none if it has no such list.
 std::span<const Json> entries_of(const Json& object, const char* list_name) {
   const auto list = object.is_object() ? object.find(list_name) : object.end();
@@ -154,7 +166,7 @@ Result<std::vector<PackedView>> read_packed_views(const Json& json) {
   std::vector<PackedView> all;
   const auto views = entries_of(json, "bufferViews");
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const Json* source = extension_of(views[i], kMeshopt);
+    const Json* source = meshopt_of(views[i]);
     if (source == nullptr) continue;
     PackedView& packed = all.emplace_back();
     packed.view = i;
@@ -264,7 +276,7 @@ bool is_shown(std::string_view extension) {
                                   "KHR_lights_punctual",  // counted as lights
                                   "KHR_animation_pointer"};
   const auto is_it = [&](std::string_view other) { return extension == other; };
-  return is_it(kMeshopt) || is_it(kDraco) || is_it(kInstancing) || is_it(kVisibility) ||
+  return is_meshopt(extension) || is_it(kDraco) || is_it(kInstancing) || is_it(kVisibility) ||
          std::ranges::any_of(kOthers, is_it) ||
          (extension.starts_with("KHR_materials_") && extension != "KHR_materials_variants");
 }
@@ -312,11 +324,52 @@ Result<std::vector<BufferEntry>> read_buffers(const Json& json) {
                    fmt::format("buffer {} has no valid byteLength", buffers.size()));
     }
     const auto uri = entry.find("uri");
-    const Json* fallback = extension_of(entry, kMeshopt);
+    const Json* fallback = meshopt_of(entry);
     buffers.push_back({length->get<std::uint64_t>(), uri != entry.end(), text_member(entry, "uri"),
                        fallback != nullptr && fallback->value("fallback", Json()) == true});
   }
   return buffers;
+}
+
+// Buffers without data, all of whose views are packed elsewhere, need no mark as fallback.
+void mark_fallbacks(const Json& json, std::vector<BufferEntry>& buffers) {
+  std::vector<std::size_t> views(buffers.size(), 0), packed(buffers.size(), 0);
+  for (const Json& view : entries_of(json, "bufferViews")) {
+    const auto index = view.is_object() ? view.find("buffer") : view.end();
+    if (!view.is_object() || index == view.end() || !index->is_number_unsigned()) continue;
+    const auto buffer = index->get<std::uint64_t>();
+    if (buffer >= buffers.size()) continue;
+    ++views[buffer];
+    const Json* const source = meshopt_of(view);
+    packed[buffer] += source != nullptr ? 1 : 0;
+    const Json from = source == nullptr ? Json() : source->value("buffer", Json());
+    if (from.is_number_unsigned() && from.get<std::uint64_t>() < buffers.size()) {
+      ++views[from.get<std::uint64_t>()];  // it has data
+    }
+  }
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    if (views[i] > 0 && views[i] == packed[i] && !buffers[i].has_uri) buffers[i].fallback = true;
+  }
+}
+
+// glTF lets whole numbers have a fraction of zero, section 2.7: 4.0. Numbers of extras stay.
+void make_whole(Json& json) {
+  if (json.is_number_float()) {
+    constexpr double kExact = 9007199254740992;  // 2^53
+    const double value = json.get<double>();
+    if (value != std::floor(value) || std::abs(value) > kExact) return;
+    if (value < 0) {
+      json = static_cast<std::int64_t>(value);
+    } else {
+      json = static_cast<std::uint64_t>(value);
+    }
+  } else if (json.is_array()) {
+    for (Json& part : json) make_whole(part);
+  } else if (json.is_object()) {
+    for (auto& [key, part] : json.items()) {
+      if (key != "extras") make_whole(part);
+    }
+  }
 }
 
 // Names of the entries of a list.
@@ -467,8 +520,10 @@ Result<ParsedJson> parse_json(const Container& container) {
   if (auto ok = check_extensions(json); !ok) return ok.error();
 
   ParsedJson result;
+  make_whole(json);
   auto buffers = read_buffers(json);
   if (!buffers) return buffers.error();
+  mark_fallbacks(json, *buffers);
   result.buffers = std::move(*buffers);
   for (const Json& node : entries_of(json, "nodes")) {
     result.lights.push_back(extension_of(node, "KHR_lights_punctual") != nullptr);
@@ -479,6 +534,11 @@ Result<ParsedJson> parse_json(const Container& container) {
   }
   result.instanced = read_instanced(json);
   result.pointers = take_pointers(json);
+  for (const Json& animation : entries_of(json, "animations")) {
+    const Json::json_pointer place(std::string("/extras/") + kRate);
+    const bool given = animation.contains(place) && animation.at(place).is_number();
+    result.rates.push_back(given ? animation.at(place).get<double>() : 0);
+  }
   result.not_shown = read_not_shown(json, result);
   auto views = read_packed_views(json);
   if (!views) return views.error();

@@ -53,6 +53,9 @@ struct InstancedNode {
 inline constexpr const char* kMark = "krok";
 inline constexpr const char* kEye = "eye";
 
+// extras of animations: the rate of the frames that their keys are on, {"rate": 7}.
+inline constexpr const char* kRate = "rate";
+
 struct CameraEntry {
   std::string name;
   bool perspective = true;
@@ -83,6 +86,7 @@ struct ParsedJson {
   std::vector<InstancedNode> instanced;
   // Without those of a node's transform or weights, which are in `model` as channels of the node.
   std::vector<PointerChannel> pointers;
+  std::vector<double> rates;           // [animations], of their extras; 0 without
   std::vector<std::string> not_shown;  // as nodes::Scene::not_shown
   std::vector<PackedView> packed_views;
   std::vector<PackedPrimitive> packed_primitives;

@@ -155,7 +155,7 @@ Result<int> Document::add_material(const std::string& name,
     status = refer(from.metallic_roughness_texture,
                    material.pbrMetallicRoughness.metallicRoughnessTexture);
   }
-  if (status && attributes.contains("TANGENT")) {
+  if (status) {
     status = refer(from.normal_texture, material.normalTexture);
     material.normalTexture.scale = as_meant(from.normal_scale);
   }

@@ -11,7 +11,7 @@ namespace {
 
 Error bad_view(const PackedView& packed, const std::string& what) {
   return Error("gltf-compression",
-               fmt::format("buffer view {} (EXT_meshopt_compression): {}", packed.view, what),
+               fmt::format("buffer view {} (meshopt compression): {}", packed.view, what),
                kDamagedHint);
 }
 
@@ -33,7 +33,8 @@ Status check_parameters(const PackedView& packed) {
     return bad_view(packed, fmt::format("{} indices do not form whole triangles", packed.count));
   }
   const bool fits = packed.filter == "NONE" || packed.filter.empty() ||
-                    (packed.filter == "OCTAHEDRAL" && (stride == 4 || stride == 8)) ||
+                    ((packed.filter == "OCTAHEDRAL" || packed.filter == "COLOR") &&
+                     (stride == 4 || stride == 8)) ||
                     (packed.filter == "QUATERNION" && stride == 8) ||
                     (packed.filter == "EXPONENTIAL" && stride % 4 == 0);
   const bool filtered = !packed.filter.empty() && packed.filter != "NONE";
@@ -64,10 +65,19 @@ bool unpack(const PackedView& packed, std::span<const std::byte> bytes, unsigned
   if (packed.mode == "INDICES") {
     return meshopt_decodeIndexSequence(to, count, stride, from, bytes.size()) == 0;
   }
-  if (meshopt_decodeVertexBuffer(to, count, stride, from, bytes.size()) != 0) return false;
+  if (is_second_codec(bytes)) {
+    if (!unpack_second_codec(bytes, stride, {reinterpret_cast<std::byte*>(to), count * stride})) {
+      return false;
+    }
+  } else if (meshopt_decodeVertexBuffer(to, count, stride, from, bytes.size()) != 0) {
+    return false;
+  }
   if (packed.filter == "OCTAHEDRAL") meshopt_decodeFilterOct(to, count, stride);
   if (packed.filter == "QUATERNION") meshopt_decodeFilterQuat(to, count, stride);
   if (packed.filter == "EXPONENTIAL") meshopt_decodeFilterExp(to, count, stride);
+  if (packed.filter == "COLOR") {
+    unfilter_colours({reinterpret_cast<std::byte*>(to), count * stride}, stride);
+  }
   return true;
 }
 

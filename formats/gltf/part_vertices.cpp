@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -85,6 +87,16 @@ std::map<std::string, int> Document::attributes_of(const std::map<std::string, i
   std::map<std::string, int> attributes = whole;
   for (auto& [name, index] : attributes) {
     tinygltf::Accessor part = gltf.accessors[static_cast<std::size_t>(index)];
+    if (const auto found = displacements_.find(index); found != displacements_.end()) {
+      fill_displacements(std::span(found->second).subspan(range.first, range.count), part);
+      if (in_place) {
+        gltf.accessors[static_cast<std::size_t>(index)] = std::move(part);
+      } else {
+        index = static_cast<int>(gltf.accessors.size());
+        gltf.accessors.push_back(std::move(part));
+      }
+      continue;
+    }
     const auto& view = gltf.bufferViews[static_cast<std::size_t>(part.bufferView)];
     part.byteOffset = range.first * view.byteStride;
     part.count = range.count;
@@ -97,6 +109,32 @@ std::map<std::string, int> Document::attributes_of(const std::map<std::string, i
     }
   }
   return attributes;
+}
+
+std::map<std::string, int> Document::own_attributes(const tinygltf::Primitive& primitive,
+                                                    const std::map<std::string, int>& whole,
+                                                    const VertexRange& range) const {
+  const tinygltf::Material& material = gltf.materials[static_cast<std::size_t>(primitive.material)];
+  const auto is_used = [&](const std::string& name) {
+    const auto uses = [&](const auto& info) {
+      return info.index >= 0 && name == fmt::format("TEXCOORD_{}", info.texCoord);
+    };
+    return uses(material.pbrMetallicRoughness.baseColorTexture) ||
+           uses(material.pbrMetallicRoughness.metallicRoughnessTexture) ||
+           uses(material.normalTexture) || uses(material.occlusionTexture) ||
+           uses(material.emissiveTexture);
+  };
+  std::map<std::string, int> own = whole;
+  std::erase_if(own, [&](const auto& attribute) {
+    const auto& [name, index] = attribute;
+    if (!name.starts_with("TEXCOORD_") || is_used(name)) return false;
+    const auto& accessor = gltf.accessors[static_cast<std::size_t>(index)];
+    const auto& view = gltf.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+    const auto bytes = bytes_from(view.byteOffset + range.first * view.byteStride)
+                           .first(range.count * view.byteStride);
+    return std::ranges::all_of(bytes, [](std::byte byte) { return byte == std::byte{0}; });
+  });
+  return own;
 }
 
 void Document::for_each_own_primitive(
@@ -112,6 +150,55 @@ void Document::for_each_own_primitive(
   }
 }
 
+int Document::add_displacements(std::vector<Vec3f> values, bool bounds) {
+  const auto moved = std::ranges::count_if(values, [](const Vec3f& one) { return !one.isZero(0); });
+  constexpr std::ptrdiff_t kSparse = sizeof(Vec3f) + sizeof(std::uint32_t), kDense = sizeof(Vec3f);
+  if ((options_.compressed && options_.binary) ||
+      2 * moved * kSparse > std::ssize(values) * kDense) {
+    return bounds ? add_positions(values) : add_vectors(values);
+  }
+  tinygltf::Accessor accessor;
+  accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+  accessor.type = TINYGLTF_TYPE_VEC3;
+  if (bounds) accessor.minValues.resize(3);
+  const int index = static_cast<int>(gltf.accessors.size());
+  gltf.accessors.push_back(std::move(accessor));
+  displacements_[index] = std::move(values);
+  return index;
+}
+
+void Document::fill_displacements(std::span<const Vec3f> values, tinygltf::Accessor& accessor) {
+  accessor.count = values.size();
+  std::vector<std::uint32_t> places;
+  std::vector<Vec3f> moved;
+  Vec3f least = values.empty() ? Vec3f(Vec3f::Zero()) : values[0], most = least;
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    least = least.cwiseMin(values[v]);
+    most = most.cwiseMax(values[v]);
+    if (values[v].isZero(0)) continue;
+    places.push_back(static_cast<std::uint32_t>(v));
+    moved.push_back(values[v]);
+  }
+  if (!accessor.minValues.empty()) {
+    accessor.minValues.assign(least.data(), least.data() + 3);
+    accessor.maxValues.assign(most.data(), most.data() + 3);
+  }
+  if (moved.empty()) return;              // an accessor without data is 0
+  const auto take_view = [&](int made) {  // of an accessor that is not needed
+    const int view = gltf.accessors[static_cast<std::size_t>(made)].bufferView;
+    const int component = gltf.accessors[static_cast<std::size_t>(made)].componentType;
+    gltf.accessors.pop_back();
+    return std::pair(view, component);
+  };
+  const auto [index_view, component] =
+      take_view(add_integers(places, TINYGLTF_TYPE_SCALAR, places.back(), Use::data));
+  const auto value_view = take_view(add_vectors(moved, Use::data)).first;
+  accessor.sparse.isSparse = true;
+  accessor.sparse.count = static_cast<int>(moved.size());
+  accessor.sparse.indices = {0, index_view, component};
+  accessor.sparse.values = {value_view, 0};
+}
+
 void Document::set_targets(std::span<const MeshNode> meshes,
                            const std::vector<std::map<std::string, int>>& targets,
                            std::span<const std::string> names) {
@@ -122,6 +209,12 @@ void Document::set_targets(std::span<const MeshNode> meshes,
     for (tinygltf::Primitive& primitive : changed.primitives) primitive.targets = targets;
     changed.extras =
         tinygltf::Value(tinygltf::Value::Object{{"targetNames", tinygltf::Value(list)}});
+  }
+  for (const auto& [index, values] : displacements_) {
+    if (!ranges_.empty()) break;
+    tinygltf::Accessor whole = gltf.accessors[static_cast<std::size_t>(index)];
+    fill_displacements(values, whole);
+    gltf.accessors[static_cast<std::size_t>(index)] = std::move(whole);
   }
   for_each_own_primitive(
       meshes, [&](tinygltf::Primitive& primitive, const VertexRange& range, bool is_first) {

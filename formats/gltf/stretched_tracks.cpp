@@ -274,6 +274,7 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip,
   if (!times) return times.error();
   JointTracks tracks = rest_tracks(rest);
   tracks.times = std::move(*times);
+  tracks.rate = clip.rate;
   largest_error = StretchedTracks(rest, clip, stretches, tracks).build();
   return tracks;
 }

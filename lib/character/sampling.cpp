@@ -21,6 +21,7 @@ constexpr std::array kCommonRates = {30.0,         24.0,         25.0,          
 constexpr double kMinRate = 20.0;  // below this, keys are too sparse to be frames
 constexpr double kUsualRate = 30.0;
 constexpr double kUnevenRate = 60.0;
+constexpr double kLeastRate = 0.001, kMostRate = 100'000;  // of files, see check_frame_rate()
 constexpr double kMaxFrames = 1e7;
 
 // The float rounding error of a time, in frames. From half a frame on, every time would match.
@@ -62,7 +63,10 @@ struct FoundRate {
   Confidence confidence = Confidence::guess;
 };
 
-FoundRate find_rate(const std::vector<double>& times) {
+FoundRate find_rate(const std::vector<double>& times, double of_file) {
+  if (of_file >= kLeastRate && of_file <= kMostRate && misfit(times, of_file, false)) {
+    return {of_file, true, "as the file says; all keys are on its frames", Confidence::certain};
+  }
   if (times.size() < 2) return {kUsualRate, true, "fewer than two keys", Confidence::guess};
   const auto even = even_rate(times);
   if (even && *even >= kMinRate) {
@@ -141,7 +145,7 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
     chosen.keys_from = times.front();
     chosen.keys_to = times.back();
   }
-  const FoundRate found = find_rate(times);
+  const FoundRate found = find_rate(times, animation.rate);
   Sampling& sampling = chosen.sampling;
   sampling.start = chosen.keys_from;
   sampling.rate = found.rate;

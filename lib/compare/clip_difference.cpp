@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "compare/frame_match.h"
 #include "compare/skeleton_match.h"
+#include "core/numbers.h"
 #include "math/quaternion.h"
 
 namespace krok::compare {
@@ -24,6 +27,26 @@ void compare_references(const Skeleton& first, const Skeleton& second, const Pai
     result.reference_positions.add((a.position - b.position).norm(), place);
     result.reference_orientations.add(angle_between(a.orientation, b.orientation), place);
   }
+}
+
+// A reference pose that is only elsewhere counts, but comes of a format that does not have its
+// place.
+void note_shifted_reference(const Skeleton& first, const Skeleton& second, const Pairs& joints,
+                            const Tolerance& tolerance, ClipDifference& result) {
+  if (result.reference_positions.within()) return;
+  const auto shift = [&](const std::pair<int, int>& pair) -> Vec3 {
+    return second.reference[static_cast<std::size_t>(pair.second)].position -
+           first.reference[static_cast<std::size_t>(pair.first)].position;
+  };
+  const Vec3 way = shift(joints.front());
+  const bool all = std::ranges::all_of(joints, [&](const auto& pair) {
+    return (shift(pair) - way).norm() <= tolerance.of_joint_positions();
+  });
+  if (!all) return;
+  result.notes.push_back(fmt::format(
+      "the reference pose is the same but for its place, ({}, {}, {}) mm away, which does not show "
+      "in the motion; BVH keeps it with krok-export --root-offset",
+      readable(1000 * way.x(), 4), readable(1000 * way.y(), 4), readable(1000 * way.z(), 4)));
 }
 
 void compare_frames(const Clip& first, const Clip& second, const Pairs& joints,
@@ -95,6 +118,7 @@ Result<ClipDifference> difference(const Clip& first, const Clip& second, const T
   }
   if (joints.empty()) return result;
   compare_references(first.skeleton, second.skeleton, joints, result);
+  note_shifted_reference(first.skeleton, second.skeleton, joints, tolerance, result);
 
   FrameMatch frames = match_frames(first.frame_count(), first.rate, second.frame_count(),
                                    second.rate, tolerance.time);

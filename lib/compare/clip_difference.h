@@ -17,6 +17,7 @@ struct ClipDifference {
   // Differences that no tolerance covers: another skeleton (then nothing is measured), other frame
   // counts or rates. Readable sentences.
   std::vector<std::string> structure;
+  std::vector<std::string> notes;  // what differences may come of
 
   // Number of frames compared: all if the rates are equal (see match_frames); frame by frame if
   // only the rates differ; otherwise frames whose times agree within a thousandth of a frame.

@@ -66,7 +66,8 @@ bool same_image(const EncodedImage& first, const EncodedImage& second) {
 
 class Comparison {
  public:
-  explicit Comparison(double tolerance) : tolerance_(tolerance) {}
+  Comparison(double tolerance, const ImageDistance& images)
+      : tolerance_(tolerance), images_(images) {}
 
   template <typename Value>
   void number(const char* what, const Value& first, const Value& second) {
@@ -85,8 +86,8 @@ class Comparison {
     if (!first || !second) {
       const char* const article = what.starts_with('o') || what.starts_with('e') ? "an" : "a";
       say(fmt::format("only the {} has {} {} texture", first ? "first" : "second", article, what));
-    } else if (!same_image(*first.image, *second.image)) {
-      say(fmt::format("another {} texture", what));
+    } else if (const auto other = difference_of(*first.image, *second.image)) {
+      say(fmt::format("another {} texture{}", what, *other));
     } else if (first.wrap_u != second.wrap_u || first.wrap_v != second.wrap_v ||
                first.smooth != second.smooth) {
       say(fmt::format("the {} texture has another sampler", what));
@@ -112,7 +113,18 @@ class Comparison {
  private:
   void say(std::string phrase) { phrases_.push_back(std::move(phrase)); }
 
+  // nullopt for the same pixels, otherwise how far they are apart, where that is known.
+  std::optional<std::string> difference_of(const EncodedImage& first,
+                                           const EncodedImage& second) const {
+    if (same_image(first, second)) return std::nullopt;
+    const std::optional<double> distance = images_ ? images_(first, second) : std::nullopt;
+    if (!distance) return std::string();
+    if (*distance <= tolerance_) return std::nullopt;
+    return fmt::format(", by up to {} of 255", std::lround(255 * *distance));
+  }
+
   double tolerance_;
+  const ImageDistance& images_;
   std::vector<std::string> phrases_;
 };
 
@@ -172,8 +184,9 @@ MaterialParameter parameter_of(std::span<const MaterialParameter> parameters,
 }  // namespace
 
 std::vector<std::string> differences(std::span<const MaterialParameter> first,
-                                     std::span<const MaterialParameter> second, double tolerance) {
-  Comparison comparison(tolerance);
+                                     std::span<const MaterialParameter> second, double tolerance,
+                                     const ImageDistance& images) {
+  Comparison comparison(tolerance, images);
   const auto add = [&](const MaterialParameter& a, const MaterialParameter& b) {
     comparison.texture(a.name, a.texture, b.texture);
     comparison.numbers(a.name, a.values, b.values);
@@ -189,8 +202,8 @@ std::vector<std::string> differences(std::span<const MaterialParameter> first,
 }
 
 std::vector<std::string> differences(const Material& first, const Material& second,
-                                     double tolerance) {
-  Comparison comparison(tolerance);
+                                     double tolerance, const ImageDistance& images) {
+  Comparison comparison(tolerance, images);
   comparison.number("base colour", first.base_color, second.base_color);
   comparison.number("metallic", first.metallic, second.metallic);
   comparison.number("roughness", first.roughness, second.roughness);

@@ -63,6 +63,7 @@ struct SceneComparison {
   std::vector<SurfaceGroup> groups{};    // meshes compared by nearest points
   std::vector<SurfaceMatch> surfaces{};  // of the groups, in both directions
   std::vector<Moment> moments{};
+  int turning_gaps = 0;  // between keys, not compared: rotations there depend on the kind of file
   ScenePlacement first_placement{}, second_placement{};               // at the first of the moments
   std::set<std::pair<const Material*, const Material*>> materials{};  // already compared
 

@@ -1,7 +1,11 @@
 #include "compare/scene_difference.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <limits>
 
+#include "compare/nearest_triangle_internal.h"
 #include "compare/scene_comparison_internal.h"
 
 namespace krok::compare {
@@ -32,7 +36,46 @@ void place_meshes(SceneComparison& comparison) {
   }
 }
 
+// Vertices that are over the tolerance by index, all of which have others at their places.
+void note_other_order(SceneComparison& comparison) {
+  const Tolerance& tolerance = comparison.options.tolerance;
+  const Moment& moment = comparison.moments.front();
+  SceneState a, b;
+  for (std::size_t k = 0; k < comparison.meshes.size(); ++k) {
+    const auto [i, j] = comparison.meshes[k];
+    if (comparison.result.parts[k].positions.within()) continue;
+    if (a.positions.empty()) {
+      comparison.first.evaluate(moment.first_animation, moment.first_time, a);
+      comparison.second.evaluate(moment.second_animation, moment.second_time, b);
+    }
+    const auto& ours = a.positions[static_cast<std::size_t>(i)];
+    const auto& theirs = b.positions[static_cast<std::size_t>(j)];
+    std::vector<Facet> places;
+    for (std::uint32_t v = 0; v < theirs.size(); ++v) {
+      places.push_back({j, {v, v, v}, {theirs[v], theirs[v], theirs[v]}});
+    }
+    const auto tree = places.empty() ? nullptr : FacetTree::create(std::move(places));
+    std::vector<FoundFacet> found;
+    std::size_t moved = 0;
+    const bool all = tree != nullptr && std::ranges::all_of(ours, [&](const Vec3& place) {
+                       tree->find(place, found);
+                       const auto at_place = [&](const FoundFacet& one) {
+                         return one.distance <= tolerance.length;
+                       };
+                       const auto v = static_cast<std::size_t>(&place - ours.data());
+                       moved += (place - theirs[v]).norm() > tolerance.length ? 1 : 0;
+                       return std::ranges::any_of(found, at_place);
+                     });
+    if (!all || moved == 0) continue;
+    comparison.note(fmt::format(
+        "{}: its vertices are at the places of the second's, {} of them under another index; "
+        "--match nearest compares surfaces, whatever their vertices",
+        label("mesh", comparison.first.meshes[static_cast<std::size_t>(i)].name, i), moved));
+  }
+}
+
 void add_last_notes(SceneComparison& comparison) {
+  note_other_order(comparison);
   const Measure& colours = comparison.result.colours;
   if (!comparison.options.materials && colours.largest > comparison.options.tolerance.ratio) {
     comparison.note("vertex colours differ, which counts with materials only");

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compare/matching.h"
+#include "compare/material_difference.h"
 #include "compare/measure.h"
 #include "core/progress.h"
 #include "core/result.h"
@@ -20,6 +21,7 @@ struct SceneOptions {
   Matching matching = Matching::automatic;  // of meshes, joints and morph targets
   bool keep_vertices = false;               // fill vertex_largest
   bool materials = false;                   // count different materials as a difference
+  ImageDistance images{};                   // without it textures are compared by their bytes
 };
 
 // One quantity at one time. Floats, because there can be a million moments.
@@ -67,6 +69,9 @@ struct SceneDifference {
                     // SceneOptions::materials is set
   Measure weights;  // skin weights, where both have a skin
   Measure times;    // seconds: key times matched to each other
+  // With nearest points, differences of vertices are lower bounds: a vertex may have moved along
+  // the other surface.
+  bool at_least = false;
 
   std::vector<MomentDifference> moments;  // in order of comparison
   std::vector<PartDifference> parts;      // of the meshes compared

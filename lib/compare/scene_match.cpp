@@ -28,18 +28,79 @@ std::string list_of(const char* kind, const std::vector<std::string>& names,
 void say_partners_missing(SceneComparison& comparison, const ListMatch& match,
                           const std::vector<std::string>& first,
                           const std::vector<std::string>& second) {
-  if (comparison.options.matching == Matching::name) {
+  const bool by_name = comparison.options.matching == Matching::name;
+  if (!by_name && first.size() != second.size()) {
+    comparison.say(fmt::format("{} in the first, {} in the second",
+                               counted(static_cast<long long>(first.size()), "mesh", "meshes"),
+                               second.size()));
+  }
+  if (by_name || comparison.options.matching == Matching::automatic) {
     if (!match.only_first.empty()) {
       comparison.say("only in the first: " + list_of("mesh", first, match.only_first));
     }
     if (!match.only_second.empty()) {
       comparison.say("only in the second: " + list_of("mesh", second, match.only_second));
     }
-  } else if (first.size() != second.size()) {
-    comparison.say(fmt::format("{} in the first, {} in the second",
-                               counted(static_cast<long long>(first.size()), "mesh", "meshes"),
-                               second.size()));
   }
+}
+
+// Meshes of names that both have once; then, in order, those with as many vertices, where there
+// are other numbers of meshes; then all others in order. Notes which way was taken.
+ListMatch match_meshes(SceneComparison& comparison) {
+  const auto &first = comparison.first.meshes, &second = comparison.second.meshes;
+  ListMatch match;
+  std::vector<char> taken(second.size(), 0);
+  std::vector<int> left;
+  std::map<std::string, std::vector<int>> named[2];
+  for (int s = 0; s < 2; ++s) {
+    const auto& meshes = s == 0 ? first : second;
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+      named[s][meshes[i].name].push_back(static_cast<int>(i));
+    }
+  }
+  const auto pair = [&](int i, int j) {
+    match.pairs.emplace_back(i, j);
+    taken[static_cast<std::size_t>(j)] = 1;
+  };
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::string& name = first[i].name;
+    const auto other = named[1].find(name);
+    const bool once = !name.empty() && other != named[1].end() && other->second.size() == 1 &&
+                      named[0][name].size() == 1;
+    once ? pair(static_cast<int>(i), other->second[0]) : left.push_back(static_cast<int>(i));
+  }
+  const std::size_t by_name = match.pairs.size();
+  for (const bool same_size : {true, false}) {
+    if (same_size && first.size() == second.size()) continue;
+    std::vector<int> still;
+    std::size_t j = 0;
+    for (const int i : left) {
+      while (!same_size && j < second.size() && taken[j] != 0) ++j;
+      std::size_t k = j;
+      while (same_size && k < second.size() &&
+             (taken[k] != 0 ||
+              second[k].vertex_count != first[static_cast<std::size_t>(i)].vertex_count)) {
+        ++k;
+      }
+      k < second.size() ? pair(i, static_cast<int>(k)) : still.push_back(i);
+    }
+    left = std::move(still);
+  }
+  match.only_first = std::move(left);
+  for (std::size_t j = 0; j < second.size(); ++j) {
+    if (taken[j] == 0) match.only_second.push_back(static_cast<int>(j));
+  }
+  std::ranges::sort(match.pairs);
+  const bool in_order =
+      std::ranges::all_of(match.pairs, [](const auto& one) { return one.first == one.second; });
+  if (by_name < match.pairs.size() && (by_name > 0 || !in_order)) {
+    comparison.note(
+        fmt::format("{} of {} matched by name, the others by their order", by_name,
+                    counted(std::ssize(match.pairs), "pair of meshes is", "pairs of meshes are")));
+  } else if (!in_order) {
+    comparison.note("meshes are matched by name, as their order differs");
+  }
+  return match;
 }
 
 // The meshes of each name: those of a node belong together, whatever the order of its parts.
@@ -193,8 +254,11 @@ void match_scene_meshes(SceneComparison& comparison) {
     group_meshes(comparison);
     return;
   }
-  const ListMatch match = match_lists(first, second, comparison.options.matching);
+  const ListMatch match = comparison.options.matching == Matching::automatic
+                              ? match_meshes(comparison)
+                              : match_lists(first, second, comparison.options.matching);
   say_partners_missing(comparison, match, first, second);
+  bool hint = false;
   for (const auto& [i, j] : match.pairs) {
     if (first.size() == second.size()) {
       const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(i)];
@@ -211,10 +275,12 @@ void match_scene_meshes(SceneComparison& comparison) {
     if (a != b) {
       comparison.say(fmt::format("{}: {} vertices in the first, {} in the second",
                                  label("mesh", first[static_cast<std::size_t>(i)], i), a, b));
+      hint = true;
       continue;
     }
     comparison.meshes.emplace_back(i, j);
   }
+  if (hint) comparison.note("--match nearest compares surfaces, whatever their vertices");
 }
 
 }  // namespace krok::compare

@@ -24,16 +24,16 @@ struct CommonTime {
 };
 using Times = std::vector<CommonTime>;
 
-// Key times of both, for as long as both last, rising. Times that differ by at most `same` are one
+// Key times of both, from the first of all, before whose key the other shows its first pose, for as
+// long as both last, rising. Times that differ by at most `same` are one
 // moment; each scene uses its own time.
 Times common_times(const std::vector<double>& first, const std::vector<double>& second,
                    double same) {
   Times times;
-  const double begin = std::max(first.front(), second.front()) - same;
   const double end = std::min(first.back(), second.back()) + same;
   const double infinite = std::numeric_limits<double>::infinity();
   const auto add = [&](double a, double b, int key) {
-    if (std::max(a, b) < begin || std::min(a, b) > end) return;
+    if (std::min(a, b) > end) return;
     // Skips keys of several channels that differ only by rounding.
     if (!times.empty() && a - times.back().first <= kRounding) return;
     times.push_back({a, b, key});
@@ -90,7 +90,15 @@ void add_between(SceneComparison& comparison, const CommonTime& next) {
     moment.second_time += share * (next.second - last.second_time);
     comparison.moments.push_back(moment);
   };
-  const int parts = std::max(a.parts, b.parts);
+  int parts = std::max(a.parts, b.parts);
+  // Of motions, which are interpolated in world space, it is unknown how another file had them.
+  const std::string& first = animation(comparison.first, last.first_animation).interpolation;
+  const std::string& second = animation(comparison.second, last.second_animation).interpolation;
+  const bool splines = (first + second).find("spline") != std::string::npos;
+  if (first.empty() != second.empty() && parts > 1 && !splines) {
+    ++comparison.turning_gaps;
+    parts = 1;
+  }
   for (int part = 1; part < parts; ++part) add(static_cast<double>(part) / parts);
   if (a.jumps || b.jumps) add(1 - kBeforeStep);
 }
@@ -114,8 +122,7 @@ Status add_moments(SceneComparison& comparison, int first_animation, int second_
   if (a.key_times.size() + b.key_times.size() + comparison.moments.size() > kMaxMoments) {
     return too_long;
   }
-  if (std::abs(a.key_times.back() - b.key_times.back()) > same ||
-      std::abs(a.key_times.front() - b.key_times.front()) > same) {
+  if (std::abs(a.key_times.back() - b.key_times.back()) > same) {
     comparison.say(
         fmt::format("{}: {} s to {} s in the first, {} s to {} s in the second; only the common "
                     "range is compared",
@@ -218,6 +225,12 @@ Status choose_moments(SceneComparison& comparison) {
   }
   for (const auto& [i, j] : match.pairs) {
     if (auto added = add_moments(comparison, i, j); !added) return added;
+  }
+  if (comparison.turning_gaps > 0) {
+    comparison.note(fmt::format(
+        "a joint turns by more than 90 degrees from key to key {}, where motions, in world space, "
+        "and glTF, relative to the parent, go different ways: compared at the keys alone",
+        counted(comparison.turning_gaps, "time")));
   }
   if (comparison.moments.empty()) comparison.moments.push_back({});
   return {};

@@ -65,6 +65,11 @@ void compare_targets(SceneComparison& comparison, std::pair<int, int> meshes,
     const auto target = displaced(comparison.first_placement, a, meshes.first, i, first_memory);
     const auto other = displaced(comparison.second_placement, b, meshes.second, j, second_memory);
     place.target = i;
+    const Matching matching = comparison.options.matching;
+    if (!is_bake_of(a, b) && matching != Matching::order) {
+      report_name(comparison, "morph target", a.targets[static_cast<std::size_t>(i)].name,
+                  b.targets[static_cast<std::size_t>(j)].name, true);
+    }
     add_distances(or_none(target.positions), or_none(other.positions), place,
                   comparison.result.target_positions);
     if (!target.normals.empty() || !other.normals.empty()) {
@@ -180,8 +185,10 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
   std::string text;
   if (a.material != nullptr && b.material != nullptr) {
     const double tolerance = comparison.options.tolerance.ratio;
-    auto found = differences(*a.material, *b.material, tolerance);
-    for (std::string& one : differences(a.material_parameters, b.material_parameters, tolerance)) {
+    const ImageDistance& images = comparison.options.images;
+    auto found = differences(*a.material, *b.material, tolerance, images);
+    for (std::string& one :
+         differences(a.material_parameters, b.material_parameters, tolerance, images)) {
       found.push_back(std::move(one));
     }
     const std::string &one = a.material->name, &other = b.material->name;

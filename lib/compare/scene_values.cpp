@@ -63,8 +63,9 @@ std::vector<Part> parts_of(const SceneComparison& comparison) {
     const Scene& own = one.in_second ? comparison.second : comparison.first;
     const Scene& other = one.in_second ? comparison.first : comparison.second;
     const auto all_have = [&](bool SceneMesh::*what) {
-      return std::all_of(one.fits.begin(), one.fits.end(),
-                         [&](const SurfacePoint& point) { return mesh(other, point.mesh).*what; });
+      return std::all_of(one.fits.begin(), one.fits.end(), [&](const SurfacePoint& point) {
+        return point.mesh < 0 || mesh(other, point.mesh).*what;
+      });
     };
     const bool tangents = mesh(own, one.mesh).has_tangents && all_have(&SceneMesh::has_tangents);
     parts.push_back({one.mesh, one.in_second, -1, &one.points, &one.fits,
@@ -113,6 +114,7 @@ void measure_tangents(const Part& part, const SceneState& own, const SceneState&
                       const Gatherer& gatherer) {
   const std::vector<Vec4>& tangents = own.tangents[static_cast<std::size_t>(part.mesh)];
   const auto partner_of = [&](std::size_t i) -> Vec4 {
+    if (part.fits != nullptr && (*part.fits)[i].mesh < 0) return tangents[i];
     return part.fits != nullptr ? value_at((*part.fits)[i], other.tangents)
                                 : other.tangents[static_cast<std::size_t>(part.other)][i];
   };
@@ -255,13 +257,18 @@ void Measuring::measure_part(std::size_t index, ValueLocation place, Slot& slot)
     const auto& points = *part.points;
     in_blocks(
         a.size(),
-        [&](std::size_t i) { return (a[i] - value_at(points[i], other.positions)).norm(); },
+        [&](std::size_t i) {
+          if (points[i].mesh < 0) return 0.0;
+          return (a[i] - value_at(points[i], other.positions)).norm();
+        },
         gatherer(kPositions));
     if (!normals.empty() && part.normals) {
       in_blocks(
           normals.size(),
           [&](std::size_t i) {
-            return angle_between_directions(normals[i], value_at((*part.fits)[i], other.normals));
+            const SurfacePoint& point = (*part.fits)[i];
+            if (point.mesh < 0) return 0.0;
+            return angle_between_directions(normals[i], value_at(point, other.normals));
           },
           gatherer(kNormals));
     }

@@ -13,8 +13,7 @@ namespace krok::compare {
 
 namespace {
 
-constexpr double kSameAngle = 1e-4;  // radians; smaller angles between normals are float noise
-constexpr double kBack = -0.5;       // cosine of the angle to a face seen from behind
+constexpr double kBack = -0.5;  // cosine of the angle to a face seen from behind
 
 // How well a point fits a vertex over the probed moments.
 struct Fit {
@@ -25,7 +24,9 @@ struct Fit {
   double tangents = 0;    // max, see tangents_apart(); 0 if both have none
   double attributes = 0;  // distance of texture coordinates and colours; 0 if one has none
 
-  auto rank() const { return std::tuple(behind, other_material, tangents + attributes, angle); }
+  // Radians and units of texture coordinates and colours: the point that was the vertex is off in
+  // none of them, while others are off in some.
+  auto rank() const { return std::tuple(behind, other_material, tangents + attributes + angle); }
 };
 
 // The mean normal of the triangles at each vertex, by area, of their front faces: 1 long where they
@@ -73,8 +74,10 @@ bool look_alike(const SceneComparison& comparison, const SceneMesh& first,
     return first.material == second.material;
   }
   const double tolerance = comparison.options.tolerance.ratio;
-  return differences(*first.material, *second.material, tolerance).empty() &&
-         differences(first.material_parameters, second.material_parameters, tolerance).empty();
+  const ImageDistance& images = comparison.options.images;
+  return differences(*first.material, *second.material, tolerance, images).empty() &&
+         differences(first.material_parameters, second.material_parameters, tolerance, images)
+             .empty();
 }
 
 }  // namespace
@@ -130,17 +133,13 @@ Fit fit_of(const SurfacePoint& point, const Surfaces& surfaces, int mesh, std::s
   return fit;
 }
 
-// Of the points at most `most` away, the ones with matching normals, of those the first in rank: it
-// decides at seams, where vertices are otherwise the same.
+// Of the points at most `most` away, the one whose attributes together fit best: it decides at
+// seams and hard edges, where vertices are at one place.
 std::size_t best_of(const std::vector<Fit>& fits, double most) {
-  double least_angle = std::numeric_limits<double>::infinity();
-  for (const Fit& fit : fits) {
-    if (fit.distance <= most) least_angle = std::min(least_angle, fit.angle);
-  }
   std::size_t best = fits.size();
   for (std::size_t i = 0; i < fits.size(); ++i) {
     const Fit& fit = fits[i];
-    if (fit.distance > most || fit.angle > least_angle + kSameAngle) continue;
+    if (fit.distance > most) continue;
     if (best == fits.size() || fit.rank() < fits[best].rank()) best = i;
   }
   return best;

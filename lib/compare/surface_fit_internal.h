@@ -35,6 +35,15 @@ SameMaterials same_materials(const SceneComparison& comparison, const SurfaceMom
 bool lies_behind(const SurfacePoint& point, const SurfaceMoments& own, std::size_t mesh,
                  std::size_t vertex, const SurfaceMoments& other);
 
+// Reports triangles whose corners lie on the other surface, which is of the meshes `others`, and
+// whose insides or edges do not: holes. A cloud of points has no insides. (surface_insides.cpp)
+void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& matches,
+                const Surfaces& surfaces, const std::vector<int>& others, int jobs);
+
+// Reports other areas, by material where both scenes name the same, and other numbers of triangles.
+void compare_areas(SceneComparison& comparison, const SurfaceGroup& group,
+                   const SurfaceMoments& first, const SurfaceMoments& second);
+
 struct ChosenPoints {
   SurfacePoint nearest;     // that stays nearest
   SurfacePoint fits;        // whose attributes fit best of those about as near

@@ -25,12 +25,10 @@ constexpr std::size_t kMoreProbes = 11;             // those of the animations
 constexpr std::size_t kMaxTried = 1024;             // touching points, to bound the run time
 constexpr double kNoShare = 1e-9;                   // smaller coordinates are rounding errors
 constexpr std::size_t kSampled = 1024;              // vertices, for the median distance
-constexpr double kOfMedian = 4;            // distances at which a point is as good as the nearest
-constexpr double kMaxNear = 1e-3;          // of the size, the same
-constexpr double kWider = 4;               // times that far, where the right one is not found
-constexpr std::size_t kSamples = 100'000;  // of a surface, for holes
-constexpr int kMaxDivisions = 64;          // of a triangle's edge, the same
-constexpr std::size_t kFewOf = 50;         // one vertex of that many may lie at a sharp edge
+constexpr double kOfMedian = 4;     // distances at which a point is as good as the nearest
+constexpr double kMaxNear = 1e-3;   // of the size, the same
+constexpr double kWider = 4;        // times that far, where the right one is not found
+constexpr std::size_t kFewOf = 50;  // one vertex of that many may lie at a sharp edge
 
 std::vector<Facet> facets_of(const SurfaceMoments& scene, std::span<const int> meshes) {
   std::vector<Facet> facets;
@@ -174,7 +172,16 @@ Reach reach_of(const SurfaceMoments& own, const std::vector<int>& meshes, const 
   return {near, std::min(std::max(near, largest), most)};
 }
 
-// For each vertex of a mesh, the nearest point of the other surface.
+// 1 for the vertices that show: those of triangles, or of a cloud of points all.
+std::vector<char> shown_vertices(const SceneMesh& mesh) {
+  std::vector<char> shown(mesh.vertex_count, mesh.triangles.empty() ? 1 : 0);
+  for (const Triangle& t : mesh.triangles) {
+    for (const std::uint32_t corner : t) shown[corner] = 1;
+  }
+  return shown;
+}
+
+// For each vertex of a mesh that shows, the nearest point of the other surface.
 SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
   const FacetTree& tree = surfaces.tree;
   const Points& vertices = surfaces.own.states[0].positions[static_cast<std::size_t>(mesh)];
@@ -182,6 +189,8 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
   match.mesh = mesh;
   match.points.resize(vertices.size());
   match.fits.resize(vertices.size());
+  const std::vector<char> shown =
+      shown_vertices(surfaces.own.meshes[static_cast<std::size_t>(mesh)]);
   // Coincident vertices, as at seams or in a collapsed prop, share a search.
   const std::vector<std::uint32_t> order = by_place(vertices);
   parallel_for(order.size(), 1024, jobs, [&](std::size_t begin, std::size_t end) {
@@ -189,7 +198,8 @@ SurfaceMatch match_surface(const Surfaces& surfaces, int mesh, int jobs) {
     std::vector<SurfacePoint> points;
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t v = order[i];
-      if (i == begin || vertices[v] != vertices[order[i - 1]]) {
+      if (shown[v] == 0) continue;
+      if (points.empty() || vertices[v] != vertices[order[i - 1]]) {
         tree.find(vertices[v], found, surfaces.tried);
         points = distinct_points(tree, vertices[v], found);
       }
@@ -217,7 +227,7 @@ void report_tangents_left_out(SceneComparison& comparison) {
     const SceneMesh& mesh = own[static_cast<std::size_t>(match.mesh)];
     const auto with =
         std::count_if(match.fits.begin(), match.fits.end(), [&](const SurfacePoint& point) {
-          return other[static_cast<std::size_t>(point.mesh)].has_tangents;
+          return point.mesh < 0 || other[static_cast<std::size_t>(point.mesh)].has_tangents;
         });
     const auto all = static_cast<std::ptrdiff_t>(match.fits.size());
     if (!mesh.has_tangents || with == 0 || with == all) continue;
@@ -226,6 +236,26 @@ void report_tangents_left_out(SceneComparison& comparison) {
         match.in_second ? "the second's " : "", label("mesh", mesh.name, match.mesh), all - with,
         all));
   }
+}
+
+// Reports attributes that a mesh has and the surface next to it has not. The other way round comes
+// with the other direction.
+void report_missing_on(SceneComparison& comparison, const SceneMesh& mesh, const SceneMesh& other,
+                       bool in_second, const std::string& name) {
+  if (mesh.only_points || other.only_points) return;
+  const auto report = [&](bool has, bool other_has, const char* what, bool counts) {
+    if (!has || other_has) return;
+    std::string text =
+        fmt::format("{}: only the {} has {}", name, in_second ? "second" : "first", what);
+    auto& texts = counts ? comparison.result.structure : comparison.result.notes;
+    if (std::ranges::find(texts, text) == texts.end()) texts.push_back(std::move(text));
+  };
+  report(mesh.has_normals, other.has_normals, "normals", true);
+  report(!mesh.texture_coordinates.empty(), !other.texture_coordinates.empty(),
+         "texture coordinates", true);
+  report(mesh.is_painted(), !other.colours.empty(), "vertex colours", comparison.options.materials);
+  report(mesh.has_tangents && has_normal_texture(mesh) && has_normal_texture(other),
+         other.has_tangents, "tangents, which normal textures need", true);
 }
 
 // The static data of a mesh at its nearest points: texture coordinates, colours, sides, materials.
@@ -239,6 +269,7 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   std::size_t behind = 0;
   for (std::size_t v = 0; v < match.points.size(); ++v) {
     const SurfacePoint& point = match.fits[v];
+    if (point.mesh < 0) continue;
     const SceneMesh& other = mesh_of(point, surfaces.other);
     place.vertex = static_cast<int>(v);
     ++on_mesh[point.mesh];
@@ -263,93 +294,13 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
   for (const auto& [index, count] : on_mesh) {
     const SceneMesh& other = surfaces.other.meshes[static_cast<std::size_t>(index)];
     if (count <= few) continue;
+    report_missing_on(comparison, mesh, other, match.in_second, name);
     compare_materials(comparison, match.in_second ? other : mesh, match.in_second ? mesh : other,
                       name);
     if (other.visible == mesh.visible) continue;
     comparison.say(fmt::format("{}: hidden in the {}", name,
                                mesh.visible != match.in_second ? "second" : "first"));
   }
-}
-
-// Reports triangles whose corners lie on the other surface, which is of the meshes `others`, and
-// whose insides do not: holes. A cloud of points has no insides.
-void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& matches,
-                const Surfaces& surfaces, const std::vector<int>& others, int jobs) {
-  const auto is_cloud = [&](int mesh) {
-    return surfaces.other.meshes[static_cast<std::size_t>(mesh)].triangles.empty();
-  };
-  if (std::ranges::all_of(others, is_cloud)) return;
-  double all_area = 0;
-  struct Sampled {
-    const SurfaceMatch* match = nullptr;
-    Triangle corners{};
-    double area = 0, gap = 0;
-  };
-  std::vector<Sampled> triangles;
-  for (const SurfaceMatch& match : matches) {
-    const auto m = static_cast<std::size_t>(match.mesh);
-    const Points& points = surfaces.own.states[0].positions[m];
-    for (const Triangle& t : surfaces.own.meshes[m].triangles) {
-      const double area =
-          0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm();
-      triangles.push_back({&match, t, area});
-      all_area += area;
-    }
-  }
-  if (!(all_area > 0)) return;
-  const double about = std::max(comparison.options.tolerance.length, surfaces.near);
-  parallel_for(triangles.size(), 256, jobs, [&](std::size_t begin, std::size_t end) {
-    std::vector<FoundFacet> found;
-    for (std::size_t t = begin; t < end; ++t) {
-      Sampled& one = triangles[t];
-      const auto m = static_cast<std::size_t>(one.match->mesh);
-      const Points& points = surfaces.own.states[0].positions[m];
-      // What the corners are off counts elsewhere.
-      double allowed = about;
-      for (const std::uint32_t corner : one.corners) {
-        const Vec3 other = value_at(one.match->points[corner], surfaces.other.states[0].positions);
-        allowed = std::max(allowed, about + (points[corner] - other).norm());
-      }
-      // The middles of parts of about the same size.
-      const int parts = std::clamp(
-          static_cast<int>(std::ceil(std::sqrt(one.area / all_area * kSamples))), 1, kMaxDivisions);
-      const auto sample = [&](double u, double v) {
-        const Vec3 place = u * points[one.corners[0]] + v * points[one.corners[1]] +
-                           (1 - u - v) * points[one.corners[2]];
-        surfaces.tree.find(place, found);
-        for (const FoundFacet& facet : found) {
-          if (facet.distance > allowed) one.gap = std::max(one.gap, facet.distance);
-        }
-      };
-      for (int i = 0; i < parts; ++i) {
-        for (int j = 0; i + j < parts; ++j) {
-          sample((i + 1.0 / 3) / parts, (j + 1.0 / 3) / parts);
-          if (i + j + 1 < parts) sample((i + 2.0 / 3) / parts, (j + 2.0 / 3) / parts);
-        }
-      }
-    }
-  });
-  double missing = 0;
-  std::size_t count = 0;
-  const Sampled* worst = nullptr;
-  for (const Sampled& one : triangles) {
-    if (!(one.gap > 0)) continue;
-    missing += one.area;
-    ++count;
-    if (worst == nullptr || one.gap > worst->gap) worst = &one;
-  }
-  if (worst == nullptr) return;
-  const bool in_second = worst->match->in_second;
-  const auto m = static_cast<std::size_t>(worst->match->mesh);
-  comparison.say(fmt::format(
-      "{}{}: {} of its {}, {} % of its surface, {} not in the {}: the largest gap is {} mm, at "
-      "vertices {}, {}, {}",
-      in_second ? "the second's " : "",
-      label("mesh", surfaces.own.meshes[m].name, worst->match->mesh), grouped(count),
-      counted(static_cast<long long>(triangles.size()), "triangle"),
-      readable(100 * missing / all_area, 2), count == 1 ? "is" : "are",
-      in_second ? "first" : "second", readable(1000 * worst->gap, 3), worst->corners[0],
-      worst->corners[1], worst->corners[2]));
 }
 
 // Matches the meshes of a group of one scene with the other's, whose facets are in the tree.
@@ -380,6 +331,7 @@ void match_group(SceneComparison& comparison, const std::vector<int>& meshes,
 
 Status match_surfaces(SceneComparison& comparison, int jobs) {
   if (comparison.groups.empty()) return {};
+  comparison.result.at_least = true;
   std::vector<SceneState> first, second;
   std::size_t vertices = 0;
   for (const SceneMesh& mesh : comparison.first.meshes) vertices += mesh.vertex_count;
@@ -414,6 +366,7 @@ Status match_surfaces(SceneComparison& comparison, int jobs) {
     }
     match_group(comparison, group.first, group.second, false, {a, b, *second_tree}, jobs);
     match_group(comparison, group.second, group.first, true, {b, a, *first_tree}, jobs);
+    compare_areas(comparison, group, a, b);
   }
   report_tangents_left_out(comparison);
   return {};

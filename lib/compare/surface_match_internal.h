@@ -30,7 +30,8 @@ struct SurfacePoint {
 struct SurfaceMatch {
   int mesh = -1;
   bool in_second = false;  // whether `mesh` is in the second; the points are in the other scene
-  std::vector<SurfacePoint> points;  // [vertices], the nearest
+  // [vertices], the nearest; without a mesh for vertices that no triangle uses.
+  std::vector<SurfacePoint> points;
   // Those with the attributes that fit best, about as near: another face at a hard edge.
   std::vector<SurfacePoint> fits{};
 };

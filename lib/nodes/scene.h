@@ -130,12 +130,14 @@ struct Animation {
   // Of cameras: Channel::node is an index into Scene::cameras, the path is field_of_view with width
   // 1 and values in (0, pi).
   std::vector<Channel> lenses{};
+  double rate = 0;  // frames per second as the file says, not checked; 0: unknown
 };
 
 struct Scene {
   std::string generator;
   std::vector<Node> nodes;
-  std::vector<int> roots;  // of the displayed scene: the default one, else the first, else all
+  // Of the trees with nodes of the displayed scene: the default one, else the first, else all.
+  std::vector<int> roots;
   std::vector<Mesh> meshes;
   std::vector<Skin> skins;
   std::vector<Camera> cameras;

@@ -15,19 +15,22 @@ bool are_scenes(InputKind first, InputKind second) {
   if (either(InputKind::camera) || either(InputKind::morphs)) return false;
   // A motion has only animated joints, a model only a static mesh.
   const bool joints_alone = either(InputKind::motion);
-  return !(joints_alone && (either(InputKind::model) || either(InputKind::points)));
+  return !(joints_alone &&
+           (either(InputKind::model) || either(InputKind::mesh) || either(InputKind::points)));
 }
 
 Status check_drawings(const Options& options, InputKind first, InputKind second) {
   const auto either = [&](InputKind kind) { return first == kind || second == kind; };
   const auto stands = [&](InputKind kind) {
-    return kind == InputKind::camera || kind == InputKind::morphs || kind == InputKind::model;
+    return kind == InputKind::camera || kind == InputKind::morphs || kind == InputKind::model ||
+           kind == InputKind::mesh;
   };
   if (!options.plot.empty() && (stands(first) || stands(second))) {
     return Error("usage", "--plot is for motions and glTF", "use --sheet or --heatmap for models");
   }
   const auto has_mesh = [](InputKind kind) {
-    return kind == InputKind::gltf || kind == InputKind::model || kind == InputKind::points;
+    return kind == InputKind::gltf || kind == InputKind::model || kind == InputKind::mesh ||
+           kind == InputKind::points;
   };
   if (!options.heatmap.empty() && !(has_mesh(first) && has_mesh(second))) {
     return Error("usage", "--heatmap is for glTF, models and point caches",
@@ -70,7 +73,8 @@ void add_notes(const Options& options, InputKind first, InputKind second, Outcom
     outcome.notes.emplace_back("--materials has no effect: only glTF files have materials");
   }
   const auto has_mesh = [](InputKind kind) {
-    return kind == InputKind::gltf || kind == InputKind::model || kind == InputKind::points;
+    return kind == InputKind::gltf || kind == InputKind::model || kind == InputKind::mesh ||
+           kind == InputKind::points;
   };
   if (options.matching == compare::Matching::nearest && !(has_mesh(first) && has_mesh(second))) {
     outcome.notes.emplace_back("--match nearest has no effect: the files have no meshes to match");
@@ -89,11 +93,11 @@ Result<Outcome> compare_files(const Options& options, ToolContext& context) {
   const auto second_kind = kind_of(*second);
   if (!second_kind) return second_kind.error();
   if (*first_kind != *second_kind && !are_scenes(*first_kind, *second_kind)) {
-    return Error(
-        "diff-kinds",
-        fmt::format("{} is {}, but {} is {}", options.first, description(*first_kind),
-                    options.second, description(*second_kind)),
-        "compare two files of the same type, or glTF with a motion, a model or a point cache");
+    return Error("diff-kinds",
+                 fmt::format("{} is {}, but {} is {}", options.first, description(*first_kind),
+                             options.second, description(*second_kind)),
+                 "compare two files of the same type, or glTF with a motion, a model, a mesh or a "
+                 "point cache");
   }
   if (Status status = check_drawings(options, *first_kind, *second_kind); !status)
     return status.error();

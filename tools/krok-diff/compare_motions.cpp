@@ -37,6 +37,7 @@ Result<Outcome> compare_motions(const InputFile& first, const InputFile& second,
                                  counted(clips->first.joint_count(), "joint"),
                                  counted(found->compared_frames, "frame"))};
   outcome.structure = found->structure;
+  outcome.notes = found->notes;
   outcome.names.joints = clips->first.skeleton.names;
   outcome.add_row("reference positions", Unit::length, found->reference_positions);
   outcome.add_row("reference orientations", Unit::angle, found->reference_orientations);

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <map>
 #include <optional>
 
 #include "compare/scene_difference.h"
 #include "core/numbers.h"
+#include "formats/image/decode_image.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_scene.h"
+#include "formats/obj/obj_reader.h"
 #include "nodes/scene_of.h"
 #include "skin/scene_of.h"
 #include "tools/krok-diff/compare_two.h"
@@ -55,6 +58,17 @@ Status Opened::read(const InputFile& file, ToolContext& context) {
     auto read = pc2::PointCache::read(file.bytes());
     if (!read) return std::move(read).error();
     points = *read;
+    return {};
+  }
+  if (kind == InputKind::mesh) {
+    auto read = obj::read(file.text(), file.path());
+    if (!read) return std::move(read).error();
+    context.diagnose(read->diagnostics);
+    Actor still;
+    still.model = std::move(read->model);
+    scene = scene_of(std::make_shared<const Actor>(std::move(still)));
+    scene.joint_names.clear();  // the file has none
+    scene.joint_parents.clear();
     return {};
   }
   auto actor = io::open_actor(file, context);
@@ -110,6 +124,7 @@ std::vector<std::string> summary_lines(const Opened& first, const Opened& second
     const char* kind = one.kind == InputKind::gltf     ? "glTF"
                        : one.kind == InputKind::model  ? "model"
                        : one.kind == InputKind::motion ? "motion"
+                       : one.kind == InputKind::mesh   ? "mesh"
                                                        : "points";
     return fmt::format("{}: {}", kind, summary_of(one.scene));
   };
@@ -121,6 +136,25 @@ std::vector<std::string> summary_lines(const Opened& first, const Opened& second
   return lines;
 }
 
+// Compares decoded pixels; each pair of images once.
+compare::ImageDistance pixel_distance() {
+  using Known =
+      std::map<std::pair<const EncodedImage*, const EncodedImage*>, std::optional<double>>;
+  return [known = std::make_shared<Known>()](const EncodedImage& first,
+                                             const EncodedImage& second) -> std::optional<double> {
+    const auto [place, added] = known->try_emplace({&first, &second});
+    if (!added) return place->second;
+    const auto a = image::decode(first.bytes), b = image::decode(second.bytes);
+    if (!a || !b || a->width != b->width || a->height != b->height) return std::nullopt;
+    int most = 0;
+    for (std::size_t i = 0; i < a->rgba.size(); ++i) {
+      most = std::max(most, std::abs(a->rgba[i] - b->rgba[i]));
+    }
+    place->second = most / 255.0;
+    return place->second;
+  };
+}
+
 Outcome outcome_of(const Opened& first, const Opened& second,
                    const compare::SceneDifference& found) {
   Outcome outcome;
@@ -129,6 +163,7 @@ Outcome outcome_of(const Opened& first, const Opened& second,
   outcome.structure = found.structure;
   outcome.notes = found.notes;
   outcome.names = names_of(first.scene, second.scene);
+  outcome.at_least = found.at_least;
   outcome.add_row("positions", Unit::length, found.positions);
   outcome.add_row("normals", Unit::angle, found.normals);
   outcome.add_tangents(found.tangents, found.tangent_sides);
@@ -166,6 +201,7 @@ Result<Outcome> compare_scenes(const InputFile& first, InputKind first_kind,
   how.tolerance = options.tolerance;
   how.matching = options.matching;
   how.materials = options.materials;
+  how.images = pixel_distance();
   how.keep_vertices = !options.heatmap.empty();
   const auto found = compare::difference(a.scene, b.scene, how, context.jobs, *context.progress);
   if (!found) return found.error();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/text.h"
 #include "formats/io/formats.h"
 #include "formats/registry/registry.h"
 
@@ -20,6 +21,7 @@ struct KindRow {
 };
 constexpr KindRow kKindRows[] = {{InputKind::motion, "a motion", "anim"},
                                  {InputKind::model, "a model (.model)", "model"},
+                                 {InputKind::mesh, "a mesh (.obj)", "obj"},
                                  {InputKind::camera, "a camera (.cam)", "cam"},
                                  {InputKind::gltf, "glTF", "gltf"},
                                  {InputKind::points, "a point cache (.pc2)", "pc2"},
@@ -38,6 +40,7 @@ const char* word_of(InputKind kind) {
 Result<InputKind> kind_of(const InputFile& file) {
   if (file.text().starts_with("\x76\x2F\x31\x01")) return InputKind::morphs;
   if (file.text().starts_with("POINTCACHE2")) return InputKind::points;
+  if (extension(file.path()) == ".obj") return InputKind::mesh;
   const auto bytes = file.bytes();
   if (io::is_motion(file)) return InputKind::motion;
   const Kind kind = registry::identify(file.path(), bytes);
@@ -55,7 +58,7 @@ Result<InputKind> kind_of(const InputFile& file) {
   return Error("diff-kind",
                fmt::format(
                    "this is {}; expected a motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, "
-                   ".pc2 or .exr file",
+                   ".obj, .pc2 or .exr file",
                    registry::describe_content(bytes)),
                registry::advice(kind, Kind::anim))
       .in_file(file.path());

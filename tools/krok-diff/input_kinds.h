@@ -12,6 +12,7 @@ namespace krok::cli::diff {
 enum class InputKind {
   motion,  // .anim, or a capture
   model,
+  mesh,  // .obj
   camera,
   gltf,    // .gltf and .glb
   points,  // a point cache, .pc2
@@ -21,7 +22,7 @@ enum class InputKind {
 // "a motion"
 std::string description(InputKind kind);
 
-// The type's name in reports: "anim", "model", "cam", "gltf", "pc2", "morphs".
+// The type's name in reports: "anim", "model", "obj", "cam", "gltf", "pc2", "morphs".
 const char* word_of(InputKind kind);
 
 // Detected from the content, or else from the file name. Code diff-kind.

@@ -15,7 +15,8 @@ void declare(CommandOptions& command, Options& o) {
   command
       .add_option(
           "A", o.first,
-          "A motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, .pc2 or .exr file, or a folder")
+          "A motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, .obj, .pc2 or .exr file, or "
+          "a folder")
       .type_name("")
       .required();
   command

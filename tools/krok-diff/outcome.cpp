@@ -129,10 +129,10 @@ std::string to_text(const Row& row, const PlaceNames& names) {
                        to_text(measure.where, names), grouped(measure.over),
                        grouped(measure.count));
   }
-  std::string text =
-      fmt::format("{}: largest {} at {}; RMS {}, 95 % {}", row.what,
-                  in_unit(measure.largest, row.unit), to_text(measure.where, names),
-                  in_unit(measure.rms(), row.unit), in_unit(measure.percentile(0.95), row.unit));
+  std::string text = fmt::format(
+      "{}: largest {}{} at {}; RMS {}, 95 % {}", row.what, row.at_least ? "at least " : "",
+      in_unit(measure.largest, row.unit), to_text(measure.where, names),
+      in_unit(measure.rms(), row.unit), in_unit(measure.percentile(0.95), row.unit));
   if (std::isinf(measure.tolerance)) return text + "; not counted";
   text += measure.over == 0 ? fmt::format("; within in all {}", grouped(measure.count))
                             : fmt::format("; over tolerance in {} of {}", grouped(measure.over),
@@ -154,6 +154,7 @@ Json to_json(const Row& row, const PlaceNames& names) {
   entry["tolerance"] = reported(measure.tolerance);
   entry["over"] = measure.over;
   entry["count"] = measure.count;
+  if (row.at_least) entry["at_least"] = true;
   entry["where"] = measure.largest > 0 ? to_json(measure.where, names) : Json();
   return entry;
 }
@@ -191,7 +192,8 @@ std::string to_text(const Row& row, const Outcome& outcome) {
       measure.tolerance > 0
           ? fmt::format(" ({} x the tolerance)", readable(excess_of(measure), kDigits))
           : "";
-  return fmt::format("{} {}{} at {}", row.what, in_unit(measure.largest, row.unit), excess,
+  return fmt::format("{} {}{}{} at {}", row.what, row.at_least ? "at least " : "",
+                     in_unit(measure.largest, row.unit), excess,
                      to_text(measure.where, outcome.names));
 }
 
@@ -262,7 +264,8 @@ std::string tolerances(const Outcome& outcome, const compare::Tolerance& toleran
 }  // namespace
 
 void Outcome::add_row(std::string what, Unit unit, const compare::Measure& measure) {
-  if (measure.count > 0) rows.push_back({std::move(what), unit, measure});
+  const bool lower_bound = at_least && what == "positions";
+  if (measure.count > 0) rows.push_back({std::move(what), unit, measure, lower_bound});
 }
 
 void Outcome::add_tangents(const compare::Measure& directions, const compare::Measure& sides) {

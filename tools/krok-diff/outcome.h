@@ -27,6 +27,7 @@ struct Row {
   std::string what;  // "positions"
   Unit unit = Unit::length;
   compare::Measure measure;
+  bool at_least = false;  // the measured values are lower bounds
 };
 
 // Names for the indices in a ValueLocation; an index without a name is shown as a number.
@@ -53,6 +54,7 @@ struct Outcome {
   std::vector<Item> meshes, joints;  // all that were compared, in the order of the first
   PlaceNames names;
   bool same = false;
+  bool at_least = false;  // vertices may be farther apart than measured, see SceneDifference
   // For the page of a summary.
   std::optional<Pictures> pictures;
   std::string chart;  // SVG; empty for none

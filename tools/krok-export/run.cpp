@@ -362,11 +362,26 @@ Status write_arrays(const Clip& clip, const Options& options, ToolContext& conte
                       [&](OutputFile& file) { return file.write(*bytes); });
 }
 
+// The place of the root at rest moves nothing, so it is left out, but another reference pose comes
+// back.
+void note_root(const Clip& clip, const Options& options, ToolContext& context) {
+  const Vec3& root = clip.skeleton.reference[0].position;
+  if (options.root_offset || root.norm() < 1e-5) return;
+  Diagnostic note = make_warning(
+      "export-root-offset",
+      fmt::format("the root's place in the reference pose, ({}, {}, {}) m, is left out",
+                  readable(root.x(), 3), readable(root.y(), 3), readable(root.z(), 3)),
+      "--root-offset keeps it as the root's OFFSET");
+  note.severity = Severity::note;
+  context.diagnose(std::move(note));
+}
+
 Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
                                         double unit_metres, ToolContext& context) {
   const auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
+  if (format == ExportFormat::bvh) note_root(*clip, options, context);
   const Status status =
       format == ExportFormat::bvh
           ? write_output(

@@ -60,6 +60,8 @@ class SceneImporter {
   Status add_weights(const ChosenClip& clip, const character::ChosenSampling& sampling);
   Status add_clips();
   Status add_clip(const ChosenClip& clip);
+  void report_sampling(const ChosenClip& chosen, const nodes::Animation& animation,
+                       const character::Sampling& sampling, Json& facts);
   Status add_camera(const ChosenClip& clip, const character::ChosenSampling& sampling);
 
   void report_what_else_is_there();

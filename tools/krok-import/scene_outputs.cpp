@@ -9,7 +9,9 @@
 
 #include "capture/unique_names.h"
 #include "character/mesh.h"
+#include "character/sampling_error.h"
 #include "core/file.h"
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/path_inside.h"
 #include "core/text.h"
@@ -390,6 +392,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
                                context_.jobs, context_.progress, found, &stretches);
     if (!clip) return clip.error();
     context_.diagnose_in(path_, std::exchange(found, {}));
+    report_sampling(chosen, animation, sampling->sampling, facts);
     auto conversions = std::move(clip->provenance.conversions);
     clip->provenance = context_.provenance();
     clip->provenance.conversions = std::move(conversions);
@@ -417,6 +420,23 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
   clip_facts_.push_back(std::move(facts));
   if (Status status = add_weights(chosen, *sampling); !status) return status;
   return wants_camera() ? add_camera(chosen, *sampling) : Status();
+}
+
+// What the motion loses between its frames.
+void SceneImporter::report_sampling(const ChosenClip& chosen, const nodes::Animation& animation,
+                                    const character::Sampling& sampling, Json& facts) {
+  constexpr double kWanted = 1e-4;  // metres
+  const auto error = character::sampling_error(evaluator_, *rig_, place_.conversion, animation,
+                                               chosen.animation, sampling, kWanted, context_.jobs);
+  if (error.joint >= 0) facts["sampling_error"] = error.largest;
+  if (error.largest <= kWanted) return;
+  context_.log(fmt::format(
+      "{}: between frames joints are up to {} mm from the file's curves ({} at {} s){}",
+      shown(chosen.name), readable(1e3 * error.largest, 3),
+      shown(rig_->skeleton.names[at(error.joint)]), readable(error.time, 4),
+      error.rate    ? fmt::format("; --rate {} keeps them within 0.1 mm", readable(*error.rate))
+      : error.jumps ? "; keys that step become ramps of one frame"
+                    : ""));
 }
 
 Status SceneImporter::add_camera(const ChosenClip& clip,

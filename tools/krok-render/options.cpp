@@ -39,7 +39,8 @@ void declare_film(CommandOptions& command, Options& o) {
                       {"gif", Format::gif},
                       {"webp", Format::webp},
                       {"png", Format::png}}),
-      "mp4 (H.264), gif, webp (animated) or png (a file per frame, without ffmpeg); default: "
+      "mp4 (H.264), gif, webp (animated) or png (without ffmpeg; a file per frame for a name "
+      "with a number such as 'frame_%04d.png', else the frame of --from alone); default: "
       "from the output's extension, mp4 in batch mode");
   command.add("--from", o.from, clip_time(),
               "Start: 1.5s, 250ms, or 120f for a frame; a bare number is seconds");
@@ -105,9 +106,10 @@ Result<Format> format_of(const Options& options, const std::string& output) {
   if (ending == ".gif") return Format::gif;
   if (ending == ".webp") return Format::webp;
   if (ending == ".png") return Format::png;
-  return usage(ending.empty() ? fmt::format("-o {}: no extension to choose a format by", output)
-                              : fmt::format("-o {}: {} is no film", output, shown(ending)),
-               "use .mp4, .gif or .webp, or 'frame_%04d.png' for a file per frame");
+  return usage(
+      ending.empty() ? fmt::format("-o {}: no extension to choose a format by", output)
+                     : fmt::format("-o {}: {} is no film", output, shown(ending)),
+      "use .mp4, .gif or .webp, .png for one frame, or 'frame_%04d.png' for a file per frame");
 }
 
 namespace {
@@ -146,6 +148,7 @@ ToolSpec make_spec() {
        "a character from two sides"},
       {"krok-render raw.anim clean.anim --difference -o clean.mp4",
        "both, and the second coloured by its distance from the first"},
+      {"krok-render walk.anim --from 1.5s -o pose.png", "a single frame"},
       {"krok-render walk.anim --cam shot.cam --size 1920x1080 -o 'frame_%04d.png'",
        "a file per frame, filmed by a camera of krok-cam; needs no ffmpeg"},
       {"krok-render captures --out-dir films --format webp --keep-going",

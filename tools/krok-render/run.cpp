@@ -24,13 +24,15 @@ namespace {
 // Names of numbered files by a pattern with one %d or %0Nd, as ffmpeg takes them: "frame_%04d.png".
 class FrameNames {
  public:
-  // Code usage for a pattern without a number or with several.
+  // Without a number, the name of a single frame. Code usage for a pattern with several.
   static Result<FrameNames> parse(const std::string& pattern);
   std::string of(int frame) const;
+  bool is_single() const { return is_single_; }
 
  private:
   std::string before_, after_;
   int digits_ = 1;
+  bool is_single_ = false;
 };
 
 Result<FrameNames> FrameNames::parse(const std::string& pattern) {
@@ -39,11 +41,14 @@ Result<FrameNames> FrameNames::parse(const std::string& pattern) {
                  "such as 'frame_%04d.png'; or write .mp4, .gif or .webp");
   };
   const std::size_t begin = pattern.find('%');
-  if (begin == std::string::npos || pattern.find('%', begin + 1) != std::string::npos) {
-    return refused();
-  }
-  std::size_t end = begin + 1;
   FrameNames names;
+  if (begin == std::string::npos) {
+    names.before_ = pattern;
+    names.is_single_ = true;
+    return names;
+  }
+  if (pattern.find('%', begin + 1) != std::string::npos) return refused();
+  std::size_t end = begin + 1;
   if (end < pattern.size() && pattern[end] == '0') ++end;
   int digits = 0;
   for (; end < pattern.size() && pattern[end] >= '0' && pattern[end] <= '9'; ++end) {
@@ -58,7 +63,7 @@ Result<FrameNames> FrameNames::parse(const std::string& pattern) {
 }
 
 std::string FrameNames::of(int frame) const {
-  return fmt::format("{}{:0{}}{}", before_, frame, digits_, after_);
+  return is_single_ ? before_ : fmt::format("{}{:0{}}{}", before_, frame, digits_, after_);
 }
 
 using krok::film::Kind;
@@ -184,6 +189,7 @@ Result<std::string> write(const Shot& shot, const ShotSetting& setting, Format f
         });
     if (!status) return status.error();
     if (Status end = outputs.finish(); !end) return end.error();
+    if (names->is_single()) return context.output;
     return fmt::format("{} to {}", names->of(0), names->of(shot.frame_count() - 1));
   }
   auto writer = Writer::create(*kind, setting.width, setting.height, setting.rate);
@@ -201,15 +207,24 @@ Result<std::string> write(const Shot& shot, const ShotSetting& setting, Format f
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
+  bool single = false;
   const auto format = format_of(options, context.output);
   if (!format) return format.error();
   if (*format == Format::png) {
-    if (const auto names = FrameNames::parse(context.output); !names) return names.error();
+    const auto names = FrameNames::parse(context.output);
+    if (!names) return names.error();
+    if (names->is_single() && options.to) {
+      return usage(fmt::format("-o {} is one frame, that of --from", context.output),
+                   "'frame_%04d.png' is a file per frame");
+    }
+    single = names->is_single();
   } else if (Status status = krok::film::check_encoder(); !status) {
     return status.error();
   }
   ShotSetting setting;
-  const auto shot = make_shot(options, *format, context, setting);
+  Options chosen = options;
+  if (single) chosen.to = chosen.from.value_or(ClipTime());
+  const auto shot = make_shot(chosen, *format, context, setting);
   if (!shot) return shot.error();
   const auto written = write(*shot, setting, *format, context);
   if (!written) return written.error();

@@ -66,7 +66,8 @@ void declare_mesh(CommandOptions& command, Options& o) {
   command
       .add_option("--weights IN", o.weights,
                   "Morph target weights over time: a table (CSV) or keys (JSON); from the start of "
-                  "the motion")
+                  "the motion. {clip} in the name is the motion's path without its ending, for "
+                  "motions with a file each: '{clip}.csv'")
       .not_with("--as motion");
   command.add("--up AXIS", o.up, up_axis<pc2::Up>({{"y", pc2::Up::y}, {"z", pc2::Up::z}}),
               "Up axis of a point cache: y as in the written OBJ and glTF files, or z as in "
@@ -107,6 +108,9 @@ void declare(CommandOptions& command, Options& o) {
 }
 
 Status check(const Options& options) {
+  if (options.has_weights_by_clip() && options.motions.empty()) {
+    return usage("{clip} in the name of --weights needs a motion");
+  }
   if (!options.weights.empty() && options.morphs.empty() && !is_character(options.subject)) {
     return usage("--weights needs morph targets", "add --morph IN.exr; a .character has its own");
   }
@@ -148,9 +152,12 @@ Status check_for(As as, const Options& options) {
     return usage("several motions are for --as rig and --as motion",
                  "use --out-dir DIR for a file each");
   }
-  if (options.from || options.to || !options.weights.empty()) {
-    return usage("--from, --to and --weights are for a single motion",
-                 "cut the motions with krok-edit");
+  if (options.from || options.to) {
+    return usage("--from and --to are for a single motion", "cut the motions with krok-edit");
+  }
+  if (!options.weights.empty() && !options.has_weights_by_clip()) {
+    return usage("--weights of several motions need {clip} in their name",
+                 "--weights '{clip}.csv' has those of walk.anim in walk.csv beside it");
   }
   return {};
 }
@@ -195,6 +202,8 @@ ToolSpec make_spec() {
        "the clips alone, on the same skeleton"},
       {"krok-skin hero.character walk.anim --weights smile.csv -o hero.glb",
        "a character with its materials, eyes and expressions"},
+      {"krok-skin hero.character walk.anim talk.anim --weights '{clip}.csv' -o hero.glb",
+       "two clips with expressions of their own, from walk.csv and talk.csv"},
       {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one pose"},
       {"krok-skin body.model walk.anim --as baked -o baked.glb",
        "baked vertex animation, for viewers without skinning"},

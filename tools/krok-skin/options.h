@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/quantity.h"
@@ -18,6 +19,9 @@ enum class Influences { all = 0, four = 4, eight = 8 };
 
 enum class As { automatic, rig, motion, baked, pose, frames };
 
+// In the name of --weights, the path of each motion without its ending.
+inline constexpr std::string_view kClipInName = "{clip}";
+
 // Command-line options.
 struct Options {
   std::string subject;                      // a model or a character
@@ -33,6 +37,8 @@ struct Options {
   Influences influences = Influences::all;  // per vertex at most
   std::optional<double> reduce;             // --as rig: the tolerance, metres; empty: all keys
   bool quantize = false, compress = false;  // --as rig
+
+  bool has_weights_by_clip() const { return weights.find(kClipInName) != std::string::npos; }
 };
 
 // Whether a path is a character, not a model.

@@ -111,7 +111,7 @@ void apply_influence_limit(const Options& options, Subject& subject, ToolContext
 
 std::vector<gltf::NamedTracks> Clips::named() const {
   std::vector<gltf::NamedTracks> all;
-  for (std::size_t i = 0; i < names.size(); ++i) all.push_back({names[i], &tracks[i]});
+  for (std::size_t i = 0; i < names.size(); ++i) all.push_back({names[i], &tracks[i], weights[i]});
   return all;
 }
 
@@ -126,6 +126,7 @@ Result<Clips> clips_of(const Subject& subject, const std::string& still_name,
     largest_error = std::max(largest_error, error);
     clips.names.push_back(motion.name);
     clips.tracks.push_back(*std::move(tracks));
+    clips.weights.push_back(motion.weights.values.empty() ? nullptr : &motion.weights);
   }
   report_stretch(subject, clips.tracks, largest_error, context);
   return clips;
@@ -144,17 +145,14 @@ struct Shown {
   MorphSet morphs;
 };
 
-// The meshes of a clip: shapes change in the first motion alone.
-gltf::TrackedMesh mesh_of(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
-                          std::size_t clip) {
-  if (clip > 0 || weights.values.empty()) return {model};
-  return {model, &morphs, &weights};
+gltf::TrackedMesh mesh_of(const Model& model, const MorphSet& morphs, const MorphWeights* weights) {
+  if (weights == nullptr) return {model};
+  return {model, &morphs, weights};
 }
 
 class BitsLost {
  public:
-  BitsLost(const SmallRig& rig, const MorphWeights& weights, int jobs)
-      : rig_(rig), full_(rig.clips.tracks), weights_(weights), jobs_(jobs) {}
+  BitsLost(const SmallRig& rig, int jobs) : rig_(rig), full_(rig.clips.tracks), jobs_(jobs) {}
 
   Shown shown(const std::optional<gltf::Quantization>& quantization) const {
     if (!quantization) return {rig_.model, rig_.morphs};
@@ -200,23 +198,25 @@ class BitsLost {
 
  private:
   gltf::TrackedMesh original(std::size_t clip) const {
-    return mesh_of(rig_.model, rig_.morphs, weights_, clip);
+    return mesh_of(rig_.model, rig_.morphs, rig_.clips.weights[clip]);
   }
   gltf::TrackedMesh left(const Shown& shown, std::size_t clip) const {
-    return mesh_of(shown.model, shown.morphs, weights_, clip);
+    return mesh_of(shown.model, shown.morphs, rig_.clips.weights[clip]);
   }
 
   // How many shapes' errors add up in a vertex: sum |w| of the targets, |1 - sum w| of the mesh.
   double shapes_at_once() const {
-    const std::size_t targets = weights_.names.size();
     double most = 1;
-    for (std::size_t i = 0; targets > 0 && i + targets <= weights_.values.size(); i += targets) {
-      double sum = 0, size = 0;
-      for (const float weight : std::span(weights_.values).subspan(i, targets)) {
-        sum += static_cast<double>(weight);
-        size += std::abs(static_cast<double>(weight));
+    for (const MorphWeights* weights : rig_.clips.weights) {
+      const std::size_t targets = weights == nullptr ? 0 : weights->names.size();
+      for (std::size_t i = 0; targets > 0 && i + targets <= weights->values.size(); i += targets) {
+        double sum = 0, size = 0;
+        for (const float weight : std::span(weights->values).subspan(i, targets)) {
+          sum += static_cast<double>(weight);
+          size += std::abs(static_cast<double>(weight));
+        }
+        most = std::max(most, size + std::abs(1 - sum));
       }
-      most = std::max(most, size + std::abs(1 - sum));
     }
     return most;
   }
@@ -240,14 +240,12 @@ class BitsLost {
 
   const SmallRig& rig_;
   const std::vector<gltf::JointTracks> full_;
-  const MorphWeights& weights_;
   int jobs_;
 };
 
 // Applies --reduce and --quantize, and reports the error of both.
-Status lose_bits(const Options& options, const MorphWeights& weights, SmallRig& rig,
-                 ToolContext& context) {
-  const BitsLost lost(rig, weights, context.jobs);
+Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
+  const BitsLost lost(rig, context.jobs);
   const double tolerance = options.reduce.value_or(0);
   const bool filtered = options.compress && options.quantize;
   if (options.quantize) rig.quantization = lost.quantization_for(tolerance, filtered);
@@ -337,8 +335,7 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
     drop_unused_sets(subject.materials, rig.model, context);
   }
   if (options.reduce || options.quantize) {
-    if (Status status = lose_bits(options, subject.weights, rig, context); !status)
-      return status.error();
+    if (Status status = lose_bits(options, rig, context); !status) return status.error();
   }
   if (options.compress) gltf::order_for_compression(rig.model, rig.morphs, rig.quantization);
   return rig;

@@ -21,6 +21,7 @@ void apply_influence_limit(const Options& options, Subject& subject, ToolContext
 struct Clips {
   std::vector<std::string> names;
   std::vector<gltf::JointTracks> tracks;
+  std::vector<const MorphWeights*> weights;  // of the subject
   // Refers to both.
   std::vector<gltf::NamedTracks> named() const;
 };

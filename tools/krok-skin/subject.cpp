@@ -14,7 +14,6 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
-#include "scene/tangents.h"
 #include "skin/bind.h"
 #include "tools/cli/file_name.h"
 
@@ -49,11 +48,6 @@ class Loader {
     if (!actor) return actor.error();
     subject_.model = std::move(actor->model);
     subject_.materials = std::move(actor->materials);
-    Model& model = subject_.model;
-    if (model.tangents.empty() && needs_tangents(model, subject_.materials)) {
-      model.tangents =
-          make_tangents(model.positions, model.normals, model.texture_coordinates, model.triangles);
-    }
     subject_.eyes = std::move(actor->eyes);
     subject_.morphs = std::move(actor->morphs);
     rest_weights_ = std::move(actor->rest_weights);
@@ -82,25 +76,40 @@ class Loader {
   }
 
   Status read_weights() {
-    if (!options_.weights.empty()) {
-      const auto file = context_.open_input(options_.weights);
-      if (!file) return file.error();
-      auto weights = weights::read(file->text(), options_.weights, subject_.morphs.names);
-      if (!weights) return weights.error();
-      weights_ = std::move(*weights);
+    const std::size_t motion = 0;
+    auto weights = weights_of(motion);
+    if (!weights) return weights.error();
+    weights_ = *std::move(weights);
+    return {};
+  }
+
+  // Those of a motion, from the file of --weights, whose {clip} is the motion's path without its
+  // ending. Targets that it does not have keep the character's default weights.
+  Result<std::optional<weights::WeightFile>> weights_of(std::size_t motion) {
+    std::optional<weights::WeightFile> result;
+    std::string path = options_.weights;
+    if (const std::size_t place = path.find(kClipInName); place != std::string::npos) {
+      const std::string& clip = options_.motions.at(motion);
+      path.replace(place, kClipInName.size(), clip.substr(0, clip.size() - extension(clip).size()));
     }
-    // Targets without weights keep the character's default weights.
+    if (!path.empty()) {
+      const auto file = context_.open_input(path);
+      if (!file) return file.error();
+      auto weights = weights::read(file->text(), path, subject_.morphs.names);
+      if (!weights) return weights.error();
+      result = std::move(*weights);
+    }
     for (std::size_t t = 0; t < rest_weights_.size(); ++t) {
       if (rest_weights_[t] == 0.0f) continue;
-      if (!weights_) {
-        weights_.emplace();
-        weights_->curves.names = subject_.morphs.names;
-        weights_->curves.curves.resize(subject_.morphs.names.size());
+      if (!result) {
+        result.emplace();
+        result->curves.names = subject_.morphs.names;
+        result->curves.curves.resize(subject_.morphs.names.size());
       }
-      MorphCurve& curve = weights_->curves.curves[t];
+      MorphCurve& curve = result->curves.curves[t];
       if (curve.times.empty()) curve = {{0.0}, {static_cast<double>(rest_weights_[t])}, {}};
     }
-    return {};
+    return result;
   }
 
   Status read_clip() {
@@ -149,8 +158,15 @@ class Loader {
         stretches = cut(stretches, clip->joint_count(), 0, last, options_.every);
         *clip = cut(*clip, 0, last, options_.every);
       }
-      subject_.others.push_back(
-          {names_.make(clip_name_of(path)), std::move(*clip), std::move(stretches)});
+      Subject::Motion& other = subject_.others.emplace_back();
+      other = {names_.make(clip_name_of(path)), std::move(*clip), std::move(stretches), {}};
+      if (!options_.has_weights_by_clip()) continue;
+      const auto weights = weights_of(i);
+      if (!weights) return weights.error();
+      if (!*weights || other.clip.frame_count() == 0) continue;
+      auto sampled = sample((*weights)->curves, other.clip.rate, other.clip.frame_count());
+      if (!sampled) return Error(sampled.error()).in_file(path);
+      other.weights = *std::move(sampled);
     }
     return {};
   }
@@ -181,8 +197,9 @@ class Loader {
                   fmt::format("the weights last {} s, the motion {} s; the rest is ignored",
                               readable(weights_->curves.duration()), readable(clip.duration()))));
     }
-    // Those of several motions do not change.
-    const int frames = options_.motions.size() > 1 ? 1 : std::max(1, clip.frame_count());
+    // Those of several motions do not change, unless each has its own.
+    const bool still = options_.motions.size() > 1 && !options_.has_weights_by_clip();
+    const int frames = still ? 1 : std::max(1, clip.frame_count());
     auto weights = sample(weights_->curves, clip.rate, frames);
     if (!weights) return Error(weights.error()).in_file(options_.weights);
     subject_.weights = std::move(*weights);
@@ -241,9 +258,12 @@ class Loader {
 std::vector<Subject::NamedMotion> Subject::all_motions(const std::string& still_name) const {
   std::vector<NamedMotion> motions;
   if (!clip_name.empty() || weights.frame_count() > 1) {
-    motions.push_back({clip_name.empty() ? still_name : clip_name, clip, stretches});
+    motions.push_back({clip_name.empty() ? still_name : clip_name, clip, stretches, weights});
   }
-  for (const Motion& other : others) motions.push_back({other.name, other.clip, other.stretches});
+  for (const Motion& other : others) {
+    const bool own = !other.weights.values.empty();
+    motions.push_back({other.name, other.clip, other.stretches, own ? other.weights : weights});
+  }
   return motions;
 }
 

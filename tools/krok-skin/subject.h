@@ -29,7 +29,8 @@ struct Subject {
   struct Motion {
     std::string name;
     Clip clip;
-    Stretches stretches;  // of the joints in `clip`; none if they are rigid
+    Stretches stretches;   // of the joints in `clip`; none if they are rigid
+    MorphWeights weights;  // at the frames of `clip`, or empty
   };
   std::vector<Motion> others;  // on the same skeleton, for --as rig and motion; names are unique
 
@@ -42,6 +43,7 @@ struct Subject {
     std::string name;
     const Clip& clip;
     const Stretches& stretches;
+    const MorphWeights& weights;
   };
   std::vector<NamedMotion> all_motions(const std::string& still_name) const;
 

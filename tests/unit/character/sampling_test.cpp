@@ -95,6 +95,23 @@ TEST(Sampling, TheLastKeyIsReached) {
   EXPECT_EQ(chosen(keyed(even_times(31, 30)), options).sampling.frames, 11);
 }
 
+// Rates of 1, 2, 5 and 7 fps came back as 30 and 60; and after --reduce few keys tell a rate.
+TEST(Sampling, TheRateOfTheFileIsKept) {
+  for (const double rate : {1.0, 2.0, 5.0, 7.0, 30.0}) {
+    nodes::Animation animation = keyed(even_times(9, rate));
+    animation.rate = rate;
+    const auto result = chosen(animation);
+    EXPECT_EQ(result.sampling.rate, rate);
+    EXPECT_EQ(result.sampling.frames, 9);
+  }
+  nodes::Animation other = keyed(even_times(9, 24));
+  other.rate = 7;  // not that of its keys
+  EXPECT_EQ(chosen(other).sampling.rate, 24);
+  nodes::Animation few = keyed({0, 4 / 7.0f, 1});
+  few.rate = 7;
+  EXPECT_EQ(chosen(few).sampling.frames, 8);
+}
+
 TEST(Sampling, GivenRatesRetime) {
   SamplingOptions options;
   options.source_rate = 60;

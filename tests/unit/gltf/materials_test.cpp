@@ -140,30 +140,63 @@ TEST(GltfMaterials, WithoutTextureCoordinatesThereAreNoImages) {
   EXPECT_EQ(glb.json["materials"][0]["pbrMetallicRoughness"]["metallicFactor"], 0.25);
 }
 
-TEST(GltfMaterials, NormalTexturesComeWithTangents) {
+// A file that comes back must not have tangents that it had not.
+TEST(GltfMaterials, TangentsAreThoseOfTheModel) {
   const auto materials = look();
   gltf::WriteOptions options;
-  const Model model = dressed_model();
+  options.materials = materials;
+  Model model = dressed_model();
   ASSERT_TRUE(model.tangents.empty());
   const auto attributes = [](const test::Glb& glb) {
     return glb.json["meshes"][0]["primitives"][0]["attributes"];
   };
-  EXPECT_FALSE(attributes(rig(model, options)).contains("TANGENT"));
-  options.materials = materials;
-  const auto glb = rig(model, options);
-  ASSERT_TRUE(attributes(glb).contains("TANGENT"));
-  EXPECT_TRUE(glb.json["materials"][0].contains("normalTexture"));
   const auto baked = test::written([&](OutputFile& file) {
     return gltf::write_baked(model, test::wobble(model, 3), options, file);
   });
-  EXPECT_FALSE(attributes(baked).contains("TANGENT"));
-  EXPECT_FALSE(baked.json["materials"][0].contains("normalTexture"));
+  for (const test::Glb& glb : {rig(model, options), baked}) {
+    EXPECT_FALSE(attributes(glb).contains("TANGENT"));
+    EXPECT_TRUE(glb.json["materials"][0].contains("normalTexture"));
+  }
+  model.tangents.assign(model.positions.size(), Vec4f(1, 0, 0, 1));
+  EXPECT_TRUE(attributes(rig(model, options)).contains("TANGENT"));
+}
+
+// A model has one list of texture coordinates for all parts: those that had none are 0 in it.
+TEST(GltfMaterials, CoordinatesOfPartsThatHadNoneAreLeftOut) {
+  Model model = test::tube_model(test::human_skeleton());
+  model.texture_coordinates.assign(model.positions.size(), Vec2f(0.5f, 0.25f));
+  ASSERT_EQ(model.parts.size(), 1u);
+  Model::Part bare = model.parts[0];
+  bare.name = bare.mesh = "bare";
+  bare.material.clear();
+  bare.first_triangle = static_cast<std::uint32_t>(model.triangles.size());
+  bare.triangle_count = 1;
+  const auto first = static_cast<std::uint32_t>(model.positions.size());
+  for (int v = 0; v < 3; ++v) {
+    model.positions.push_back(model.positions[static_cast<std::size_t>(v)]);
+    if (!model.normals.empty()) model.normals.push_back(model.normals[0]);
+    model.texture_coordinates.emplace_back(0.0f, 0.0f);
+    for (int i = 0; i < model.influences_per_vertex; ++i) {
+      model.influence_joints.push_back(0);
+      model.influence_weights.push_back(i == 0 ? 1.0f : 0.0f);
+    }
+  }
+  model.triangles.push_back({first, first + 1, first + 2});
+  model.parts.push_back(bare);
+  const auto glb = rig(model, gltf::WriteOptions());
+  ASSERT_EQ(glb.json["meshes"].size(), 2u);
+  const auto attributes = [&](int mesh) {
+    return glb.json["meshes"][static_cast<std::size_t>(mesh)]["primitives"][0]["attributes"];
+  };
+  EXPECT_TRUE(attributes(0).contains("TEXCOORD_0"));
+  EXPECT_FALSE(attributes(1).contains("TEXCOORD_0"));
 }
 
 TEST(GltfMaterials, TangentsOfBakedFramesAddUp) {
   const auto materials = look();
   gltf::WriteOptions options;
-  const Model model = dressed_model();
+  Model model = dressed_model();
+  model.tangents.assign(model.positions.size(), Vec4f(1, 0, 0, 1));
   MeshMotion motion = test::wobble(model, 3);
   motion.tangents = true;
   const auto bake = [&] {

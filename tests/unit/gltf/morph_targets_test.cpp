@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
 #include "support/test_scenes.h"
 #include "unit/gltf/glb.h"
@@ -103,6 +104,67 @@ TEST(GltfMorphTargets, WeightsAreInTheAnimationOfTheJoints) {
   }
   EXPECT_EQ(found, 1);
   EXPECT_GT(animation["channels"].size(), 10u);
+}
+
+TEST(GltfMorphTargets, EachClipHasItsOwnWeights) {
+  const Face face(3);
+  const Clip clip = test::swinging_clip(face.model.skeleton, 5, 30);
+  const auto tracks = gltf::joint_tracks(face.model.skeleton, clip);
+  ASSERT_TRUE(tracks.ok());
+  MorphWeights other = face.weights;
+  for (float& weight : other.values) weight = 1 - weight;
+  const std::vector<gltf::NamedTracks> clips = {
+      {"walk", &*tracks, &face.weights}, {"still", &*tracks}, {"talk", &*tracks, &other}};
+  gltf::WriteOptions options = face.options;
+  options.weights = nullptr;
+  const test::Glb glb = test::written(
+      [&](OutputFile& file) { return gltf::write_rig(face.model, clips, options, file); });
+  ASSERT_EQ(glb.json["animations"].size(), 3u);
+  const std::vector<std::vector<float>> expected = {face.weights.values, {}, other.values};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& animation = glb.json["animations"][i];
+    std::vector<float> found;
+    for (const auto& channel : animation["channels"]) {
+      if (channel["target"]["path"] != "weights") continue;
+      found = glb.values<float>(animation["samplers"][channel["sampler"].get<int>()]["output"]);
+    }
+    EXPECT_EQ(found, expected[i]) << i;
+    EXPECT_EQ(animation["extras"]["rate"], 30.0);
+  }
+}
+
+// A target that moves a few vertices of many must not take as much as one that moves all.
+TEST(GltfMorphTargets, ThatMoveLittleAreSparse) {
+  Face face(2);
+  for (int t = 0; t < 2; ++t) {
+    for (int v = 0; v < face.model.vertex_count(); ++v) {
+      const auto at = static_cast<std::size_t>(t * face.model.vertex_count() + v);
+      const auto own = static_cast<std::size_t>(v);
+      face.morphs.positions[at] = face.model.positions[own];
+      face.morphs.normals[at] = face.model.normals[own];
+      if (v % 50 == 7) face.morphs.positions[at] += Vec3f(0, 0.5f, 0);
+    }
+  }
+  const test::Glb glb = face.rig();
+  const auto& targets = glb.json["meshes"][0]["primitives"][0]["targets"];
+  for (int t = 0; t < 2; ++t) {
+    const auto index = static_cast<std::size_t>(t);
+    const auto& accessor = glb.json["accessors"][targets[index]["POSITION"].get<std::size_t>()];
+    EXPECT_FALSE(accessor.contains("bufferView"));
+    EXPECT_LT(accessor["sparse"]["count"], face.model.vertex_count() / 40);
+    EXPECT_EQ(accessor["max"], nlohmann::json({0.0, 0.5, 0.0}));
+    const auto& still = glb.json["accessors"][targets[index]["NORMAL"].get<std::size_t>()];
+    EXPECT_FALSE(still.contains("sparse"));
+    EXPECT_FALSE(still.contains("bufferView"));
+  }
+  const auto scene = gltf::read(std::as_bytes(std::span(glb.bytes)));
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  const auto& read = scene->meshes.at(0).primitives.at(0).targets.at(1);
+  for (std::size_t v = 0; v < face.model.positions.size(); ++v) {
+    EXPECT_EQ(
+        (*read.positions)[v].y(),
+        v % 50 == 7 ? (face.model.positions[v].y() + 0.5f) - face.model.positions[v].y() : 0.0f);
+  }
 }
 
 TEST(GltfMorphTargets, OneFrameIsAShapeForGood) {

@@ -361,6 +361,17 @@ TEST(GltfReader, VerticesWithoutWeightsHangOnTheirFirstJointWithAWarning) {
   EXPECT_EQ(asset.diagnostics[0].code, "gltf-mesh-weights");
 }
 
+TEST(GltfReader, ANodeThatIsNoRootIsShownWhereItsParentsPutIt) {
+  GlbBuilder builder = test::rig();
+  builder.json["scenes"][0]["nodes"] = {2};
+  const nodes::Scene asset = read_good(builder);
+  EXPECT_FALSE(asset.nodes[1].in_scene);
+  EXPECT_TRUE(asset.nodes[2].in_scene);
+  EXPECT_THAT(asset.roots, ElementsAre(1));
+  ASSERT_EQ(asset.diagnostics.size(), 1u);
+  EXPECT_EQ(asset.diagnostics[0].code, "gltf-node");
+}
+
 TEST(GltfReader, WithoutScenesAllRootsAreShown) {
   GlbBuilder builder = test::rig();
   builder.json.erase("scenes");
