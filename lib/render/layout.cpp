@@ -110,7 +110,7 @@ Status check_options(const Sheet& sheet, const SheetOptions& options) {
   return {};
 }
 
-// What all rows show together.
+// What all rows show together, in metres at the sheet's scale.
 struct Extent {
   std::vector<Window> rows;
   double left = std::numeric_limits<double>::infinity();  // of all windows, metres
@@ -125,6 +125,8 @@ Extent measure_rows(const Sheet& sheet, std::vector<RowLayout>& places) {
     Window window = window_of(sheet.rows[r], places[r]);
     extent.columns = std::max(extent.columns, sheet.rows[r].cells.size());
     if (window.empty()) window.add(Vec2::Zero());
+    window.low *= sheet.rows[r].scale;
+    window.high *= sheet.rows[r].scale;
     extent.left = std::min(extent.left, window.low.x());
     extent.right = std::max(extent.right, window.high.x());
     extent.height = std::max(extent.height, window.high.y() - window.low.y());
@@ -193,7 +195,7 @@ void add_cells(const SheetRow& row, std::size_t index, double centre, Layout& la
     cell.top = place.top;
     cell.bottom = place.bottom;
     const double middle = 0.5 * (cell.left + cell.right) - centre * per_metre;
-    cell.camera = {row.cells[c].centre, row.yaw, row.elevation, per_metre,
+    cell.camera = {row.cells[c].centre, row.yaw, row.elevation, per_metre * row.scale,
                    Vec2(middle, place.ground)};
     layout.cells.push_back(cell);
   }

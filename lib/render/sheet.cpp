@@ -37,7 +37,9 @@ class SheetPainter {
     }
     for (const CellLayout& cell : layout_.cells) {
       const SheetRow& row = sheet_.rows[static_cast<std::size_t>(cell.row)];
-      if (row.elevation > kRaised && !row.own_ground) paint_grid(cell);
+      if (row.elevation > kRaised && !row.own_ground) {
+        paint_grid(cell, layout_.height_step / row.scale);
+      }
       paint_path(content(cell).path, cell);
     }
   }
@@ -76,7 +78,7 @@ class SheetPainter {
       const double y = std::round(place.ground - height * layout_.pixels_per_metre);
       if (y < place.top + 5 || y > place.bottom - 4) continue;
       if (i != 0) fill(image_, {{left, y}, {right, y + 1}}, kHeightLine);
-      const std::string words = i == 0 ? "0" : readable(height) + " m";
+      const std::string words = i == 0 ? "0" : readable(height / row.scale) + " m";
       text_.draw(image_, {left - 6, y + 4}, words, kSmallSize, kSoft, Align::right);
     }
     if (!place.shows_ground) return;
@@ -85,13 +87,13 @@ class SheetPainter {
   }
 
   // A ground grid with the spacing of the height lines.
-  void paint_grid(const CellLayout& cell) {
+  void paint_grid(const CellLayout& cell, double step) {
     View view;
     view.camera = cell.camera;
     const double reach =
         std::hypot(cell.right - cell.left, cell.bottom - cell.top) / cell.camera.pixels_per_metre;
-    render::paint_grid(Projection(view), {cell.camera.target, layout_.height_step, reach, 24},
-                       box_of(cell), image_);
+    render::paint_grid(Projection(view), {cell.camera.target, step, reach, 24}, box_of(cell),
+                       image_);
   }
 
   void paint_path(const std::vector<Vec3>& path, const CellLayout& cell) {

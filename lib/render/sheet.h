@@ -48,6 +48,7 @@ struct SheetRow {
   std::string title, note;        // a line above; may be empty
   double yaw = 0, elevation = 0;  // direction to the camera, see Camera
   std::vector<SheetCell> cells;
+  double scale = 1;         // times that of the sheet; smaller for what would make others tiny
   bool own_ground = false;  // the characters bring a ground: a raised camera shows no grid
 };
 
@@ -74,7 +75,7 @@ struct CellLayout {
 struct SheetImage {
   Image image;
   std::vector<CellLayout> cells;  // row by row
-  double pixels_per_metre = 0;    // of all cells
+  double pixels_per_metre = 0;    // of all cells, but for their rows' scales
   double height_step = 0;         // metres between height lines
 };
 

@@ -37,7 +37,7 @@ ALLOWED = {
     "lib/ik": BASE | {"lib/roles", "lib/motion", "lib/timeline"},
     "lib/positions": BASE | {"lib/roles"},
     "lib/ragdoll": BASE | {"lib/roles", "lib/ik", "lib/motion", "lib/timeline"},
-    "lib/retarget": BASE | {"lib/roles", "lib/ik", "lib/motion"},
+    "lib/retarget": BASE | {"lib/roles", "lib/contacts", "lib/ik", "lib/motion"},
     "lib/skin": BASE,
     "lib/body": BASE | {"lib/roles", "lib/retarget"},
     "lib/compare": BASE,

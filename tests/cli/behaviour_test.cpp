@@ -26,17 +26,30 @@ std::vector<std::string> built_tools() {
 class Tools : public CliTest, public testing::WithParamInterface<std::string> {};
 
 TEST_P(Tools, HelpAndVersionEndWithSuccess) {
-  for (const char* option : {"--help", "-h"}) {
+  for (const std::string option : {"--help", "-h"}) {
     const ToolRun run = run_tool(GetParam(), {option});
     EXPECT_EQ(run.exit_code, 0);
     EXPECT_EQ(run.err, "");
-    for (const char* part : {"Usage: krok-", "Examples:", "Exit codes:", "--json", "--progress"}) {
+    for (const char* part : {"Usage: krok-", "Examples:", "--json", "--progress", "--help"}) {
       EXPECT_NE(run.out.find(part), std::string::npos) << part << "\n" << run.out;
     }
+    EXPECT_EQ(run.out.find("Exit codes:") != std::string::npos, option == "--help") << run.out;
   }
   const ToolRun version = run_tool(GetParam(), {"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_EQ(version.out.find(GetParam() + " "), 0u) << version.out;
+}
+
+// Somebody who asks for -h wants to see the command at a glance, and no option to be missing.
+TEST_P(Tools, ShortHelpFitsAScreenAndNamesEveryOption) {
+  const std::string help = run_tool(GetParam(), {"--help"}).out;
+  const std::string text = run_tool(GetParam(), {"-h"}).out;
+  EXPECT_LT(std::ranges::count(text, '\n'), 70) << text;
+  for (std::size_t at = 0; (at = help.find("\n  --", at)) != std::string::npos; ++at) {
+    const std::size_t begin = at + 3;
+    const std::string name = help.substr(begin, help.find_first_of(" ,\n=", begin) - begin);
+    EXPECT_NE(text.find(name), std::string::npos) << name << "\n" << text;
+  }
 }
 
 TEST_P(Tools, HelpReadsWell) {

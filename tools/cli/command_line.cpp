@@ -38,11 +38,16 @@ std::string usage_lines(const ToolSpec& spec) {
   return text;
 }
 
-std::string footer(const ToolSpec& spec) {
+std::string examples_of(const ToolSpec& spec) {
   std::string text = "\nExamples:\n";
   for (const auto& example : spec.examples) {
     text += fmt::format("  {}\n      {}\n", example.command, example.does);
   }
+  return text;
+}
+
+std::string footer(const ToolSpec& spec) {
+  std::string text = examples_of(spec);
   text += fmt::format("\nExit codes:\n  0  {}\n", spec.exit_done);
   if (!spec.exit_no.empty()) text += fmt::format("  1  {}\n", spec.exit_no);
   text += "  2  error: usage, input or output; no partial output is left\n";
@@ -210,7 +215,7 @@ void CommandLine::take_many_inputs() {
 }
 
 void CommandLine::declare_common(const ToolSpec& spec) {
-  app_.set_help_flag("-h,--help", "Print this help")->group(kCommon);
+  app_.set_help_flag("-h,--help", "Print this help; -h a short one")->group(kCommon);
   app_.set_version_flag("--version", fmt::format("{} {}", spec.name, version()),
                         "Print the version")
       ->group(kCommon);
@@ -442,6 +447,24 @@ std::vector<std::string> CommandLine::expanded(const std::vector<std::string>& a
 
 std::string CommandLine::help() const {
   return help_text(app_);
+}
+
+std::string CommandLine::short_help(const ToolSpec& spec) const {
+  std::vector<std::pair<std::string, std::string>> groups;  // in the order of --help
+  for (const CLI::Option* option : app_.get_options()) {
+    const std::string& group = option->get_group();
+    if (option->get_positional() || group.empty()) continue;
+    auto place = std::ranges::find(groups, group, &std::pair<std::string, std::string>::first);
+    if (place == groups.end()) place = groups.insert(groups.end(), {group, ""});
+    std::string& names = place->second;
+    const auto& longs = option->get_lnames();
+    names += names.empty() ? "" : ", ";
+    names += longs.empty() ? "-" + option->get_snames().front() : "--" + longs.front();
+  }
+  std::string text = fmt::format("{}\n\n{}\nOptions; {} --help explains them:\n", spec.summary,
+                                 usage_lines(spec), spec.name);
+  for (const auto& [group, names] : groups) text += fmt::format("  {}: {}\n", group, names);
+  return tidy_help(text + examples_of(spec));
 }
 
 GivenLimits CommandLine::limits() const {

@@ -46,6 +46,8 @@ class CommandLine {
   Result<Wish> parse(const std::vector<std::string>& arguments);
 
   std::string help() const;
+  // What fits on a screen: usage, names of options by group, examples.
+  std::string short_help(const ToolSpec& spec) const;
 
   // The same arguments with each positional that is a pattern, which the shell did not expand,
   // replaced by the files that it matches; a pattern without a match is left. After parse().

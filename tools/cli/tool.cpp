@@ -203,7 +203,9 @@ int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>&
   }
   // The help is that of single-file mode, whatever else was given.
   if (*wish == CommandLine::Wish::help) {
-    return print_and_end(spec.name, CommandLine(spec, CommandLine::Form::single).help());
+    const CommandLine single(spec, CommandLine::Form::single);
+    const bool is_short = std::ranges::find(arguments, "-h") != arguments.end();
+    return print_and_end(spec.name, is_short ? single.short_help(spec) : single.help());
   }
   return many ? many_files.run(make_spec, line) : run_single(spec, line);
 }

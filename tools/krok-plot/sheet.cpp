@@ -106,6 +106,31 @@ render::Sheet contact_sheet(const ShownActors& all, const std::vector<ImageSide>
   return sheet;
 }
 
+// Rows of what is many times as large as most are at a smaller scale, and say so.
+void keep_most_large(const ShownActors& all, render::Sheet& sheet) {
+  constexpr std::size_t kFew = 5;
+  constexpr double kMuchLarger = 3;
+  std::vector<double> sizes;
+  for (const Shown& shown : all) {
+    double size = 0;
+    for (const render::Actor& actor : shown.actors) {
+      size = std::max(size, render::bounds(actor).extent());
+    }
+    sizes.push_back(size);
+  }
+  if (sizes.size() < kFew) return;
+  std::vector<double> sorted = sizes;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::ranges::nth_element(sorted, middle);
+  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    const double times = sizes[r * sizes.size() / sheet.rows.size()] / *middle;
+    if (!(times > kMuchLarger) || !std::isfinite(times)) continue;
+    const double smaller = std::ceil(times / kMuchLarger);
+    sheet.rows[r].scale = 1 / smaller;
+    sheet.rows[r].note += fmt::format("   1/{} of the others' scale", readable(smaller));
+  }
+}
+
 // The view direction of a strip: from the side, moving left to right, if the character travels;
 // otherwise from its front. An explicit --view takes precedence.
 ImageSide strip_side(const Shown& shown, const std::vector<ImageSide>& sides,
@@ -192,6 +217,7 @@ Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<Imag
   const auto all = show_all(actors, options, ground, kSheetMoments, results.context.jobs);
   if (!all) return all.error();
   render::Sheet sheet = contact_sheet(*all, sides, options);
+  keep_most_large(*all, sheet);
   sheet.columns = options.columns.value_or(usual_columns(sheet.rows.size()));
   render::SheetOptions how;
   how.jobs = results.context.jobs;

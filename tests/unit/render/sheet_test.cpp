@@ -147,6 +147,23 @@ TEST(Sheet, OneScaleForAllCellsWhereverTheyStand) {
   EXPECT_NEAR(both / coloured_pixels(one, 60), 5, 0.1) << "areas of 1 and 4";
 }
 
+TEST(Sheet, ARowAtASmallerScaleIsThatMuchSmaller) {
+  Actor actor;
+  actor.bones = {ball({-3, 1, 5}, 1, kRed)};
+  actor.centre = {-3, 0, 5};
+  Sheet sheet = sheet_of(actor);
+  sheet.rows.push_back(sheet.rows[0]);
+  sheet.rows[1].scale = 0.5;
+  const auto image = make_sheet(sheet, {.row_height = 300});
+  ASSERT_TRUE(image.ok());
+  ASSERT_EQ(image->cells.size(), 2U);
+  EXPECT_EQ(image->cells[1].camera.pixels_per_metre, image->pixels_per_metre / 2);
+  SheetImage first = *image, second = *image;
+  first.cells.resize(1);
+  second.cells.erase(second.cells.begin());
+  EXPECT_NEAR(double(coloured_pixels(first, 60)) / coloured_pixels(second, 60), 4, 0.1);
+}
+
 // Motions of a folder side by side: beyond the first row of them a ground at another height, or a
 // cell over its neighbour, would mislead.
 TEST(Sheet, RowsSideBySideStandOnOneLineAndDoNotOverlap) {
