@@ -41,6 +41,7 @@ ALLOWED = {
     "lib/skin": BASE,
     "lib/body": BASE | {"lib/roles", "lib/retarget"},
     "lib/compare": BASE,
+    "lib/lint": BASE | {"lib/capture", "lib/contacts", "lib/motion", "lib/roles"},
     "lib/draw": BASE | {"lib/roles", "lib/contacts", "lib/motion", "lib/compare", "lib/retarget"},
     "lib/render": BASE,
     "formats/registry": {"lib/core"},
