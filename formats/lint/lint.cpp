@@ -104,16 +104,4 @@ std::string write_baseline(const std::vector<KnownFault>& faults) {
   return baseline_table().write(&file) + "\n";
 }
 
-std::string profile_schema() {
-  return profile_table().schema();
-}
-
-std::string suppressions_schema() {
-  return suppressions_table().schema();
-}
-
-std::string baseline_schema() {
-  return baseline_table().schema();
-}
-
 }  // namespace krok::lint_files

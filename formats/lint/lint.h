@@ -41,9 +41,4 @@ Result<std::vector<KnownFault>> read_baseline(std::string_view text);
 
 std::string write_baseline(const std::vector<KnownFault>& faults);
 
-// JSON Schemas.
-std::string profile_schema();
-std::string suppressions_schema();
-std::string baseline_schema();
-
 }  // namespace krok::lint_files

@@ -11,7 +11,7 @@ namespace krok::lint {
 
 namespace {
 
-constexpr int kMoments = 24;
+constexpr double kMoments = 16;  // at least, of a motion
 constexpr double kSameDuration = 0.02;
 constexpr float kHeld = 0.052F;  // 3 degrees, as a distance of unit vectors
 
@@ -34,8 +34,11 @@ Signature signature_of(const Clip& clip, const RoleMap& roles) {
   if (hips < 0 || bones.size() < 4 || frames < 3) return signature;
   // The hips' frame differs between exporters of one capture; that of the reference pose does not.
   const Quatf reference = clip.skeleton.reference[at(hips)].orientation.cast<float>();
-  for (int m = 0; m < kMoments; ++m) {
-    const double place = static_cast<double>(m) * (frames - 1) / (kMoments - 1);
+  // Times from the beginning, by a power of two of seconds: a frame more or less at the end, as
+  // other rates have it, moves none of them.
+  const double step = std::exp2(std::floor(std::log2(signature.duration / kMoments)));
+  for (int m = 0; m * step <= signature.duration; ++m) {
+    const double place = std::min<double>(m * step * clip.rate, frames - 1);
     const int first = std::min(frames - 2, static_cast<int>(place));
     const auto share = static_cast<float>(place - first);
     const auto direction = [&](int frame, const std::pair<int, int>& bone) {
@@ -70,9 +73,10 @@ std::vector<std::pair<int, int>> find_duplicates(std::span<const Signature> sign
     for (std::size_t k = i + 1; k < order.size(); ++k) {
       const Signature& b = signatures[at(order[k])];
       if (b.duration > a.duration * (1 + kSameDuration)) break;
-      if (b.directions.size() != a.directions.size()) continue;
+      const std::size_t common = std::min(a.directions.size(), b.directions.size());
+      if (4 * common < 3 * std::max(a.directions.size(), b.directions.size())) continue;
       const bool equal = std::ranges::equal(
-          a.directions, b.directions,
+          std::span(a.directions).first(common), std::span(b.directions).first(common),
           [&](const Vec3f& x, const Vec3f& y) { return (x - y).squaredNorm() <= limit * limit; });
       if (!equal) continue;
       const int first = std::min(order[i], order[k]), second = std::max(order[i], order[k]);

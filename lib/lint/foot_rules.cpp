@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -7,7 +8,6 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "lint/series_internal.h"
-#include "math/window.h"
 
 // foot-slide, drift and ground.
 
@@ -26,8 +26,6 @@ constexpr double kFloor = 2;             // times the threshold, of the floor's 
 constexpr double kUpright = 0.8;         // of the legs' length, height of the hips
 constexpr double kShortestHover = 0.25;  // seconds
 constexpr double kLeastFall = 4;         // metres per second squared
-constexpr double kSamePlace = 0.25;      // metres
-constexpr double kLater = 3;             // seconds
 
 // The feet's points over the frames.
 struct Soles {
@@ -124,7 +122,6 @@ class Slides {
       Finding finding;
       const bool body = both_ > frames_ / 3 && together_ > both_ / 2;
       finding.rule = body ? Rule::drift : Rule::foot_slide;
-      if (body) finding.kind = "body";
       finding.joint = soles_.found.tracks[at(point_)].point.joint;
       finding.first = first_, finding.last = frame - 1, finding.worst = worst_;
       finding.value = way_.norm();
@@ -169,36 +166,6 @@ void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& 
         fmt::format("{} {} in one contact", name_of(track.point.side), name_of(track.point.part));
     if (finding.value > finding.threshold) found.push_back(finding);
   }
-}
-
-// A foot that comes back to where it stood at another height: the floor of the capture drifts.
-void find_height_drift(const Series& series, const Soles& soles, std::vector<Finding>& found) {
-  std::vector<double> rises;
-  const Stay* from = nullptr;
-  const Stay* to = nullptr;
-  for (const Stay& a : soles.found.stays) {
-    for (const Stay& b : soles.found.stays) {
-      if (a.track != b.track || b.start < a.end + kLater) continue;
-      const Vec3 apart = b.place - a.place;
-      if (std::hypot(apart.x(), apart.z()) > kSamePlace * series.scale) continue;
-      rises.push_back(apart.y());
-      if (from == nullptr || std::abs(apart.y()) > std::abs(to->place.y() - from->place.y())) {
-        from = &a, to = &b;
-      }
-    }
-  }
-  if (rises.size() < 3) return;
-  Finding finding;
-  finding.rule = Rule::drift;
-  finding.kind = "height";
-  finding.value = std::abs(median(rises));
-  finding.threshold = series.threshold(Rule::drift) * series.scale, finding.unit = "m";
-  finding.joint = soles.found.tracks[at(from->track)].point.joint;
-  finding.first = static_cast<int>(from->start * series.rate);
-  finding.last = std::min(series.frames - 1, static_cast<int>(to->end * series.rate));
-  finding.worst = std::min(series.frames - 1, static_cast<int>(to->start * series.rate));
-  finding.detail = "the feet come back to other heights";
-  if (finding.value > finding.threshold) found.push_back(finding);
 }
 
 struct Level {
@@ -364,7 +331,6 @@ void find_foot_faults(const Series& series, MotionFaults& out) {
   if (slides && !series.options.treadmill) {
     Slides(series, *soles, found).find();
     find_stays(series, *soles, found);
-    if (series.has(Rule::drift)) find_height_drift(series, *soles, found);
     if (soles->found.stays.empty() && series.frames > series.rate) {
       out.notes.emplace_back("foot-slide: no foot rests; --treadmill if the ground moves");
     }

@@ -31,7 +31,7 @@ constexpr std::array<RuleFacts, kRuleCount> kRules = {{
     {Rule::rest_frame, "rest-frame", kWarning, 0, "", "The first frame is a rest pose"},
     {Rule::asymmetric_rest_pose, "asymmetric-rest-pose", kWarning, 4, "%",
      "Left and right limbs of the reference pose differ in length"},
-    {Rule::duplicate, "duplicate", kWarning, 2, "deg", "The same motion is in two files"},
+    {Rule::duplicate, "duplicate", kWarning, 4, "deg", "The same motion is in two files"},
 }};
 
 }  // namespace

@@ -17,7 +17,8 @@ namespace krok::parametric {
 // Rows of weights are written in an orthonormal basis. Its first row has equal weights, so that
 // what a blend leaves out sums to 0 and is bounded by the examples' spread about their mean
 // (Cauchy-Schwarz). Sums are stored at twice the examples' rate in generic time, and interpolated
-// linearly, as examples are between their frames.
+// linearly, as examples are between their frames; where these have a corner, at strikes, that
+// differs by up to a quarter of a degree.
 class ExampleSums {
  public:
   // The most that a blend of one of `rows` leaves out: of a joint's position in its parent, metres,
@@ -25,7 +26,7 @@ class ExampleSums {
   static constexpr double kMaxLeftOut = 1e-4;
 
   // A basis for these rows of weights, each [examples], and for all others in their span. None if
-  // it is not worth it: fewer examples than kMinExamples, or a basis of more than an eighth of
+  // it is not worth it: fewer examples than kMinExamples, or a basis of more than a quarter of
   // them. Deterministic; the same for any number of threads. `packed` must be valid.
   static constexpr int kMinExamples = 48;
   static std::optional<ExampleSums> create(const PackedExamples& packed,

@@ -42,8 +42,8 @@ void open_missing_standard_streams() {
 void allow_many_descriptors() {
   rlimit limit{};
   if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
-  constexpr rlim_t kMany = 65536;
-  limit.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, kMany));
+  constexpr rlim_t kWantedDescriptors = 65536;
+  limit.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, kWantedDescriptors));
   (void)setrlimit(RLIMIT_NOFILE, &limit);
 }
 

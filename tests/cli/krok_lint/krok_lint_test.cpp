@@ -46,7 +46,8 @@ TEST_F(KrokLint, ExitCodesTellCleanFaultyUnreadableAndPartly) {
   EXPECT_EQ(faulty.exit_code, 1);
   EXPECT_THAT(faulty.out, HasSubstr("spiked.anim: 2.00 s: error: LeftForeArm, spike: "));
   EXPECT_THAT(faulty.out, HasSubstr("[pop]"));
-  EXPECT_THAT(faulty.err, HasSubstr("2 files, 1 with faults: 1 error, 0 warnings"));
+  EXPECT_THAT(faulty.out, HasSubstr("the same motion as walk.anim [duplicate]"));
+  EXPECT_THAT(faulty.err, HasSubstr("2 files, 1 with faults: 1 error, 1 warning"));
   write_text("broken.bvh", "HIERARCHY\nROOT");
   EXPECT_EQ(run_here("krok-lint", {"broken.bvh"}).exit_code, 2);
   const ToolRun partly = run_here("krok-lint", {"walk.anim", "broken.bvh"});
@@ -101,9 +102,9 @@ TEST_F(KrokLint, BaselinesHoldUnderExportResamplingAndUnits) {
 TEST_F(KrokLint, ReportsAreWhatOtherProgramsRead) {
   write_spiked("spi ked.anim");
   write_text("broken.bvh", "HIERARCHY\nROOT");
-  const ToolRun run =
-      run_here("krok-lint", {"spi ked.anim", "walk.anim", "broken.bvh", "--sarif", "out.sarif",
-                             "--junit", "out.xml", "--table", "out.csv", "--json"});
+  const ToolRun run = run_here(
+      "krok-lint", {"spi ked.anim", "walk.anim", "broken.bvh", "--sarif", "out.sarif", "--junit",
+                    "out.xml", "--table", "out.csv", "--json", "--ignore", "duplicate"});
   EXPECT_EQ(run.exit_code, 3);
   const json report = json::parse(run.out)["result"];
   EXPECT_EQ(report["errors"], 1);

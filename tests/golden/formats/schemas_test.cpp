@@ -18,7 +18,6 @@
 #include "formats/keys/keys.h"
 #include "formats/library/library_description.h"
 #include "formats/limits/limits_format.h"
-#include "formats/lint/lint.h"
 #include "formats/material/material_format.h"
 #include "formats/path/path_format.h"
 #include "formats/prints/prints.h"
@@ -43,9 +42,6 @@ const std::pair<const char*, std::string (*)()> kSchemas[] = {
     {"prints/prints", prints::schema},
     {"key_shapes/key_shapes", key_shapes::schema},
     {"limits/limits", limits::schema},
-    {"lint/baseline", lint_files::baseline_schema},
-    {"lint/profile", lint_files::profile_schema},
-    {"lint/suppressions", lint_files::suppressions_schema},
     {"material/material", material::schema},
     {"ragdoll/ragdoll", ragdoll_file::schema},
     {"sequences/sequences", sequences::schema},

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <random>
 
@@ -286,9 +287,16 @@ TEST(LintDuplicates, AreFoundUnderAnotherRatePlaceAndSize) {
     for (Vec3& place : m.joint_positions(0)) place = turned * place + Vec3(3, 0, 1);
     for (Quat& one : m.joint_orientations(0)) one = turned * one;
   });
+  Clip resampled = clip;
+  resampled.rate = 30;
+  resampled.resize((clip.frame_count() + 1) / 2);
+  for (int f = 0; f < resampled.frame_count(); ++f) {
+    std::ranges::copy(clip.frame_positions(2 * f), resampled.frame_positions(f).begin());
+    std::ranges::copy(clip.frame_orientations(2 * f), resampled.frame_orientations(f).begin());
+  }
   const std::vector<lint::Signature> all = {signature(clip), signature(walk_of(slower)),
-                                            signature(usual_walk(30)), signature(moved)};
-  const auto pairs = lint::find_duplicates(all, 2 * kRadiansPerDegree);
+                                            signature(resampled), signature(moved)};
+  const auto pairs = lint::find_duplicates(all, 4 * kRadiansPerDegree);
   EXPECT_EQ(pairs, (std::vector<std::pair<int, int>>{{0, 2}, {0, 3}}));
 }
 
