@@ -97,14 +97,21 @@ class Pieces {
     double squares = 0;
     for (int f = first_; f <= last_; ++f) {
       const double u = (f - moment) * sign_ / reach_;
-      const double moving = std::min(u, 0.0);
       const Vec3 off = track_[static_cast<std::size_t>(f)] - middle_;
-      const double row[5] = {1, u, moving * moving, moving * moving * moving, moving};
+      moments(0, 0) += 1;
+      moments(1, 0) += u;
+      moments(1, 1) += u * u;
+      for (int axis = 0; axis < 3; ++axis) sums(0, axis) += off[axis];
+      for (int axis = 0; axis < 3; ++axis) sums(1, axis) += u * off[axis];
+      squares += off.squaredNorm();
+      if (!(u < 0)) continue;  // the other columns are 0
+      const double row[5] = {1, u, u * u, u * u * u, u};
       for (int i = 0; i < 5; ++i) {
-        for (int j = i; j < 5; ++j) moments(j, i) += row[i] * row[j];
+        for (int j = std::max(i, 2); j < 5; ++j) moments(j, i) += row[i] * row[j];
+      }
+      for (int i = 2; i < 5; ++i) {
         for (int axis = 0; axis < 3; ++axis) sums(i, axis) += row[i] * off[axis];
       }
-      squares += off.squaredNorm();
     }
     // One row more, which holds the drift down: a point that stays drifts only where its place on
     // the foot is not quite right, and jitter must not be taken for that.

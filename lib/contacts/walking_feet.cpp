@@ -268,9 +268,14 @@ void WalkingFeet::to_touches(const Foot& foot, double before, double after, Stan
   double end = stance.end;
   for (const std::size_t t : foot.tracks) {
     std::optional<double> start;
-    for (const Stay& stay : found_.stays) {
-      if (static_cast<std::size_t>(stay.track) != t) continue;
-      if (stay.start < stance.start - 1e-9 || stay.end > stance.end + 1e-9) continue;
+    // Stays are by track and start.
+    auto place =
+        std::ranges::lower_bound(found_.stays, std::pair(static_cast<int>(t), stance.start - 1e-9),
+                                 {}, [](const Stay& s) { return std::pair(s.track, s.start); });
+    for (; place != found_.stays.end() && place->track == static_cast<int>(t); ++place) {
+      const Stay& stay = *place;
+      if (stay.start > stance.end + 1e-9) break;
+      if (stay.end > stance.end + 1e-9) continue;
       if (!stance.open_start) {
         start = std::min(start.value_or(stay.start), touch(t, stay.start, before, true));
       }

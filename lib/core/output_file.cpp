@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -52,10 +53,16 @@ Error exists_error(const std::string& path) {
                     "choose another name or remove --no-clobber");
 }
 
-// Max sealed files without a name that wait to be put in place. Each takes a descriptor, of which a
-// program may have few; others get a temporary name.
-constexpr int kMaxKeptOpen = 16;
+// Max sealed files without a name that wait to be put in place: each takes one of the descriptors
+// that the process may have. Others get a temporary name.
+int max_kept_open() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return 0;
+  return static_cast<int>(std::min<rlim_t>(limit.rlim_cur, rlim_t{1} << 20) / 2);
+}
 std::atomic<int> kept_open{0};
+
+constexpr mode_t kPermissions = 0777;  // without the setuid, setgid and sticky bits
 
 // What no text has: a terminal would take other bytes for commands.
 bool has_zero(std::span<const std::span<const std::byte>> parts) {
@@ -76,8 +83,8 @@ struct OutputFile::State {
   std::string target;     // the file to replace, symbolic links resolved
   std::string temporary;  // name until put in place; empty if it has none
   int descriptor = -1;
-  // A file that replaces none has no name until it is put in place, if the file system supports
-  // that.
+  // The file has no name until it is put in place, if the file system supports that: a program that
+  // is killed leaves nothing.
   bool unnamed = false;
   std::string unnamed_path;  // where it can be read until then
   bool is_kept_open = false;
@@ -101,17 +108,17 @@ struct OutputFile::State {
     bytes = AppendedBytes(to, is_stream);
   }
 
-  // Opens a file in the target's folder: one without a name if none is replaced and the file system
-  // supports that, otherwise one with a temporary name.
+  // Opens a file in the target's folder: one without a name if the file system supports that,
+  // otherwise one with a temporary name.
   Status open_beside_target(std::optional<mode_t> replaced_mode) {
     const std::string folder = folder_of(target);
-    if (!replaced_mode) {
-      open(create_unnamed(folder), false);
-      unnamed = descriptor >= 0;
-      if (unnamed) {
-        unnamed_path = path_of_unnamed(descriptor);
-        return {};
-      }
+    tidy_once(folder);
+    open(create_unnamed(folder), false);
+    unnamed = descriptor >= 0;
+    if (unnamed) {
+      unnamed_path = path_of_unnamed(descriptor);
+      if (replaced_mode) (void)fchmod(descriptor, *replaced_mode & kPermissions);
+      return {};
     }
     Temporary created = create_temporary(folder);
     if (created.descriptor < 0) {
@@ -127,8 +134,9 @@ struct OutputFile::State {
     open(created.descriptor, false);
     temporary = std::move(created.path);
     slot = created.slot;
-    // The mode of the replaced file, or the default; without the setuid, setgid and sticky bits.
-    (void)fchmod(descriptor, replaced_mode ? (*replaced_mode & 0777) : (0666 & ~mode_mask()));
+    // The mode of the replaced file, or the default.
+    (void)fchmod(descriptor,
+                 replaced_mode ? (*replaced_mode & kPermissions) : (0666 & ~mode_mask()));
     return {};
   }
 
@@ -185,7 +193,7 @@ struct OutputFile::State {
     }
     sealed = true;
     if (unnamed) {
-      is_kept_open = ++kept_open <= kMaxKeptOpen;
+      is_kept_open = ++kept_open <= max_kept_open();
       if (is_kept_open) return {};
       --kept_open;
       if (Status status = give_temporary_name(); !status) return status;
@@ -208,7 +216,7 @@ struct OutputFile::State {
         return {};
       }
       if (trouble != EEXIST || no_clobber) return cannot_be_placed(trouble);
-      // The path has come into existence since.
+      // No call links a file in place of another one: it takes a name for a moment.
       if (Status status = give_temporary_name(); !status) return status;
       close();
     }

@@ -12,8 +12,11 @@
 #include <ctime>
 #include <filesystem>
 #include <functional>
+#include <mutex>
 #include <new>
+#include <set>
 #include <span>
+#include <string_view>
 
 #include "core/file.h"
 #include "core/hash.h"
@@ -101,6 +104,40 @@ const std::string& temporary_prefix() {
   return prefix;
 }
 
+// When a process started, in clock ticks since the machine did (proc(5), "starttime"), which tells
+// it from a later one with the same id; 0 if unknown.
+std::uint64_t start_of(pid_t process) {
+  std::array<char, 1024> buffer;
+  const int file = ::open(fmt::format("/proc/{}/stat", process).c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  const ssize_t count = ::read(file, buffer.data(), buffer.size());
+  ::close(file);
+  const std::string_view text(buffer.data(), count > 0 ? static_cast<std::size_t>(count) : 0);
+  // The second of the fields is a name in parentheses, which may hold anything.
+  std::size_t at = text.rfind(')');
+  constexpr int kFields = 20;
+  for (int i = 0; i < kFields && at != std::string::npos; ++i) at = text.find(' ', at + 1);
+  std::uint64_t start = 0;
+  if (at != std::string::npos) {
+    (void)std::from_chars(text.data() + at + 1, text.data() + text.size(), start);
+  }
+  return start;
+}
+
+// Whether the process that a temporary file's name gives as "id-start-" exists no longer.
+bool is_of_gone_process(std::string_view numbers) {
+  pid_t process = 0;
+  std::uint64_t start = 0;
+  const char* const end = numbers.data() + numbers.size();
+  const auto id = std::from_chars(numbers.data(), end, process);
+  if (id.ec != std::errc() || process <= 0 || id.ptr == end || *id.ptr != '-') return false;
+  if (::kill(process, 0) != 0) return errno == ESRCH;
+  const auto since = std::from_chars(id.ptr + 1, end, start);
+  if (since.ec != std::errc() || since.ptr == end || *since.ptr != '-') return false;
+  const std::uint64_t now = start_of(process);
+  return start != 0 && now != 0 && start != now;
+}
+
 // Signals that end a program by default: requests, limits, faults.
 constexpr int kEndingSignals[] = {SIGINT,    SIGTERM, SIGHUP,  SIGPIPE, SIGQUIT, SIGALRM,
                                   SIGVTALRM, SIGPROF, SIGUSR1, SIGUSR2, SIGPOLL, SIGXCPU,
@@ -114,8 +151,8 @@ Temporary with_new_name(const std::string& folder,
   constexpr int kAttempts = 1000;  // names left by killed programs
   Temporary temporary;
   for (int i = 0; i < kAttempts; ++i) {
-    temporary.path =
-        fmt::format("{}/{}{}-{}", folder, temporary_prefix(), getpid(), counter.fetch_add(1));
+    temporary.path = fmt::format("{}/{}{}-{}-{}", folder, temporary_prefix(), getpid(),
+                                 start_of(getpid()), counter.fetch_add(1));
     temporary.slot = remember_temporary(temporary.path);
     stop_if_ending(temporary.slot);
     temporary.descriptor = make(temporary.path.c_str());
@@ -201,11 +238,15 @@ void remove_temporaries_of_killed(const std::string& folder) {
     const std::string name = entry->path().filename().string();
     if (name.rfind(temporary_prefix(), 0) != 0) continue;
     const std::string numbers = name.substr(temporary_prefix().size());
-    pid_t process = 0;
-    const auto parsed = std::from_chars(numbers.data(), numbers.data() + numbers.size(), process);
-    if (parsed.ec != std::errc() || process <= 0 || *parsed.ptr != '-') continue;
-    if (::kill(process, 0) != 0 && errno == ESRCH) unlink(entry->path().c_str());
+    if (is_of_gone_process(numbers)) unlink(entry->path().c_str());
   }
+}
+
+void tidy_once(const std::string& folder) {
+  static std::mutex changing;
+  static std::set<std::string> tidied;
+  const std::lock_guard lock(changing);
+  if (tidied.insert(folder).second) remove_temporaries_of_killed(folder);
 }
 
 void remove_temporaries_on_signals() {

@@ -28,6 +28,9 @@ struct Temporary {
 // so that a signal at any moment removes it. errno is set if the descriptor is -1.
 Temporary create_temporary(const std::string& folder);
 
+// remove_temporaries_of_killed(folder), the first time that this process writes there.
+void tidy_once(const std::string& folder);
+
 // Unregisters a temporary file that no longer exists; null is allowed.
 void forget_temporary(std::atomic<int>* slot);
 

@@ -17,11 +17,12 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kLead = 0.4;      // seconds of weight shift before the first foot leaves
-constexpr double kTail = 0.4;      // seconds after the last strike
-constexpr double kFlatPart = 0.4;  // of the swing, when the stance foot is flat
-constexpr double kBeside = 0.5;    // of the swing: where the swing foot is beside the other
-constexpr double kLifted = 0.4;    // share of the blend in the middle of an only step
+constexpr std::size_t kLongWalk = 8;  // steps of one foot for which sums are worth their time
+constexpr double kLead = 0.4;         // seconds of weight shift before the first foot leaves
+constexpr double kTail = 0.4;         // seconds after the last strike
+constexpr double kFlatPart = 0.4;     // of the swing, when the stance foot is flat
+constexpr double kBeside = 0.5;       // of the swing: where the swing foot is beside the other
+constexpr double kLifted = 0.4;       // share of the blend in the middle of an only step
 constexpr double kShortestStep = 0.2, kLongestStep = 10;  // seconds
 // Distance of a step from the examples, metres, from which it is blended with standing, and from
 // which only standing is left, as in steps on the spot or to the side.
@@ -399,6 +400,33 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   return {};
 }
 
+// Long walks make their frames from a few sums of all examples.
+void BodyMotion::sum_examples(std::span<const StepLibrary> libraries, const PlannedWalk& plan) {
+  for (std::size_t library = 0; library < libraries.size(); ++library) {
+    for (const FootSide swing : {FootSide::left, FootSide::right}) {
+      std::vector<std::size_t> made_of_it;
+      std::vector<std::vector<double>> rows;
+      for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+        const PlannedStep& step = plan.steps[i];
+        if (at(step.library) != library || plan.grounded[at(step.stance) + 1].side != swing)
+          continue;
+        made_of_it.push_back(i);
+        rows.push_back(step.weights);
+        if (step.example >= 0) rows.back()[at(step.example)] -= step.example_share;
+      }
+      if (made_of_it.size() < kLongWalk) continue;
+      const std::vector<std::span<const double>> spans(rows.begin(), rows.end());
+      auto sums = parametric::ExampleSums::create(libraries[library].steps(swing).packed(), spans);
+      if (!sums) continue;
+      sums_.push_back(std::make_unique<const parametric::ExampleSums>(*std::move(sums)));
+      for (const std::size_t i : made_of_it) {
+        const PlannedStep& step = plan.steps[i];
+        steps_[i].motion.use(*sums_.back(), step.example, step.example_share);
+      }
+    }
+  }
+}
+
 Result<BodyMotion> BodyMotion::create(std::span<const StepLibrary> libraries, const Walker& walker,
                                       const PlannedWalk& plan, const WalkOptions& options) {
   BodyMotion body;
@@ -416,6 +444,7 @@ Result<BodyMotion> BodyMotion::create(std::span<const StepLibrary> libraries, co
       return status.error();
     }
   }
+  body.sum_examples(libraries, plan);
   for (std::size_t i = 0; i + 1 < body.steps_.size(); ++i) {
     BodyStep& before = body.steps_[i];
     BodyStep& after = body.steps_[i + 1];

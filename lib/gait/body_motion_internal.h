@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct PlannedStep {
   double far = 0;               // metres from `asked` to `nearest`
   std::vector<double> weights;
   std::vector<double> made;  // parameters of the blend
+  // The example whose style it has, -1 if none, and how much of it, see choose_styles().
+  int example = -1;
+  double example_share = 0;
 };
 
 struct PlannedWalk {
@@ -116,12 +120,14 @@ class BodyMotion {
 
  private:
   BodyMotion() = default;
+  void sum_examples(std::span<const StepLibrary> libraries, const PlannedWalk& plan);
   Status add_step(std::span<const StepLibrary> libraries, const Walker& walker,
                   const PlannedWalk& plan, std::size_t index, const WalkOptions& options);
   Status set_times(const PlannedWalk& plan, double off, double speed, BodyStep& step) const;
 
   std::vector<BodyStep> steps_;
-  double rate_ = 30;  // of the examples
+  std::vector<std::unique_ptr<const parametric::ExampleSums>> sums_;  // that the steps use
+  double rate_ = 30;                                                  // of the examples
   // 1 for values whose accelerations are matched between steps: not those of legs, which heel
   // strikes disturb and which are solved again for the feet, and not bone lengths.
   PoseVector is_accelerated_;

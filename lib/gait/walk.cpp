@@ -11,6 +11,7 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
+#include "gait/step_style_internal.h"
 #include "gait/walk_block_internal.h"
 
 namespace krok::gait {
@@ -56,7 +57,7 @@ struct Walk::State {
   Walker walker;
   PlannedWalk plan;
   std::optional<BodyMotion> body;
-  std::vector<std::string> libraries;  // [steps], names
+  std::vector<std::string> libraries, examples;  // [steps], names
   std::optional<WalkParts> parts;
   const parametric::PackedExamples* packed = nullptr;
   const Skeleton* skeleton = nullptr;  // of the result
@@ -161,6 +162,9 @@ Result<Walk> Walk::plan(std::span<const StepLibrary> libraries, std::span<const 
   auto plan = plan_steps(libraries, state->walker, prints, ground, options);
   if (!plan) return plan.error();
   state->plan = *std::move(plan);
+  if (Status status = choose_styles(libraries, options, state->plan); !status) {
+    return status.error();
+  }
   auto body = BodyMotion::create(libraries, state->walker, state->plan, options);
   if (!body) return body.error();
   state->body = *std::move(body);
@@ -175,6 +179,8 @@ Result<Walk> Walk::plan(std::span<const StepLibrary> libraries, std::span<const 
       WalkParts{state->walker, state->plan, *state->body, ground, state->options, rate, frames});
   for (const PlannedStep& step : state->plan.steps) {
     state->libraries.push_back(libraries[at(step.library)].name());
+    const auto& examples = libraries[at(step.library)].library().examples;
+    state->examples.push_back(step.example < 0 ? "" : examples[at(step.example)].name);
   }
   state->packed = &main.steps(FootSide::left).packed();
   state->skeleton = &main.library().skeleton;
@@ -213,9 +219,9 @@ WalkDetails Walk::details() const {
     const MadeStep& made = state_->made[i];
     const std::size_t to = at(planned.stance) + 1;
     details.steps.push_back({planned.stance, step.start, step.strike, state_->libraries[i],
-                             planned.asked, planned.made, state_->plan.moved[to], made.clearance,
-                             made.lowered, made.extension, made.missed,
-                             state_->plan.why_moved[to]});
+                             state_->examples[i], planned.asked, planned.made,
+                             state_->plan.moved[to], made.clearance, made.lowered, made.extension,
+                             made.missed, state_->plan.why_moved[to]});
     const auto warn = [&](const char* code, const std::string& what, const char* hint) {
       Diagnostic warning;
       warning.severity = Severity::warning;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -26,6 +27,13 @@ struct WalkOptions {
   bool adapt = false;
   double stretch = 0;        // metres by which a leg may be lengthened in place of a knee pop
   double clearance = 0.015;  // metres of the swing foot over the ground
+  // How much of real steps, which libraries with smoothed weights average, each step takes: 0 none,
+  // 1 all that the example differs by from the average. Where steps of several captures meet a
+  // little is added to that: of captured walks, 0.85 came nearest in arm swing, the hips' vertical
+  // speed, jerk, and how much steps vary (tests/walk/measure_style.py).
+  double variation = 0.85;
+  std::uint64_t seed = 1;  // which of several suitable examples
+  std::string style_of;    // of captures whose names contain this, in any case; empty: of all
 };
 
 // One step: the swing foot goes from the print before the stance foot's to the one after it.
@@ -34,6 +42,7 @@ struct StepReport {
                                     // to the one after it
   double start = 0, end = 0;        // seconds, strike of the stance foot and of the swing foot
   std::string library;              // name of the library that made it
+  std::string example;              // name of the one whose style it has, if any
   std::vector<double> asked, made;  // parameters of that library: metres, radians, seconds
   double moved = 0;                 // metres by which `adapt` moved the print
   double clearance = 0;             // least of the swing foot over the ground, metres
@@ -56,7 +65,8 @@ struct WalkDetails {
 class Walk {
  public:
   // Plans the walk. Libraries and ground must outlive it; the libraries share one skeleton. Codes:
-  // walk-library; walk-legs; parametric-skeleton; walk-prints (fewer than three, sides that do not
+  // walk-library; walk-legs; walk-style (no example of a capture called so); parametric-skeleton;
+  // walk-prints (fewer than three, sides that do not
   // alternate, values out of range); with the number of the print, counted from 1: walk-ground,
   // walk-too-long, walk-too-high, walk-too-steep, walk-crossing, walk-wall, walk-heading,
   // walk-outside, walk-time; clip-too-long.

@@ -152,6 +152,8 @@ void LeastSquares::list_columns(const Tree& tree, const Options& options) {
   }
   const auto rows = at(tree.rows);
   stride_ = rows;
+  constexpr std::size_t kManyRows = 64;  // below, both are quick
+  by_columns_ = rows > std::max(columns_.size(), kManyRows);
   entries_.resize(columns_.size() * stride_);
   for (auto* list : {&errors_, &tried_, &right_side_, &multipliers_}) list->assign(rows, 0.0);
 }
@@ -183,10 +185,56 @@ void LeastSquares::fill_columns(Tree& tree) {
       }
     }
   }
+  if (by_columns_) return;
   equations_.reset(tree.rows);
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     equations_.add(columns_[c].weight, entries(c), columns_[c].first_row, columns_[c].last_row);
   }
+}
+
+// The same step from fewer equations, if there are more rows than columns: with the error and the
+// pull as below, turn = pull + (J^T J + damping W^-1)^-1 J^T (e - J pull), each column and its
+// unknown scaled by the root of its weight.
+void LeastSquares::solve_by_columns(double damping) {
+  free_.clear();
+  for (std::size_t c = 0; c < columns_.size(); ++c) {
+    Column& column = columns_[c];
+    if (column.fixed) continue;
+    column.turn = column.pull;
+    if (column.weight > 0) free_.push_back(c);
+  }
+  const std::size_t n = free_.size();
+  // Of these only the first are used, [columns].
+  std::vector<double>&right = tried_, &turns = multipliers_;
+  working_.reset(static_cast<int>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    const Column& one = columns_[free_[i]];
+    const double* const entry = entries(free_[i]);
+    right[i] = 0;
+    for (int r = one.first_row; r < one.last_row; ++r) right[i] += entry[r] * right_side_[at(r)];
+    right[i] *= std::sqrt(one.weight);
+    for (std::size_t k = i; k < n; ++k) {
+      const Column& other = columns_[free_[k]];
+      const double* const entry_of_other = entries(free_[k]);
+      const int end = std::min(one.last_row, other.last_row);
+      double sum = 0;
+      for (int r = std::max(one.first_row, other.first_row); r < end; ++r) {
+        sum += entry[r] * entry_of_other[r];
+      }
+      working_.upper(i, k) = std::sqrt(one.weight * other.weight) * sum;
+    }
+  }
+  working_.solve(damping, right.data(), turns.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    columns_[free_[i]].turn += std::sqrt(columns_[free_[i]].weight) * turns[i];
+  }
+}
+
+// Takes a column that is fixed now out of the equations.
+void LeastSquares::hold(std::size_t column) {
+  const Column& one = columns_[column];
+  if (by_columns_) return;  // they are made anew
+  working_.add(-one.weight, entries(column), one.first_row, one.last_row);
 }
 
 // The step for the columns that are not fixed: turn = pull + W J^T (J W J^T + damping)^-1 (e - J
@@ -202,6 +250,7 @@ void LeastSquares::solve_step(double damping) {
       right_side_[at(r)] -= known * entry[r];
     }
   }
+  if (by_columns_) return solve_by_columns(damping);
   working_.solve(damping, right_side_.data(), multipliers_.data());
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     Column& column = columns_[c];
@@ -232,8 +281,7 @@ bool LeastSquares::fix_hinge(const ChainJoint& joint, Turning& turning) {
   column.turn = bounded - now;
   column.fixed = true;
   turning.fixed = 1;
-  const auto c = at(turning.first);
-  working_.add(-column.weight, entries(c), column.first_row, column.last_row);
+  hold(at(turning.first));
   return true;
 }
 
@@ -281,7 +329,7 @@ bool LeastSquares::fix_along(Turning& turning, const Vec3& normal, const Vec3& w
   Column& fixed = columns_[c];
   fixed.fixed = true;
   fixed.turn = wanted.dot(fixed.freedom.local);
-  working_.add(-fixed.weight, entries(c), fixed.first_row, fixed.last_row);
+  hold(c);
   ++turning.fixed;
   return true;
 }
@@ -318,7 +366,7 @@ bool LeastSquares::fix_at_limits(const Tree& tree) {
 }
 
 void LeastSquares::find_step(const Tree& tree, double damping) {
-  working_ = equations_;
+  if (!by_columns_) working_ = equations_;
   for (Column& column : columns_) column.fixed = false;
   for (Turning& turning : turnings_) turning.fixed = 0;
   // Each round fixes what would pass a limit. More than two gain nothing: what a last solution

@@ -8,14 +8,18 @@
 
 namespace krok::ik {
 
-// (sum of w c c^T + damping I) y = e: the normal equations of damped least squares over goals' rows
-// instead of joints, which are fewer. Columns c have entries in a range of rows alone.
+// (sum of w c c^T + damping I) y = e: the normal equations of damped least squares, over goals'
+// rows or over joints' columns, whichever are fewer. Columns c have entries in a range of rows
+// alone.
 class NormalEquations {
  public:
   void reset(int rows);
 
   // Adds w c c^T for a column with entries in [first, last); w < 0 takes one out again.
   void add(double w, const double* column, int first, int last);
+
+  // An element of the upper triangle, row <= column.
+  double& upper(std::size_t row, std::size_t column) { return upper_[row * rows_ + column]; }
 
   // y for the right side `e`, both [rows] and different memory. Destroys nothing: more columns may
   // be added or taken out later.
@@ -67,6 +71,8 @@ class LeastSquares {
   void fill_columns(Tree& tree);
   void find_step(const Tree& tree, double damping);
   void solve_step(double damping);
+  void solve_by_columns(double damping);
+  void hold(std::size_t column);
   bool fix_at_limits(const Tree& tree);
   bool fix_hinge(const ChainJoint& joint, Turning& turning);
   bool fix_cone(const ChainJoint& joint, Turning& turning);
@@ -79,6 +85,8 @@ class LeastSquares {
   std::vector<Turning> turnings_;
   std::vector<double> entries_;  // [columns x rows]
   std::size_t stride_ = 0;
+  bool by_columns_ = false;        // the equations are over columns
+  std::vector<std::size_t> free_;  // columns of them
   NormalEquations equations_, working_;
   std::vector<double> errors_, tried_, right_side_, multipliers_;
   PoseState kept_, best_, first_;

@@ -118,20 +118,51 @@ BlendedMotion::Scratch BlendedMotion::make_scratch() const {
   Scratch scratch;
   scratch.terms.reserve(weights_.size());
   scratch.reference.resize(static_cast<std::size_t>(packed_.reference.blocks_per_pose()));
+  scratch.apart.resize(scratch.reference.size());
   return scratch;
+}
+
+bool BlendedMotion::use(const ExampleSums& sums, int apart, double weight) {
+  std::vector<double> others = weights_;
+  if (apart >= 0) others[static_cast<std::size_t>(apart)] -= weight;
+  double left_out = 0;
+  auto coefficients = sums.coefficients(others, left_out);
+  if (!(left_out <= ExampleSums::kMaxLeftOut)) return false;
+  sums_ = &sums;
+  coefficients_ = std::move(coefficients);
+  apart_ = apart;
+  apart_weight_ = weight;
+  return true;
+}
+
+float BlendedMotion::sum_examples(double generic, const GenericTimePoint& place,
+                                  std::span<PoseBlock> pose, Scratch& scratch) const {
+  clear_sum(pose);
+  sums_->add(generic, coefficients_, pose);
+  if (apart_ >= 0) {
+    sample_pose(packed_.clips[static_cast<std::size_t>(apart_)],
+                example_time(packed_, place, apart_), scratch.apart);
+    add_to_sum(scratch.apart, static_cast<float>(apart_weight_), scratch.reference, pose);
+  }
+  return finish_sum(scratch.reference, pose);
 }
 
 float BlendedMotion::pose(double time, std::span<PoseBlock> pose, Scratch& scratch) const {
   const double generic = generic_at(time);
   const GenericTimePoint place = generic_place(packed_.generic, generic);
-  scratch.terms.clear();
-  for (std::size_t i = 0; i < weights_.size(); ++i) {
-    if (weights_[i] == 0) continue;
-    scratch.terms.push_back({&packed_.clips[i], example_time(packed_, place, static_cast<int>(i)),
-                             static_cast<float>(weights_[i])});
-  }
   sample_pose(packed_.reference, generic, scratch.reference);
-  const float agreement = blend_poses(scratch.terms, scratch.reference, pose);
+  float agreement = 0;
+  if (sums_ != nullptr) {
+    agreement = sum_examples(generic, place, pose, scratch);
+  } else {
+    scratch.terms.clear();
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      if (weights_[i] == 0) continue;
+      scratch.terms.push_back({&packed_.clips[i], example_time(packed_, place, static_cast<int>(i)),
+                               static_cast<float>(weights_[i])});
+    }
+    agreement = blend_poses(scratch.terms, scratch.reference, pose);
+  }
   // The root is the first joint.
   PoseBlock& block = pose.front();
   const Vec3 root = set_ * Vec3(block.position[0][0], block.position[1][0], block.position[2][0]);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "motion/retime.h"
+#include "parametric/example_sums.h"
 #include "parametric/packed_examples.h"
 #include "pose/blend_pose.h"
 
@@ -26,6 +27,12 @@ class BlendedMotion {
   static Result<BlendedMotion> create(const Library& library, const PackedExamples& packed,
                                       std::span<const double> weights);
 
+  // Makes poses from sums of the examples from now on, to ExampleSums::kMaxLeftOut, unless its
+  // weights are farther from them. The example `apart` (-1: none) is sampled by itself, with
+  // `weight` of its weight. Returns whether it does. `sums`, of the same examples, must outlive the
+  // motion.
+  bool use(const ExampleSums& sums, int apart = -1, double weight = 0);
+
   double duration() const { return keytimes_.back(); }               // seconds
   const std::vector<double>& keytimes() const { return keytimes_; }  // [keytimes], the first is 0
 
@@ -34,7 +41,7 @@ class BlendedMotion {
 
   struct Scratch {
     std::vector<BlendTerm> terms;
-    std::vector<PoseBlock> reference;
+    std::vector<PoseBlock> reference, apart;
   };
   Scratch make_scratch() const;
 
@@ -68,8 +75,15 @@ class BlendedMotion {
 
   const Library& library_;
   const PackedExamples& packed_;
+  float sum_examples(double generic, const GenericTimePoint& place, std::span<PoseBlock> pose,
+                     Scratch& scratch) const;
+
   std::vector<double> weights_;
   std::vector<double> keytimes_, slopes_;
+  const ExampleSums* sums_ = nullptr;  // see use()
+  std::vector<float> coefficients_;
+  int apart_ = -1;
+  double apart_weight_ = 0;
   Transform set_;  // from the blended frame to the blend's own stance footprint
 };
 

@@ -1,12 +1,16 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "retarget/moved_limb.h"
 #include "retarget/pose_alignment.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/motion_keys.h"
 
 // Foot planting: places the target's feet where the source's are.
 //
@@ -19,6 +23,8 @@
 // too short for their goals, the hips are lowered beforehand.
 
 namespace krok::retarget {
+
+class ShiftSolver;
 
 // The floor under a character.
 struct Floor {
@@ -55,27 +61,30 @@ class LegPlacement {
                                             const Floor& source_floor, const Floor& target_floor,
                                             bool is_left);
 
-  struct Outcome {
-    double correction = 0;  // metres the ankle was moved
-    double miss = 0;        // metres between the ankle and its goal
-  };
+  using Outcome = MovedLimb::Outcome;  // of the ankle
 
-  // Stance weight of the foot in each frame of the source, 0 to 1: from its height and speed, with
-  // soft starts and ends; less if the shank lies, as in kneeling.
-  std::vector<double> standing(const Clip& source) const;
+  // Stance weight of the foot in each frame of the source, 0 to 1: in its contacts and while it is
+  // near the floor, with soft starts and ends; less if the shank lies, as in kneeling, and none in
+  // flight. The second one is that of its contacts alone. `contacts` are those of the source.
+  std::array<std::vector<double>, 2> standing(const Clip& source,
+                                              std::span<const Contact> contacts) const;
+
+  // Adds what the leg needs of the hips to be as bent as the source's.
+  void add_lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
+                double standing, double bearing, ShiftSolver& solver) const;
 
   // By how much the hips must be lowered for the leg to reach its goal, metres; 0 if it does.
   double lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
               double standing) const;
 
   // Moves the leg of a target pose to where the source's foot is in `source_pose`, weighted by
-  // `standing`. Both poses are joint_to_world, shape [joints]; `local` is the target's reference
-  // joint_to_parent.
+  // `standing`; only a `part` of that way where the leg kneels (0: wholly). Both poses are
+  // joint_to_world, shape [joints]; `local` is the target's reference joint_to_parent.
   Outcome place(std::span<const Transform> source_pose, std::span<const Transform> local,
-                double standing, std::span<Transform> target_pose) const;
+                double standing, double part, std::span<Transform> target_pose) const;
 
  private:
-  LegPlacement() = default;
+  explicit LegPlacement(MovedLimb limb) : limb_(std::move(limb)) {}
 
   // A joint of a foot and its height above the floor in the reference pose.
   struct Point {
@@ -97,25 +106,16 @@ class LegPlacement {
   double depth(std::span<const Transform> pose, const std::vector<Point>& points,
                double floor) const;
 
+  MovedLimb limb_;
   double scale_ = 1;
   Floor source_floor_, target_floor_;
   double leg_ = 0;  // metres, of the source's thigh and shank
   int source_knee_ = -1, source_ankle_ = -1;
   int source_front_ = -1;  // toes, or the end site of the foot, or -1
-  int upper_ = -1, lower_ = -1, ankle_ = -1;
   Sole heel_, ball_;
   Vec3 ahead_ = Vec3::Zero();     // heading of the source's foot, in its ankle's frame
   Vec3 sideways_ = Vec3::Zero();  // left of ahead_, in the same frame
-  Vec3 hinge_ = Vec3::Zero();     // of the knee, in the frame of upper_
   std::vector<Point> source_points_, target_points_;
-
-  enum class Follows : unsigned char { thigh, shank, foot };
-  struct Link {
-    int joint = -1;
-    int parent = -1;
-    Follows follows = Follows::thigh;
-  };
-  std::vector<Link> links_;  // the leg's joints, parents first, starting with upper_
 };
 
 }  // namespace krok::retarget

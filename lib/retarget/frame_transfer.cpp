@@ -7,16 +7,18 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "math/quaternion.h"
+#include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {
 
 namespace {
 
 constexpr std::size_t kFramesATime = 64;
+constexpr int kShiftRounds = 2;
 
 class FrameTransfer {
  public:
-  FrameTransfer(const Clip& source, const Skeleton& target, const TransferPlan& plan,
+  FrameTransfer(const Clip& source, const Skeleton& target, TransferPlan& plan,
                 const Options& options)
       : source_(source), target_(target), plan_(plan), options_(options) {}
 
@@ -27,24 +29,43 @@ class FrameTransfer {
     clip.rate = source_.rate;
     const auto frames = at(source_.frame_count());
     clip.resize(source_.frame_count());
+    const bool touches = plan_.touches && !plan_.touches->empty();
     if (options_.progress != nullptr) {
-      options_.progress->begin("retargeting", (plan_.legs.empty() ? 1 : 2) * frames);
+      const std::size_t rounds = 1 + (touches ? 1 : 0) + (plan_.legs.empty() ? 0 : 1) +
+                                 (touches || !plan_.legs.empty() ? kShiftRounds : 0);
+      options_.progress->begin("retargeting", rounds * frames);
     }
+    if (touches) {
+      for_frames([&](std::size_t f, std::span<const Transform>, std::span<Transform> pose) {
+        plan_.touches->note(static_cast<int>(f), pose);
+      });
+      plan_.touches->settle();
+    }
+    if (touches || !plan_.legs.empty()) shifts_ = find_shifts(report);
     const std::vector<double> drops = plan_.legs.empty() ? std::vector<double>() : find_drops();
     std::vector<std::array<LegPlacement::Outcome, 2>> outcomes(frames);
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
-      if (!drops.empty()) lower(drops[f], pose);
+      const int frame = static_cast<int>(f);
+      if (!shifts_.empty()) shift_body(shifts_[f], pose);
+      if (!drops.empty()) move_body(-drops[f] * kUp, pose);
+      if (touches) plan_.touches->place_knees(frame, plan_.local, pose);
       for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
-        outcomes[f][i] =
-            plan_.legs[i].placement.place(from, plan_.local, plan_.legs[i].standing[f], pose);
+        const PlacedLeg& leg = plan_.legs[i];
+        const double kneels = touches ? plan_.touches->kneels(frame, leg.is_left) : 0;
+        outcomes[f][i] = leg.placement.place(from, plan_.local, leg.standing[f], 1 - kneels, pose);
       }
-      clip.set_pose(static_cast<int>(f), pose);
+      if (touches) {
+        plan_.touches->place_feet(frame, plan_.local, pose);
+        plan_.touches->place_arms(frame, from, plan_.local, pose);
+      }
+      clip.set_pose(frame, pose);
     });
     if (options_.progress != nullptr) options_.progress->end();
     for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
       (plan_.legs[i].is_left ? report.left_foot : report.right_foot) = summary(outcomes, i);
     }
     if (!drops.empty()) report.largest_drop = *std::max_element(drops.begin(), drops.end());
+    if (touches) report.contacts = plan_.touches->report(source_, clip);
     return clip;
   }
 
@@ -128,16 +149,51 @@ class FrameTransfer {
     });
   }
 
-  void lower(double by, std::span<Transform> pose) const {
+  void move_body(const Vec3& by, std::span<Transform> pose) const {
     for (std::size_t k = 0; k < pose.size(); ++k) {
-      if (below_anchor_[k] != 0 || beside_anchor_[k] != 0) pose[k].position.y() -= by;
+      if (below_anchor_[k] != 0 || beside_anchor_[k] != 0) pose[k].position += by;
     }
+  }
+
+  void shift_body(const BodyShift& shift, std::span<Transform> pose) const {
+    move_body(shift.hips, pose);
+    if (plan_.touches) plan_.touches->turn_trunk(shift.turn, plan_.local, pose);
+  }
+
+  // How hips and trunk move in each frame so that limbs that touch something are bent as the
+  // source's.
+  std::vector<BodyShift> find_shifts(Report& report) const {
+    std::vector<BodyShift> shifts(at(source_.frame_count()));
+    // What limbs lack is linear in the shift for small ones; the second round finds the rest.
+    for (int round = 0; round < kShiftRounds; ++round) {
+      std::vector<BodyShift> more(shifts.size());
+      for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
+        shift_body(shifts[f], pose);
+        ShiftSolver solver(plan_.leg_length);
+        for (const PlacedLeg& leg : plan_.legs) {
+          leg.placement.add_lack(from, pose, leg.standing[f], leg.bearing[f], solver);
+        }
+        if (plan_.touches) plan_.touches->add_lacks(static_cast<int>(f), pose, solver);
+        more[f] = solver.solve();
+      });
+      more = smoothed(more, softening_reach(source_.rate));
+      for (std::size_t f = 0; f < shifts.size(); ++f) {
+        shifts[f].hips += more[f].hips;
+        shifts[f].turn += more[f].turn;
+      }
+    }
+    for (const BodyShift& shift : shifts) {
+      report.largest_shift = std::max(report.largest_shift, shift.hips.norm());
+      report.largest_turn = std::max(report.largest_turn, shift.turn.norm());
+    }
+    return shifts;
   }
 
   // How far the hips are lowered in each frame so that planted feet reach the floor.
   std::vector<double> find_drops() const {
     std::vector<double> drops(at(source_.frame_count()), 0.0);
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
+      if (!shifts_.empty()) shift_body(shifts_[f], pose);
       for (const PlacedLeg& leg : plan_.legs) {
         drops[f] = std::max(drops[f], leg.placement.lack(from, pose, leg.standing[f]));
       }
@@ -167,14 +223,15 @@ class FrameTransfer {
 
   const Clip& source_;
   const Skeleton& target_;
-  const TransferPlan& plan_;
+  TransferPlan& plan_;
   const Options& options_;
+  std::vector<BodyShift> shifts_;                   // [frames] or empty
   std::vector<char> below_anchor_, beside_anchor_;  // [target joints]
 };
 
 }  // namespace
 
-Clip transfer_frames(const Clip& source, const Skeleton& target, const TransferPlan& plan,
+Clip transfer_frames(const Clip& source, const Skeleton& target, TransferPlan& plan,
                      const Options& options, Report& report) {
   return FrameTransfer(source, target, plan, options).run(report);
 }

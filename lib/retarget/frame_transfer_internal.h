@@ -1,12 +1,14 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "math/types.h"
 #include "retarget/foot_placement.h"
 #include "retarget/joint_mapping.h"
 #include "retarget/retarget.h"
+#include "retarget/touch_keeping.h"
 #include "scene/clip.h"
 #include "scene/skeleton.h"
 
@@ -14,7 +16,8 @@ namespace krok::retarget {
 
 struct PlacedLeg {
   LegPlacement placement;
-  std::vector<double> standing;  // [frames]
+  std::vector<double> standing;  // [frames], how far its place is kept
+  std::vector<double> bearing;   // [frames], how far it stands still
   bool is_left = false;
 };
 
@@ -30,12 +33,13 @@ struct TransferPlan {
   double scale = 1;             // lengths of the target over those of the source
   double rise = 0;              // metres the target's hips are raised for the height of its ankles
   std::vector<PlacedLeg> legs;  // empty with Feet::free
-  double leg_length = 0;        // metres, of the target; unused without legs
+  std::optional<TouchKeeping> touches;  // absent: not kept
+  double leg_length = 0;                // metres, of the target; unused without legs and touches
 };
 
 // The motion of `source` on the skeleton `target`. Sets in `report` what the legs needed: the two
-// feet and largest_drop.
-Clip transfer_frames(const Clip& source, const Skeleton& target, const TransferPlan& plan,
+// feet, largest_drop and what touches. The touches of `plan` are settled.
+Clip transfer_frames(const Clip& source, const Skeleton& target, TransferPlan& plan,
                      const Options& options, Report& report);
 
 }  // namespace krok::retarget

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "contacts/contacts.h"
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
@@ -192,15 +193,32 @@ class Transfer {
       plan_.rise += 0.5 * (ankle_over_floor(to, foot, target_floor_) -
                            report_.scale * ankle_over_floor(from, foot, source_floor_));
     }
-    if (options_.feet == Feet::free) return;
     plan_.leg_length = leg_length(target_, target_roles_);
+    std::array<std::vector<double>, 2> stands;
+    std::vector<Contact> contacts;
+    if (auto found = find_contacts(source_, source_roles_)) contacts = std::move(found->contacts);
+    if (options_.feet == Feet::keep) stands = prepare_legs(from, to, contacts);
+    if (options_.touches == Touches::free) return;
+    plan_.touches.emplace(source_, from, to, report_.scale, source_floor_.motion,
+                          leg_length(source_.skeleton, source_roles_), stands,
+                          options_.feet == Feet::keep);
+    plan_.touches->report_feet(contacts, from, to, source_floor_, target_floor_, source_.rate,
+                               stands);
+  }
+
+  // How much both feet stand, [2][frames], empty where a leg is missing.
+  std::array<std::vector<double>, 2> prepare_legs(const Actor& from, const Actor& to,
+                                                  std::span<const Contact> contacts) {
+    std::array<std::vector<double>, 2> standing;
     for (const bool is_left : {true, false}) {
       auto leg = LegPlacement::create(from, to, turns_, report_.scale, source_floor_, target_floor_,
                                       is_left);
       if (!leg) continue;
-      std::vector<double> stands = leg->standing(source_);
-      plan_.legs.push_back({std::move(*leg), std::move(stands), is_left});
+      auto [stands, bears] = leg->standing(source_, contacts);
+      standing[is_left ? 0 : 1] = stands;
+      plan_.legs.push_back({std::move(*leg), std::move(stands), std::move(bears), is_left});
     }
+    return standing;
   }
 
   Status prepare_names() {

@@ -26,8 +26,16 @@ enum class Feet {
   free   // as the legs' rotations place them
 };
 
+// Hands, elbows, knees and seat on the ground, hands on each other and on the body.
+enum class Touches {
+  keep,  // what touches in the source touches in the result, at the same height and distance,
+         // scaled
+  free   // as rotations place them
+};
+
 struct Options {
   Feet feet = Feet::keep;
+  Touches touches = Touches::keep;  // of the ground only with Feet::keep
 
   // Lengths in the target's motion over those in the source's; by default the ratio of the legs.
   std::optional<double> scale = std::nullopt;
@@ -71,6 +79,18 @@ struct FootReport {
   int largest_miss_frame = -1;
 };
 
+// A stretch of time in which the source touches something, and what became of it.
+struct ContactReport {
+  std::string part;           // "left hand", "left foot"
+  std::string on;             // "ground", "right hand", "left thigh"
+  double start = 0, end = 0;  // seconds
+  // On the ground: the mean horizontal speed of the part in the result and in the source, metres
+  // per second; the largest difference of its height from the source's, scaled, metres.
+  double slide = 0, source_slide = 0, height = 0;
+  double apart =
+      0;  // on the body: largest difference of distance from the source's, scaled, metres
+};
+
 struct Report {
   Method method = Method::roles;
   double scale = 1;
@@ -85,7 +105,10 @@ struct Report {
   std::vector<int> following_target;  // joints that only follow their parent, without end sites
   bool left_fingers_at_rest = false;  // the source has fingers there that never move
   bool right_fingers_at_rest = false;
-  double largest_drop = 0;  // metres the hips were lowered so that legs reach the floor
+  std::vector<ContactReport> contacts;  // by roles; by start
+  double largest_shift = 0;  // metres the hips were moved so that limbs reach what they touch
+  double largest_turn = 0;   // radians the trunk was turned for that
+  double largest_drop = 0;   // metres the hips were lowered so that legs reach the floor
   std::optional<FootReport> left_foot, right_foot;  // with Feet::keep
 };
 

@@ -138,5 +138,24 @@ TEST_F(ReportAndFiles, ReportsTellWhatWasWritten) {
   EXPECT_EQ(Json::parse(table.out)["result"]["joints"], 4);
 }
 
+// The report is one of the set: without it a script would take an output for one that was refused.
+TEST_F(ReportAndFiles, AReportThatCannotBeWrittenLeavesAllAsItWas) {
+  put("out.anim", "old");
+  const ToolRun full =
+      run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "--save-model",
+                               path("out.model"), "--json=/dev/full"});
+  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_NE(full.err.find("nothing was changed"), std::string::npos) << full.err;
+  EXPECT_EQ(full.err.find("->"), std::string::npos) << "says that it wrote: " << full.err;
+  EXPECT_EQ(get(path("out.anim")), "old");
+  EXPECT_EQ(listing(), (Names{"in.bvh", "out.anim"}));
+  // Of a batch, where each file is written as it is done.
+  const ToolRun batch =
+      run_tool("krok-import", {path("in.bvh"), "--out-dir", path("out"), "--json=/dev/full"});
+  EXPECT_EQ(batch.exit_code, 2);
+  EXPECT_EQ(batch.err.find("nothing was changed"), std::string::npos) << batch.err;
+  EXPECT_NE(batch.err.find("the outputs were written"), std::string::npos) << batch.err;
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -104,8 +104,9 @@ def unrotated(turn, vector):
 def knee_angles(motion, side):
     """Radians between thigh and shank."""
     thigh = motion.find(f"{side}upleg", f"{side}upperleg", f"{side}thigh", f"{side}_upper_leg",
-                        f"cc_base_{side[0]}_thigh")
-    foot = motion.find(f"{side}foot", f"{side}ankle", f"{side}_foot", f"cc_base_{side[0]}_foot")
+                        f"cc_base_{side[0]}_thigh", f"upperleg_{side[0]}")
+    foot = motion.find(f"{side}foot", f"{side}ankle", f"{side}_foot", f"cc_base_{side[0]}_foot",
+                       f"foot_{side[0]}")
     shank = motion.skeleton[foot]["parent"]
     a = motion.positions[:, shank] - motion.positions[:, thigh]
     b = motion.positions[:, foot] - motion.positions[:, shank]

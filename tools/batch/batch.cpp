@@ -445,7 +445,7 @@ class Batch {
     }
     std::string text;
     for (const OneOfMany::Message& message : outcome.run.messages) {
-      if (tally_.is_shown(message.warning, file.input)) text += message.text;
+      if (tally_.is_shown(message.code, file.input)) text += message.text;
     }
     if (!text.empty()) write_message(console_.get(), text);
     if (report_.is_wanted()) report_.add(outcome.report);
@@ -488,7 +488,7 @@ class Batch {
       warning.severity = Severity::warning;
       context_.diagnose(std::move(warning));
     }
-    if (const std::string more = tally_.more_warnings(); !more.empty()) {
+    if (const std::string more = tally_.more_messages(); !more.empty()) {
       write_message(console_.get(), more);
     }
     if (tally_.failed() > 0) context_.diagnose(tally_.failure(line_.keep_going));
@@ -497,7 +497,9 @@ class Batch {
     context_.log(fmt::format("{}: {}", context_.report.tool, tally_.summary(part)));
     const Status reported = report_.end(context_.report.issues, tally_.result());
     if (!reported) {
-      context_.diagnose(reported.error());
+      Error error = reported.error();
+      error.hint = "the outputs were written";
+      context_.diagnose(std::move(error));
       return kExitTrouble;
     }
     if (!stored) return kExitTrouble;

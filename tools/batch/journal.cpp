@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "core/hash.h"
+#include "core/text.h"
 #include "tools/cli/json_line.h"
 #include "tools/cli/json_object.h"
 #include "tools/cli/paths.h"
@@ -22,9 +23,25 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kEnd = ".journal.jsonl";
 
+// JSON is UTF-8 and file names are any bytes but zero: of a name that is not UTF-8 a record has a
+// zero, then each byte as the character of that number.
+std::string recorded(const std::string& name) {
+  return is_utf8(name) ? name : std::string(1, '\0') + to_utf8(name);
+}
+
+std::string name_of_recorded(const std::string& text) {
+  if (!text.starts_with('\0')) return text;
+  std::string name;
+  for (const char32_t byte : code_points(std::string_view(text).substr(1))) {
+    name += static_cast<char>(byte);
+  }
+  return name;
+}
+
 std::string text_of(const Json& object, const char* key) {
   const auto found = object.find(key);
-  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
+  if (found == object.end() || !found->is_string()) return {};
+  return name_of_recorded(found->get<std::string>());
 }
 
 std::uint64_t checksum_of_line(std::string_view line) {
@@ -199,7 +216,11 @@ std::optional<Json> Journal::unchanged(const std::string& output, const std::str
     for (const Json& written : array_of(record, "outputs")) {
       holds = holds && output_holds(written, folder_);
     }
-    if (holds) return record;
+    if (!holds) continue;
+    for (const char* list : {"inputs", "outputs"}) {
+      for (Json& file : record[list]) file["path"] = text_of(file, "path");
+    }
+    return record;
   }
   return std::nullopt;
 }
@@ -262,15 +283,18 @@ Result<Json> journal_record(const std::string& folder, const std::string& output
                             const std::string& made_with, const std::string& input, Report& report,
                             const std::map<std::string, std::string>& places) {
   Json record = object_for(9);
-  record["output"] = output;
+  record["output"] = recorded(output);
   record["made_with"] = made_with;
   record["version"] = report.version;
-  record["input"] = input;
+  record["input"] = recorded(input);
   record["inputs"] = to_json(report.inputs);
+  for (Json& source : record["inputs"]) {
+    source["path"] = recorded(source["path"].get_ref<const std::string&>());
+  }
   record["choices"] = Json::array();
   for (const Report::Choice& choice : report.choices) {
-    record["choices"].push_back({{"folder", choice.folder},
-                                 {"ending", choice.ending},
+    record["choices"].push_back({{"folder", recorded(choice.folder)},
+                                 {"ending", recorded(choice.ending)},
                                  {"xxh3", names_checksum(choice.folder, choice.ending)}});
   }
   record["outputs"] = Json::array();
@@ -279,7 +303,7 @@ Result<Json> journal_record(const std::string& folder, const std::string& output
     const auto file = InputFile::open(held == places.end() ? path : held->second);
     if (!file) return file.error();
     Json& place = record["outputs"].emplace_back(object_for(3));
-    place["path"] = from_folder(folder, path);
+    place["path"] = recorded(from_folder(folder, path));
     place["size"] = file->bytes().size();
     place["xxh3"] = checksum(*file);
   }

@@ -15,16 +15,16 @@ namespace krok::cli {
 
 namespace {
 
-// Warnings with one code that are shown and kept in a result: a file with tens of thousands of
-// joints can have one for each.
+// Warnings or errors with one code that are shown, and warnings that are kept in a result: a file
+// with tens of thousands of joints can have one for each.
 constexpr int kMaxAlike = 20;
 
 }  // namespace
 
 // Everything a tool says goes through here or print(), and may quote what is in a file.
-void ToolContext::put_message(const std::string& text, const std::string& warning) {
+void ToolContext::put_message(const std::string& text, const std::string& code) {
   if (one_of_many != nullptr) {
-    one_of_many->messages.push_back({printable(text, true), warning});
+    one_of_many->messages.push_back({printable(text, true), code});
   } else {
     write_message(console, printable(text, true));
   }
@@ -34,15 +34,13 @@ void ToolContext::diagnose(Diagnostic diagnostic) {
   if (diagnostic.where.file.empty() && !subject.file.empty()) diagnostic.where = subject;
   const bool shown = diagnostic.severity == Severity::error ||
                      (!quiet && (verbose || diagnostic.severity != Severity::note));
-  const bool counts = !verbose && diagnostic.severity != Severity::error;
-  const int alike = shown && counts ? ++alike_[diagnostic.code] : 1;
-  if (shown && alike <= kMaxAlike) {
-    put_message(message_of(report.tool, diagnostic), counts ? diagnostic.code : "");
-  }
+  const int alike = shown && !verbose ? ++alike_[diagnostic.code] : 1;
+  const std::string code = verbose ? std::string() : diagnostic.code;
+  if (shown && alike <= kMaxAlike) put_message(message_of(report.tool, diagnostic), code);
   if (shown && alike == kMaxAlike + 1) {
-    put_message(fmt::format("  more of these warnings are not shown; -v and --json have all [{}]\n",
-                            diagnostic.code),
-                diagnostic.code);
+    put_message(fmt::format("  more of these {} are not shown; -v and --json have all [{}]\n",
+                            diagnostic.severity == Severity::error ? "errors" : "warnings", code),
+                code);
   }
   report.issues.push_back(std::move(diagnostic));
 }
@@ -52,8 +50,12 @@ void ToolContext::warn(std::string code, std::string message, std::string hint) 
 }
 
 void ToolContext::log(const std::string& line) {
-  if (!quiet && !report_on_standard_output && (verbose || one_of_many == nullptr))
+  if (quiet || report_on_standard_output || (!verbose && one_of_many != nullptr)) return;
+  if (files_with_report.empty()) {
     put_message(line + "\n");
+  } else {
+    lines_with_report.push_back(line);
+  }
 }
 
 void ToolContext::print(const std::string& given) {

@@ -74,9 +74,12 @@ Status OutputSet::finish() {
     std::move(files_.begin(), files_.end(), std::back_inserter(context_.one_of_many->held_files));
     auto& held_paths = context_.one_of_many->held_paths;
     held_paths.insert(held_paths.end(), paths_.begin(), paths_.end());
+  } else if (context_.one_of_many == nullptr && !context_.report_path.empty()) {
+    std::move(files_.begin(), files_.end(), std::back_inserter(context_.files_with_report));
   } else if (Status status = OutputFile::place_all(files_); !status) {
     return status;
   }
+  files_.clear();
   for (const std::string& path : paths_) context_.wrote(path);
   return {};
 }

@@ -30,8 +30,9 @@ class OutputSet {
                   const std::function<Result<bool>(std::size_t, OutputFile&)>& write);
 
   // Renames all files to their final names once each is safely on disk, and adds them to the
-  // report. In a batch, files whose names are not known from the command line are handed over to
-  // the batch, which renames them in list order.
+  // report. With a report, that is when the run ends: the report is one of the set. In a batch,
+  // files whose names are not known from the command line are handed over to the batch, which
+  // renames them in list order.
   Status finish();
 
   // The paths so far, for messages.

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -34,6 +35,16 @@ void open_missing_standard_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) < 0) (void)::open("/dev/null", O_RDWR);
   }
+}
+
+// Outputs wait for each other without names, each with a descriptor; many systems allow few unless
+// asked.
+void allow_many_descriptors() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  constexpr rlim_t kWantedDescriptors = 65536;
+  limit.rlim_cur = std::max(limit.rlim_cur, std::min(limit.rlim_max, kWantedDescriptors));
+  (void)setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 // "--json" alone means standard output; CLI11 would take the next argument as its value.
@@ -93,15 +104,25 @@ int finish(ToolContext& context, ReportFile& file, int exit_code) {
     if (same_file(input, context.report_path)) return kExitTrouble;
   }
   const std::string text = json_text(context.report.to_json(), 2) + "\n";
-  (void)file->write(text).ok();  // errors are kept and returned by commit()
-  if (const Status status = file->commit(); !status) {
-    write_message(context.console, to_text(status.error()) + "\n");
+  (void)file->write(text).ok();  // errors are kept and returned by place_all()
+  std::vector<OutputFile> files = std::move(context.files_with_report);
+  const bool all_wait = files.size() >= context.report.outputs.size();
+  context.files_with_report.clear();
+  files.push_back(std::move(*file));
+  if (const Status status = OutputFile::place_all(files); !status) {
+    Error error = status.error();
+    if (!all_wait) error.hint = "the outputs were written";
+    write_message(context.console, to_text(error) + "\n");
     return kExitTrouble;
   }
+  for (const std::string& line : context.lines_with_report) context.log(line);
   return exit_code;
 }
 
 int fail(ToolContext& context, ReportFile& file, const Error& error) {
+  if (!context.files_with_report.empty()) context.report.outputs.clear();
+  context.files_with_report.clear();
+  context.lines_with_report.clear();
   context.diagnose(error);
   return finish(context, file, kExitTrouble);
 }
@@ -285,6 +306,7 @@ int print_and_end(const std::string& tool, const std::string& text) {
 
 int run_tool(const MakeToolSpec& make_spec, int argc, char** argv, const ManyFiles& many) {
   open_missing_standard_streams();
+  allow_many_descriptors();
   remove_temporaries_on_signals();
   install_out_of_memory_handler(argc > 0 ? argv[0] : "krok");
   try {

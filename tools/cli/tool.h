@@ -35,7 +35,7 @@ inline constexpr int kExitPartly = 3;   // batch finished, some files failed
 struct OneOfMany {
   struct Message {
     std::string text;
-    std::string warning;  // its code; empty for errors and what else is always shown
+    std::string code;  // of a warning or an error; empty for what is always shown
   };
   std::vector<Message> messages;  // collected, to be printed in list order
   // Checks an output that is not a destination; may be empty. Those outputs are held back here, and
@@ -59,6 +59,9 @@ class ToolContext : public io::Inputs {
   std::vector<std::string> destinations;
   // Report path: --json=FILE, "-", or empty.
   std::string report_path;
+  // Outputs of a single run that wait for its report; all are put in place together.
+  std::vector<OutputFile> files_with_report;
+  std::vector<std::string> lines_with_report;  // of log(), since then
   // Inputs that an output would have overwritten. The report must not overwrite them either.
   std::vector<std::string> refused_inputs;
 
@@ -68,14 +71,14 @@ class ToolContext : public io::Inputs {
   Json result_options = Json::object();
 
   // Prints a diagnostic on standard error (notes only with -v, only errors with -q, without -v at
-  // most 20 warnings with one code), prefixed with the tool's name if it has no file, and adds it
-  // to the report.
+  // most 20 warnings or errors with one code), prefixed with the tool's name if it has no file, and
+  // adds it to the report.
   void diagnose(Diagnostic diagnostic) override;
   using io::Inputs::diagnose;
   void warn(std::string code, std::string message, std::string hint = {});
 
   // Prints a status line on standard error; not with -q or with --json to standard output. In batch
-  // mode only with -v.
+  // mode only with -v. Lines that follow outputs are held back with those.
   void log(const std::string& line);
 
   // Prints data on standard output; suppressed if the report goes there.
@@ -124,9 +127,9 @@ class ToolContext : public io::Inputs {
   Location subject;
 
  private:
-  void put_message(const std::string& text, const std::string& warning = {});
+  void put_message(const std::string& text, const std::string& code = {});
 
-  std::map<std::string, int> alike_;  // warnings so far, by code
+  std::map<std::string, int> alike_;  // warnings and errors so far, by code
   std::set<std::string> written_;     // canonical paths that passed check_output
 };
 

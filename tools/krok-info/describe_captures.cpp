@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
+#include "core/parallel.h"
 #include "core/text.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/io/open_capture.h"
@@ -22,6 +26,45 @@ Status add_capture(const Capture& capture, const std::string& measured, const Sk
   return {};
 }
 
+// Reads all frames and drops them: whether each can be read.
+Status read_through(const FrameSource& source, int jobs) {
+  constexpr std::size_t kFramesAtOnce = 128;
+  const auto joints = static_cast<std::size_t>(source.joint_count());
+  const auto frames = static_cast<std::size_t>(source.frame_count);
+  struct Block {
+    std::vector<Vec3f> positions;
+    std::vector<Quatf> orientations;
+  };
+  std::vector<Block> blocks(slots_for(jobs));
+  const auto read = [&](std::size_t block, std::size_t slot) {
+    const std::size_t first = block * kFramesAtOnce;
+    const std::size_t count = std::min(kFramesAtOnce, frames - first);
+    blocks[slot].positions.resize(count * joints);
+    blocks[slot].orientations.resize(count * joints);
+    return source.read(static_cast<int>(first), static_cast<int>(count), blocks[slot].positions,
+                       blocks[slot].orientations);
+  };
+  const auto release = [&](std::size_t block, std::size_t) {
+    const std::size_t done = std::min((block + 1) * kFramesAtOnce, frames);
+    if (source.release) source.release(static_cast<int>(done));
+    return Status();
+  };
+  return make_in_order((frames + kFramesAtOnce - 1) / kFramesAtOnce, jobs, read, release);
+}
+
+// Without its frames, if they need not be in memory to find faults.
+Result<bvh::Capture> read_bvh(const InputFile& file, const bvh::ReadOptions& options,
+                              int& frame_count) {
+  if (auto opened = bvh::open(file.text(), file.path(), options,
+                              [&](std::size_t offset) { file.release_before(offset); })) {
+    frame_count = opened->frames.frame_count;
+    if (read_through(opened->frames, options.jobs)) return static_cast<bvh::Capture&>(*opened);
+  }
+  auto capture = bvh::read(file.text(), file.path(), options);
+  if (capture) frame_count = capture->clip.frame_count();
+  return capture;
+}
+
 }  // namespace
 
 Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
@@ -29,13 +72,14 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
   bvh::ReadOptions options;
   options.jobs = context.jobs;
   options.progress = context.progress;
-  const auto capture = bvh::read(file.text(), file.path(), options);
+  int frame_count = 0;
+  const auto capture = read_bvh(file, options, frame_count);
   if (!capture) return capture.error();
   context.diagnose(capture->diagnostics);
   Description out;
   out.what = "a capture (BVH), as read by krok-import";
   out.json["kind"] = "bvh";
-  add_timing(capture->clip.frame_count(), capture->clip.rate, out);
+  add_timing(frame_count, capture->clip.rate, out);
   out.json["frames_announced"] = capture->frames_announced;
   out.json["frame_time"] = capture->frame_time;
   if (Status status = add_capture(*capture, "joints with all rotations 0", how, out); !status)

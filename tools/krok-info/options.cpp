@@ -14,6 +14,10 @@ void declare(CommandOptions& command, Options& options) {
       .type_name("")
       .required();
   add_map_option(command, options.map);
+  command.add_flag("--textconv", options.textconv,
+                   "Print a motion as lines that git diff compares (krok git-setup): ranges and "
+                   "checksums for each second and joint, at most 2,000 lines; a file that cannot "
+                   "be read is one line and no error");
 }
 
 }  // namespace

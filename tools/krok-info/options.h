@@ -10,6 +10,7 @@ namespace krok::cli::info {
 struct Options {
   std::vector<std::string> files;
   std::string map;  // a role map; empty: none
+  bool textconv = false;
 };
 
 // The tool. Each call has options of its own.

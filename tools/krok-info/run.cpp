@@ -1,10 +1,16 @@
 #include "tools/krok-info/options.h"
 
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "core/hash.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
 #include "tools/krok-info/describe.h"
+#include "tools/krok-info/textconv.h"
 
 namespace krok::cli::info {
 
@@ -61,7 +67,25 @@ Result<Description> describe_path(const std::string& path, const SkeletonOptions
 
 }  // namespace
 
+namespace {
+
+// A line for what is no motion or cannot be read: git stops at a text conversion that fails.
+Result<int> print_for_git(const Options& options, ToolContext& context) {
+  for (const std::string& path : options.files) {
+    const auto file = InputFile::open(path);
+    const auto text = file ? textconv(*file) : std::optional<std::string>("cannot be opened\n");
+    context.print(text ? *text
+                       : fmt::format("{}, {} bytes, #{}\n",
+                                     registry::describe_content(file->bytes()),
+                                     file->bytes().size(), hex(xxh3(file->bytes()))));
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
 Result<int> run(const Options& options, ToolContext& context) {
+  if (options.textconv) return print_for_git(options, context);
   auto roles = io::open_role_map(options.map, context);
   if (!roles) return roles.error();
   const SkeletonOptions how{*std::move(roles), !options.map.empty(), context.verbose};

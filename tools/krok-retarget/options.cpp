@@ -64,6 +64,13 @@ void declare(CommandOptions& command, Options& o) {
               "keep: foot positions follow the input's, scaled, and stay above the floor; free: "
               "from the leg rotations only",
               "keep");
+  command.add("--touches HOW", o.touches,
+              choice<krok::retarget::Touches>({{"keep", krok::retarget::Touches::keep},
+                                               {"free", krok::retarget::Touches::free}}),
+              "keep: hands, elbows, knees and seat touch the ground where the input's do (with "
+              "--feet keep, without --ground), and hands each other and the body; free: as the "
+              "rotations place them",
+              "keep");
   command.add("--scale NUMBER", o.scale, number(kPositive),
               "Scale of the root motion; default: ratio of leg lengths");
   command.group("Ground");

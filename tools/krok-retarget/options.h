@@ -24,6 +24,7 @@ struct Options {
   std::string map;       // of the input's joints; empty: none
   std::string onto_map;  // of the target's joints
   krok::retarget::Feet feet = krok::retarget::Feet::keep;
+  krok::retarget::Touches touches = krok::retarget::Touches::keep;
   std::optional<double> scale;  // empty: ratio of leg lengths
   MatchingPose reference_pose, onto_reference_pose;
   std::vector<std::string> takes;  // of the input's actor: files, folders, patterns

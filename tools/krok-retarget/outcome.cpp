@@ -66,6 +66,34 @@ Json foot_json(const std::optional<krok::retarget::FootReport>& foot) {
           {"largest_miss_frame", frame(foot->largest_miss_frame)}};
 }
 
+// The largest of every measure over all contacts.
+std::string contacts_text(const std::vector<krok::retarget::ContactReport>& contacts) {
+  if (contacts.empty()) return {};
+  double slide = 0, height = 0, apart = 0;
+  for (const krok::retarget::ContactReport& contact : contacts) {
+    slide = std::max(slide, contact.slide - contact.source_slide);
+    height = std::max(height, contact.height);
+    apart = std::max(apart, contact.apart);
+  }
+  return fmt::format(
+      ", {} contacts: slide at most {}/s more than the input's, heights within {}, distances of "
+      "hands within {}",
+      contacts.size(), millimetres(slide), millimetres(height), millimetres(apart));
+}
+
+Json contact_json(const krok::retarget::ContactReport& contact) {
+  Json json = {
+      {"part", contact.part}, {"on", contact.on}, {"start", contact.start}, {"end", contact.end}};
+  if (contact.on == "ground") {
+    json["slide"] = contact.slide;
+    json["input_slide"] = contact.source_slide;
+    json["height_off"] = contact.height;
+  } else {
+    json["distance_off"] = contact.apart;
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string summary(const Outcome& outcome) {
@@ -87,7 +115,7 @@ std::string summary(const Outcome& outcome) {
     }
     if (miss > 0.005) text += fmt::format(" (legs too short by {})", millimetres(miss));
   }
-  return text;
+  return text + contacts_text(report.contacts);
 }
 
 std::string table(const Outcome& outcome) {
@@ -112,6 +140,15 @@ std::string table(const Outcome& outcome) {
   if (!report.following_target.empty()) {
     text += fmt::format("  follow their parents: {}\n",
                         names_of(outcome.target, report.following_target));
+  }
+  for (const krok::retarget::ContactReport& contact : report.contacts) {
+    text += fmt::format("  {:.2f} to {:.2f} s: {} on {}, ", contact.start, contact.end,
+                        contact.part, contact.on);
+    text += contact.on == "ground"
+                ? fmt::format("slides {}/s (input {}/s), height off by {}\n",
+                              millimetres(contact.slide), millimetres(contact.source_slide),
+                              millimetres(contact.height))
+                : fmt::format("distance off by {}\n", millimetres(contact.apart));
   }
   if (!report.unused_source.empty()) {
     text +=
@@ -154,6 +191,10 @@ Json to_json(const Outcome& outcome) {
   json["fingers_at_rest"] = {{"left", report.left_fingers_at_rest},
                              {"right", report.right_fingers_at_rest}};
   json["largest_drop_of_hips"] = report.largest_drop;
+  json["largest_shift_of_hips"] = report.largest_shift;
+  json["largest_turn_of_trunk"] = to_degrees(report.largest_turn);
+  json["contacts"] = Json::array();
+  for (const auto& contact : report.contacts) json["contacts"].push_back(contact_json(contact));
   json["feet"] = {{"left", foot_json(report.left_foot)}, {"right", foot_json(report.right_foot)}};
   return json;
 }

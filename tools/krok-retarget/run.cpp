@@ -235,6 +235,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_outputs(options, context); !status) return status.error();
   krok::retarget::Options how;
   how.feet = options.feet;
+  how.touches = options.touches;
   how.scale = options.scale;
   if (options.reference_pose.path.empty()) how.source_frame = options.reference_pose.frame;
   if (options.onto_reference_pose.path.empty())

@@ -80,6 +80,14 @@ void declare_steps(CommandOptions& command, Options& o) {
       "warning)");
   command.add("--stretch", o.stretch, length({0, 0.1}),
               "Length by which a leg may grow rather than its knee snap straight", "0");
+  command.add("--variation", o.variation, number({0, 1}),
+              "How much of single real steps each step takes where the library averages many: 0 "
+              "walks like the average, 1 like the examples",
+              "0.85");
+  command.add("--seed", o.seed, whole(0, 1'000'000'000),
+              "Which of several suitable examples steps take", "1");
+  command.add_option("--style-of NAME", o.style_of,
+                     "Take steps' style from captures whose names contain this, in any case");
   add_map_option(command, o.map);
 }
 

@@ -31,6 +31,9 @@ struct Options {
   double speed = 1, rate = 0;  // 0: the library's
   bool adapt = false, extrapolate = false, strict = false;
   double stretch = 0, clearance = 0;  // metres
+  double variation = 0.85;
+  std::uint64_t seed = 1;
+  std::string style_of;  // part of captures' names
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 

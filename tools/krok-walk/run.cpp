@@ -238,6 +238,7 @@ void report_steps(std::span<const gait::StepLibrary> libraries, const gait::Walk
     entry["start"] = step.start;
     entry["end"] = step.end;
     entry["library"] = step.library;
+    if (!step.example.empty()) entry["style_of"] = step.example;
     const auto library = std::ranges::find(libraries, step.library, &gait::StepLibrary::name);
     if (library != libraries.end()) {
       entry["asked"] = parameters_json(library->library(), step.asked);
@@ -357,6 +358,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   how.adapt = options.adapt;
   how.stretch = options.stretch;
   how.clearance = options.clearance;
+  how.variation = options.variation;
+  how.seed = options.seed;
+  how.style_of = options.style_of;
   const auto walk = gait::Walk::plan(*libraries, *prints, **ground, how);
   if (!walk) return with_hint(walk.error(), options);
   if (Status status = write_all(options, *walk, *prints, **ground, *libraries, context); !status) {

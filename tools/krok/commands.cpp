@@ -29,7 +29,8 @@
   ROW("view", view)             \
   ROW("render", film)           \
   ROW("plot", plot)             \
-  ROW("diff", diff)
+  ROW("diff", diff)             \
+  ROW("lint", lint)
 
 namespace krok::cli {
 

@@ -19,6 +19,7 @@
 #include "tools/cli/tool.h"
 #include "tools/krok/commands.h"
 #include "tools/krok/completion.h"
+#include "tools/krok/git_setup.h"
 #include "tools/krok/program.h"
 
 namespace krok::cli {
@@ -34,7 +35,8 @@ std::string krok_help() {
   }
   text +=
       "\nOther:\n  help VERB           Print the help of a verb\n"
-      "  completion SHELL    Print completion for bash, zsh or fish\n";
+      "  completion SHELL    Print completion for bash, zsh or fish\n"
+      "  git-setup           Let git show and merge motions\n";
   text +=
       "\nExamples:\n"
       "  krok import walk.bvh -o walk.anim\n      converts a capture to Krok's format\n"
@@ -149,6 +151,7 @@ int run_krok(int argc, char** argv) {
   if (verb == "--version")
     return print_and_end("krok", fmt::format("krok {}\n", version_of_build()));
   if (verb == "completion") return complete(arguments.size() > 1 ? arguments[1] : "");
+  if (verb == "git-setup") return git_setup({arguments.begin() + 1, arguments.end()});
   const Command* command = find_command(verb);
   if (command == nullptr) return refuse_verb(verb, argc, argv);
   std::string name = "krok-" + verb;

@@ -42,7 +42,7 @@ TEST_F(BatchList, OfManyFilesWithOneWarningTheFirstAreTold) {
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_EQ(count(run.err, "the unit is"), 3U) << run.err;
   EXPECT_THAT(run.err,
-              HasSubstr("  2 more files have such warnings; -v and --json have all [bvh-unit]"));
+              HasSubstr("  2 more files have such messages; -v and --json have all [bvh-unit]"));
   EXPECT_EQ(count(get(path("report.json")), "the unit is"), 5U);
   const ToolRun all = import({"takes", "--out-dir", "again", "-v"});
   EXPECT_EQ(count(all.err, "the unit is"), 5U) << all.err;

@@ -283,6 +283,34 @@ TEST_F(BatchRun, ASignalLeavesNothingHalfWritten) {
     EXPECT_EQ(name.find(".krok-"), std::string::npos);
 }
 
+// As an archive from another system has them. JSON, in which a batch keeps what it has done, is
+// UTF-8.
+TEST_F(BatchRun, NamesThatAreNotUtf8AreUpToDateToo) {
+  put_capture("takes/walk\xE9.bvh");
+  put_capture("takes/\xFF\xFE/walk.bvh", 7);
+  put_capture("takes/walk\xC3\xA9.bvh", 9);
+  EXPECT_EQ(imported_counts(), (Counts{{"done", 3}}));
+  const auto bytes = contents("out");
+  EXPECT_EQ(imported_counts(), (Counts{{"unchanged", 3}}));
+  put_capture("takes/walk\xE9.bvh", 6);
+  EXPECT_EQ(imported_counts(), (Counts{{"done", 1}, {"unchanged", 2}}));
+  std::filesystem::remove(path("out/\xFF\xFE/walk.anim"));
+  EXPECT_EQ(imported_counts(), (Counts{{"done", 1}, {"unchanged", 2}}));
+  EXPECT_EQ(contents("out").size(), bytes.size());
+}
+
+// A terminal shows what is wrong with the first few, and how many more there are.
+TEST_F(BatchRun, ManyFilesThatFailTakeFewLines) {
+  for (int i = 0; i < 60; ++i) put_broken("takes/" + number(i) + ".bvh");
+  const ToolRun run = import({"takes", "--out-dir", "out", "--keep-going"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_LT(std::ranges::count(run.err, '\n'), 15) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("57 more files have such messages"));
+  EXPECT_THAT(run.err, HasSubstr("60 files failed"));
+  const ToolRun all = import({"takes", "--out-dir", "out", "--keep-going", "-v"});
+  EXPECT_GE(std::ranges::count(all.err, '\n'), 60);
+}
+
 TEST_F(BatchRun, NoClobberIsForWhatIsNotOfThisBatch) {
   put_captures(2);
   std::filesystem::create_directory(path("out"));

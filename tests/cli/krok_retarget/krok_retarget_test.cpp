@@ -129,6 +129,27 @@ TEST_F(KrokRetarget, TheReportHoldsTheSame) {
   EXPECT_TRUE(found);
 }
 
+// Without them nobody would notice feet that slide or hands that part.
+TEST_F(KrokRetarget, EveryContactIsReported) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  const auto run = retarget({"walk.anim", "--onto", "hero.model", "-o", "out.anim", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json contacts = json::parse(run.out)["result"]["contacts"];
+  bool left_heel = false;
+  for (const json& contact : contacts) {
+    EXPECT_LT(contact["start"].get<double>(), contact["end"].get<double>());
+    if (contact["on"] != "ground") continue;
+    EXPECT_LT(contact["slide"].get<double>(), contact["input_slide"].get<double>() + 0.1);
+    EXPECT_LT(contact["height_off"].get<double>(), 0.02);
+    left_heel = left_heel || contact["part"] == "left heel";
+  }
+  EXPECT_TRUE(left_heel);
+  const auto free = retarget(
+      {"walk.anim", "--onto", "hero.model", "-o", "free.anim", "--touches", "free", "--json"});
+  ASSERT_EQ(free.exit_code, 0) << free.err;
+  EXPECT_TRUE(json::parse(free.out)["result"]["contacts"].empty());
+}
+
 // The alignment of one take for another whose own would be another: each joint keeps the same
 // offset from its source in both, and what was saved gives the same bytes for the take itself.
 TEST_F(KrokRetarget, ASavedAlignmentIsThatOfTheTake) {

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,11 +23,11 @@ class TemporaryTest : public test::FolderTest {
   std::size_t count() const { return listing().size(); }
 };
 
-// In a child that is killed while it writes "out".
-void write_and_be_killed(const std::string& path) {
+// Runs `write` in a child that is killed then.
+void do_and_be_killed(const std::function<void()>& write) {
   const pid_t child = fork();
   if (child == 0) {
-    auto file = OutputFile::create(path);
+    write();
     kill(getpid(), SIGKILL);
     _exit(1);
   }
@@ -37,29 +38,62 @@ void write_and_be_killed(const std::string& path) {
 
 TEST_F(TemporaryTest, ThoseOfKilledProgramsAreRemoved) {
   put("out", "old");
-  write_and_be_killed(path("out"));
+  do_and_be_killed([&] { (void)create_temporary(folder_.string()); });
   ASSERT_EQ(count(), 2u);
   remove_temporaries_of_killed(folder_.string());
   EXPECT_EQ(count(), 1u);
   EXPECT_EQ(get(path("out")), "old");
 }
 
-TEST_F(TemporaryTest, AKilledProgramThatReplacesNothingLeavesNothing) {
+// Another process may have the id of one that was killed long ago.
+TEST_F(TemporaryTest, ThoseOfKilledProgramsAreRemovedWhoeverHasTheirIdNow) {
+  Temporary own = create_temporary(folder_.string());
+  ASSERT_GE(own.descriptor, 0);
+  close(own.descriptor);
+  const std::string name = base_name(own.path);
+  const std::string id = "-" + std::to_string(getpid()) + "-";
+  const std::size_t after = name.find(id) + id.size();
+  put(name.substr(0, after) + "1" + name.substr(name.rfind('-')), "of a process that started once");
+  ASSERT_EQ(count(), 2u);
+  remove_temporaries_of_killed(folder_.string());
+  EXPECT_EQ(listing(), std::vector<std::string>{name});
+  unlink(own.path.c_str());
+  forget_temporary(own.slot);
+}
+
+TEST_F(TemporaryTest, TheFirstFileWrittenToAFolderRemovesThem) {
+  do_and_be_killed([&] { (void)create_temporary(folder_.string()); });
+  ASSERT_EQ(count(), 1u);
+  ASSERT_TRUE(write_file(path("out"), "new"));
+  EXPECT_EQ(listing(), std::vector<std::string>{"out"});
+}
+
+TEST_F(TemporaryTest, AKilledProgramLeavesNothing) {
   const int unnamed = create_unnamed(folder_.string());
   if (unnamed < 0) GTEST_SKIP() << "skipped: all files have names in this file system";
   close(unnamed);
-  write_and_be_killed(path("out"));
-  EXPECT_EQ(count(), 0u);
+  put("out", "old");
+  for (const std::string name : {"out", "another"}) {
+    do_and_be_killed([&] {
+      auto file = OutputFile::create(path(name));
+      (void)(file && file->write("new") && file->seal());
+      kill(getpid(), SIGKILL);
+    });
+  }
+  EXPECT_EQ(listing(), std::vector<std::string>{"out"});
+  EXPECT_EQ(get(path("out")), "old");
 }
 
 TEST_F(TemporaryTest, ThoseInUseAndOthersStay) {
   put("out", "old");
-  auto file = OutputFile::create((folder_ / "out").string());
-  ASSERT_TRUE(file);
-  fclose(fopen((folder_ / ".krok-elsewhere-1-0").c_str(), "w"));
+  const Temporary own = create_temporary(folder_.string());
+  ASSERT_GE(own.descriptor, 0);
+  close(own.descriptor);
+  put(".krok-elsewhere-1-0", "");
   remove_temporaries_of_killed(folder_.string());
   EXPECT_EQ(count(), 3u);
-  EXPECT_TRUE(file->commit());
+  unlink(own.path.c_str());
+  forget_temporary(own.slot);
   remove_temporaries_of_killed((folder_ / "no such folder").string());
 }
 
@@ -73,7 +107,12 @@ TEST_F(TemporaryTest, ASignalAmongManyThreadsLeavesNone) {
       std::vector<std::thread> threads;
       for (int t = 0; t < 4; ++t) {
         threads.emplace_back([&] {
-          for (;;) auto file = OutputFile::create((folder_ / "out").string());
+          for (;;) {
+            const Temporary one = create_temporary(folder_.string());
+            close(one.descriptor);
+            unlink(one.path.c_str());
+            forget_temporary(one.slot);
+          }
         });
       }
       usleep(3000);

@@ -1,0 +1,282 @@
+#include "gait/step_style_internal.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "core/index.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "math/smoother_step.h"
+
+namespace krok::gait {
+
+namespace {
+
+// Costs of an example, metres: as far as joints are apart where two steps meet.
+constexpr double kOfParameters = 3.0;    // for the square of a range of the parameters
+constexpr double kOtherCapture = 0.015;  // than that of the step before
+constexpr double kOtherFoot = 0.01;      // a mirror image
+constexpr double kAgain = 0.02;  // for the step before with that foot, less for earlier ones
+constexpr std::size_t kLastSteps = 6;
+constexpr double kByChance = 0.008;     // at most
+constexpr double kVelocityTime = 0.1;   // seconds: 1 m/s counts as 0.1 m
+constexpr double kVelocityOver = 0.05;  // seconds over which a velocity is taken
+constexpr double kNoStyle = 1e-6;       // sum of differences of weights
+constexpr int kStyleCorrections = 3;    // of the weights at an example's parameters
+constexpr int kStyleTries = 3;
+constexpr double kFarFromExamples = 0.4;  // metres
+constexpr std::size_t kShownCaptures = 5;
+
+constexpr std::array kMatched = {Role::hips,
+                                 Role::chest,
+                                 Role::head,
+                                 Role::left_upper_arm,
+                                 Role::left_lower_arm,
+                                 Role::left_hand,
+                                 Role::right_upper_arm,
+                                 Role::right_lower_arm,
+                                 Role::right_hand,
+                                 Role::left_upper_leg,
+                                 Role::left_lower_leg,
+                                 Role::left_foot,
+                                 Role::right_upper_leg,
+                                 Role::right_lower_leg,
+                                 Role::right_foot};
+
+// Joints at one end of a step, in the frame of the print that the foot strikes there: places, and
+// velocities times kVelocityTime. Joints that the skeleton lacks are at the origin.
+using Ends = Eigen::Matrix<float, 6 * static_cast<int>(kMatched.size()), 1>;
+
+Vec3 place_at(const Clip& clip, int joint, double time) {
+  const double frame =
+      std::clamp(time * clip.rate, 0.0, static_cast<double>(clip.frame_count() - 1));
+  const int before = std::min(static_cast<int>(frame), std::max(0, clip.frame_count() - 2));
+  const int after = std::min(before + 1, clip.frame_count() - 1);
+  const auto part = static_cast<float>(frame - before);
+  return ((1 - part) * clip.frame_positions(before)[at(joint)] +
+          part * clip.frame_positions(after)[at(joint)])
+      .cast<double>();
+}
+
+// `inwards`: +1 at the begin of the step, -1 at its end.
+Ends ends_of(const Clip& clip, const RoleMap& roles, const parametric::FootShape& foot, double time,
+             double inwards) {
+  const Transform to_print = parametric::print_at(foot, clip, time).to_world().inverse();
+  Ends ends = Ends::Zero();
+  for (std::size_t k = 0; k < kMatched.size(); ++k) {
+    const int joint = roles.joint(kMatched[k]);
+    if (joint < 0) continue;
+    const Vec3 here = to_print * place_at(clip, joint, time);
+    const Vec3 there = to_print * place_at(clip, joint, time + inwards * kVelocityOver);
+    const auto row = static_cast<Eigen::Index>(6 * k);
+    ends.segment<3>(row) = here.cast<float>();
+    ends.segment<3>(row + 3) =
+        (inwards * kVelocityTime / kVelocityOver * (there - here)).cast<float>();
+  }
+  return ends;
+}
+
+// 0 to 1 by the seed, the step and the example (splitmix64, Steele and others 2014).
+double chance(std::uint64_t seed, std::size_t step, std::size_t example) {
+  std::uint64_t value = seed * 0x9e3779b97f4a7c15u + step * 0xbf58476d1ce4e5b9u + example + 1;
+  for (int i = 0; i < 2; ++i) {
+    value += 0x9e3779b97f4a7c15u;
+    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
+    value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
+    value ^= value >> 31;
+  }
+  return static_cast<double>(value >> 11) * 0x1p-53;
+}
+
+// The example of the step before.
+struct Before {
+  const Ends* ends = nullptr;  // null: there is none
+  std::string capture;
+};
+
+// The steps of one library with one swing foot.
+class Examples {
+ public:
+  Examples(const StepLibrary& steps, FootSide swing, const std::string& style_of)
+      : steps_(&steps.steps(swing)) {
+    const parametric::Library& library = steps_->library();
+    const parametric::Bounds& bounds = steps_->bounds();
+    std::vector<double> scaled(library.parameters.size());
+    const std::string wanted = ascii_lower(style_of);
+    for (std::size_t i = 0; i < library.examples.size(); ++i) {
+      const parametric::Example& example = library.examples[i];
+      const auto& times = example.keytimes;
+      // Of standing there is no footprint but the stance foot's.
+      const bool strikes = library.keytimes.back() == "swing_strike";
+      begins_.push_back(
+          ends_of(example.motion, steps.roles(), library.foot(library.stance()), times.front(), 1));
+      finishes_.push_back(ends_of(example.motion, steps.roles(),
+                                  library.foot(strikes ? library.swing : library.stance()),
+                                  times.back(), -1));
+      allowed_.push_back(ascii_lower(example.name).find(wanted) != std::string::npos ? 1 : 0);
+      captures_.push_back(capture_of(example.name));
+      bounds.scale(example.parameters, scaled);
+      scaled_.insert(scaled_.end(), scaled.begin(), scaled.end());
+    }
+    fitted_.resize(library.examples.size());
+  }
+
+  const parametric::Synthesiser& steps() const { return *steps_; }
+  Before before(int example) const { return {&finishes_[at(example)], captures_[at(example)]}; }
+  bool any_allowed() const { return std::ranges::find(allowed_, 1) != allowed_.end(); }
+
+  // The example for a step with these parameters after one that ended like `before`, if there is
+  // one. `last`: examples of the last steps of this kind.
+  int choose(std::span<const double> parameters, const Before& before, std::span<const int> last,
+             std::uint64_t seed, std::size_t step) const {
+    std::vector<double> scaled(parameters.size());
+    steps_->bounds().scale(parameters, scaled);
+    double least = std::numeric_limits<double>::infinity();
+    int best = -1;
+    for (std::size_t i = 0; i < begins_.size(); ++i) {
+      if (!allowed_[i]) continue;
+      double far = 0;
+      for (std::size_t d = 0; d < scaled.size(); ++d) {
+        far += std::pow(scaled_[i * scaled.size() + d] - scaled[d], 2);
+      }
+      double cost = kOfParameters * far + kByChance * chance(seed, step, i);
+      if (steps_->library().examples[i].mirrored) cost += kOtherFoot;
+      for (std::size_t k = 0; k < last.size(); ++k) {
+        if (last[k] != static_cast<int>(i)) continue;
+        cost += kAgain * static_cast<double>(k + 1 + kLastSteps - last.size()) / kLastSteps;
+      }
+      if (cost >= least) continue;
+      if (before.ends != nullptr) {
+        if (captures_[i] != before.capture) cost += kOtherCapture;
+        cost += std::sqrt((begins_[i] - *before.ends).squaredNorm() /
+                          static_cast<float>(kMatched.size()));
+      }
+      if (cost >= least) continue;
+      least = cost;
+      best = static_cast<int>(i);
+    }
+    return best;
+  }
+
+  // The weights at an example's own parameters; empty if it cannot be made there, or if they
+  // reproduce the example.
+  const std::vector<double>& fitted(int example) {
+    auto& found = fitted_[at(example)];
+    if (!found) {
+      found.emplace();
+      const auto& parameters = steps_->library().examples[at(example)].parameters;
+      auto made = steps_->weights(parameters, {true, kStyleCorrections});
+      if (made) {
+        double off = 0;
+        for (std::size_t i = 0; i < made->weights.size(); ++i) {
+          off += std::abs(made->weights[i] - (at(example) == i ? 1 : 0));
+        }
+        if (off > kNoStyle) *found = std::move(made->weights);
+      }
+    }
+    return *found;
+  }
+
+ private:
+  const parametric::Synthesiser* steps_;
+  std::vector<Ends> begins_, finishes_;  // [examples]
+  std::vector<std::string> captures_;    // [examples]
+  std::vector<std::uint8_t> allowed_;    // [examples]
+  std::vector<double> scaled_;           // [examples x parameters]
+  std::vector<std::optional<std::vector<double>>> fitted_;
+};
+
+// The step with what the example differs by. Less of it where it would be no motion.
+void add_style(Examples& examples, int example, double share, PlannedStep& step) {
+  const std::vector<double>& fitted = examples.fitted(example);
+  if (fitted.empty()) return;
+  const std::vector<double> plain = step.weights;
+  for (int i = 0; i < kStyleTries; ++i, share *= 0.5) {
+    std::vector<double> weights = plain;
+    for (std::size_t k = 0; k < weights.size(); ++k) weights[k] -= share * fitted[k];
+    weights[at(example)] += share;
+    if (!examples.steps().motion(weights)) continue;
+    auto scratch = examples.steps().measure().make_scratch();
+    std::vector<double> made(step.made.size());
+    if (!examples.steps().measure()(weights, made, {}, scratch)) continue;
+    step.made = std::move(made);
+    step.weights = std::move(weights);
+    step.example = example;
+    step.example_share = share;
+    return;
+  }
+}
+
+Error no_capture(std::span<const StepLibrary> libraries, const std::string& style_of) {
+  std::vector<std::string> names;
+  for (const StepLibrary& library : libraries) {
+    for (const parametric::Example& example : library.library().examples) {
+      const std::string name = capture_of(example.name);
+      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    }
+  }
+  std::string some;
+  for (std::size_t i = 0; i < std::min(names.size(), kShownCaptures); ++i) {
+    some += (i == 0 ? "" : ", ") + shown(names[i]);
+  }
+  return Error("walk-style", fmt::format("no capture's name contains '{}'", shown(style_of)),
+               fmt::format("the library has {}: {}{}",
+                           counted(static_cast<long long>(names.size()), "capture"), some,
+                           names.size() > kShownCaptures ? ", ..." : ""));
+}
+
+}  // namespace
+
+std::string capture_of(const std::string& example) {
+  std::string name = example;
+  for (int words = 0; words < 2; ++words) {
+    const auto space = name.rfind(' ');
+    if (space == std::string::npos) return example;
+    name.resize(space);
+  }
+  return name;
+}
+
+Status choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& options,
+                     PlannedWalk& plan) {
+  if (!(options.variation > 0)) return {};
+  std::map<std::pair<int, FootSide>, Examples> all;
+  std::map<std::pair<int, FootSide>, std::vector<int>> last;
+  bool found = false;
+  Before before;
+  for (std::size_t i = 0; i < plan.steps.size(); ++i) {
+    PlannedStep& step = plan.steps[i];
+    const FootSide swing = plan.grounded[at(step.stance) + 1].side;
+    const std::pair key{step.library, swing};
+    auto place = all.find(key);
+    if (place == all.end()) {
+      place =
+          all.emplace(key, Examples(libraries[at(step.library)], swing, options.style_of)).first;
+    }
+    Examples& examples = place->second;
+    if (!examples.any_allowed()) {
+      before = {};
+      continue;
+    }
+    found = true;
+    std::vector<int>& used = last[key];
+    const int example = examples.choose(step.made, before, used, options.seed, i);
+    if (example < 0) continue;
+    used.push_back(example);
+    if (used.size() > kLastSteps) used.erase(used.begin());
+    before = examples.before(example);
+    // A step that no example is near is blended with standing.
+    const double share = options.variation * (1 - smoother_step(step.far / kFarFromExamples));
+    if (share > 0) add_style(examples, example, share, step);
+  }
+  if (!found && !options.style_of.empty()) return no_capture(libraries, options.style_of);
+  return {};
+}
+
+}  // namespace krok::gait

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "gait/body_motion_internal.h"
+
+// The style of steps. What weights make of hundreds of examples is their average: nobody's walk. So
+// each step of a walk takes what one real step differs by from the blend at that step's own
+// parameters: w = w(p) + v (e_i - w(p_i)), with the weights w(p) at the step's parameters, those
+// at the parameters of the example i, its own row e_i and the variation v. At p = p_i and v = 1 the
+// step is the example; keytimes are the example's as well. Where the weights interpolate the
+// examples nothing changes.
+
+namespace krok::gait {
+
+// Chooses the example of each step and sets its weights. Consecutive steps take examples that go
+// on in each other (motion matching on places and velocities where the steps meet: Clavet, "Motion
+// Matching and The Road to Next-Gen Animation", GDC 2016) and whose parameters are near those of
+// the step, so that a walk follows real walks and keeps to one person's style. The same seed gives
+// the same walk. Code walk-style if no example is of a capture that `options.style_of` names.
+Status choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& options,
+                     PlannedWalk& plan);
+
+// The name of the capture that an example was cut from: without the number and the side.
+std::string capture_of(const std::string& example);
+
+}  // namespace krok::gait

@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "capture/rest_frame.h"
+#include "contacts/legs.h"
+#include "core/index.h"
+#include "core/numbers.h"
+#include "lint/series_internal.h"
+#include "math/quaternion.h"
+#include "motion/ground_frame.h"
+#include "roles/limbs.h"
+#include "roles/stature.h"
+
+// Rules about the body: its size, bones, limits, reference pose and the ends of a loop.
+
+namespace krok::lint {
+
+namespace {
+
+constexpr double kUsualStature = 1.72;  // metres
+constexpr double kLeastChange = 0.005;  // metres, of a bone
+constexpr double kShortestBone = 0.02;  // metres
+constexpr double kLongEnough = 0.1;     // seconds beyond a limit
+constexpr double kForwards = 0.7;       // cosine to where the toes point
+constexpr double kLookAt = 30;          // poses a second that limits are checked in
+
+Finding finding_of(Rule rule, const Series& series, double value) {
+  const RuleFacts& facts = facts_of(rule);
+  Finding finding;
+  finding.rule = rule;
+  finding.last = std::max(0, series.frames - 1);
+  finding.value = value;
+  finding.threshold = series.threshold(rule);
+  finding.unit = facts.unit;
+  return finding;
+}
+
+void find_unit(const Series& series, MotionFaults& out) {
+  const auto stature = stature_of(series.clip.skeleton, series.roles);
+  if (!stature) return;
+  const double ratio = stature->metres / kUsualStature, limit = series.threshold(Rule::unit);
+  if (ratio < limit && ratio > 1 / limit) return;
+  Finding finding = finding_of(Rule::unit, series, ratio);
+  finding.detail = fmt::format("the body is {} m tall", readable(stature->metres, 3));
+  out.findings.push_back(finding);
+}
+
+bool is_of_body(Role role) {
+  return role != Role::none && role != Role::helper && role != Role::end && role != Role::root;
+}
+
+void find_bones(const Series& series, MotionFaults& out) {
+  const Skeleton& skeleton = series.clip.skeleton;
+  const auto below = subtree(skeleton, series.carrier);
+  const bool roles = series.roles.humanoid;
+  std::vector<Finding> found;
+  std::vector<float> lengths(at(series.frames));
+  for (int j = 0; j < series.joints; ++j) {
+    const int parent = skeleton.parents[at(j)];
+    if (parent < 0 || j == series.carrier || below[at(j)] == 0 || skeleton.end_sites[at(j)] != 0 ||
+        (roles &&
+         !(is_of_body(series.roles.roles[at(j)]) && is_of_body(series.roles.roles[at(parent)])))) {
+      continue;
+    }
+    double sum = 0;
+    for (int f = 0; f < series.frames; ++f) {
+      const auto places = series.clip.frame_positions(f);
+      lengths[at(f)] = (places[at(j)] - places[at(parent)]).norm();
+      sum += lengths[at(f)];
+    }
+    const auto [low, high] = std::ranges::minmax(lengths);
+    const double mean = sum / series.frames, range = high - low;
+    if (mean < kShortestBone * series.scale || range < kLeastChange * series.scale) continue;
+    Finding finding = finding_of(Rule::bone_length, series, 100 * range / mean);
+    if (finding.value <= finding.threshold) continue;
+    finding.joint = j;
+    double farthest = 0, largest = 0;
+    for (int f = 0; f < series.frames; ++f) {
+      const double off = std::abs(lengths[at(f)] - mean);
+      if (off > farthest) farthest = off, finding.worst = f;
+      if (f > 0) largest = std::max(largest, std::abs(1.0 * lengths[at(f)] - lengths[at(f - 1)]));
+    }
+    finding.detail = fmt::format("{} to {} m{}", readable(low, 3), readable(high, 3),
+                                 largest > range / 2 ? ", in one frame" : "");
+    found.push_back(finding);
+  }
+  merge_joints(found, 0);
+  out.findings.insert(out.findings.end(), found.begin(), found.end());
+}
+
+// Degrees by which a knee is bent forwards: the shin out of the thigh's direction to where the toes
+// point. From places alone, so that reference poses and axes of joints do not matter.
+double knee_bent_forwards(std::span<const Vec3f> places, const LegJoints& leg) {
+  const auto place = [&](int joint) -> Vec3 { return places[at(joint)].cast<double>(); };
+  const Vec3 thigh = (place(leg.lower) - place(leg.upper)).normalized();
+  const Vec3 shin = (place(leg.foot) - place(leg.lower)).normalized();
+  const Vec3 foot = place(leg.toes) - place(leg.foot);
+  const Vec3 forwards = (foot - foot.dot(shin) * shin).normalized();
+  const Vec3 bend = shin.dot(thigh) * shin - thigh;  // at a right angle to the shin, too
+  if (!(bend.norm() > 1e-6) || bend.normalized().dot(forwards) < kForwards) return 0;
+  return std::atan2(bend.norm(), shin.dot(thigh)) / kRadiansPerDegree;
+}
+
+void find_limits(const Series& series, MotionFaults& out) {
+  const int stride = std::max(1, static_cast<int>(std::lround(series.rate / kLookAt)));
+  const double limit = series.threshold(Rule::joint_limit);
+  std::vector<Finding> found;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    const LegJoints leg = leg_joints(series.roles, side);
+    if (leg.upper < 0 || leg.lower < 0 || leg.foot < 0 || leg.toes < 0) continue;
+    Finding finding = finding_of(Rule::joint_limit, series, 0);
+    finding.kind = "knee";
+    finding.joint = leg.lower;
+    int first = -1;
+    for (int f = 0; f < series.frames + stride; f += stride) {
+      const double over =
+          f < series.frames ? knee_bent_forwards(series.clip.frame_positions(f), leg) : 0;
+      if (over > limit) {
+        if (first < 0) first = f, finding.value = 0;
+        if (over > finding.value) finding.value = over, finding.worst = f;
+      } else if (first >= 0) {
+        finding.first = first, finding.last = std::min(f, series.frames) - 1;
+        finding.detail = "bent forwards";
+        if (f - first > kLongEnough * series.rate) found.push_back(finding);
+        first = -1;
+      }
+    }
+  }
+  merge_joints(found, 0);
+  out.findings.insert(out.findings.end(), found.begin(), found.end());
+}
+
+void find_asymmetry(const Series& series, MotionFaults& out) {
+  const auto length = [&](Role upper, Role lower) {
+    const int a = series.roles.joint(upper), b = series.roles.joint(lower);
+    if (a < 0 || b < 0) return 0.0;
+    const auto& reference = series.clip.skeleton.reference;
+    return (reference[at(a)].position - reference[at(b)].position).norm();
+  };
+  Finding worst = finding_of(Rule::asymmetric_rest_pose, series, 0);
+  const auto compare = [&](std::array<Role, 2> upper, std::array<Role, 2> lower) {
+    const double left = length(upper[0], lower[0]), right = length(upper[1], lower[1]);
+    if (std::min(left, right) < kShortestBone * series.scale ||
+        std::abs(left - right) < kLeastChange * series.scale) {
+      return;
+    }
+    const double percent = 100 * std::abs(left - right) / std::max(left, right);
+    if (percent <= worst.threshold) return;
+    const int joints = worst.value > 0 ? worst.joints + 1 : 1;
+    if (percent > worst.value) {
+      worst.value = percent, worst.joint = series.roles.joint(lower[0]);
+      worst.detail = fmt::format("{} m left, {} m right", readable(left, 3), readable(right, 3));
+    }
+    worst.joints = joints;
+  };
+  compare({kLegRoles[0].upper, kLegRoles[1].upper}, {kLegRoles[0].lower, kLegRoles[1].lower});
+  compare({kLegRoles[0].lower, kLegRoles[1].lower}, {kLegRoles[0].foot, kLegRoles[1].foot});
+  compare({kArmRoles[0].upper, kArmRoles[1].upper}, {kArmRoles[0].lower, kArmRoles[1].lower});
+  compare({kArmRoles[0].lower, kArmRoles[1].lower}, {kArmRoles[0].hand, kArmRoles[1].hand});
+  if (worst.value > worst.threshold) out.findings.push_back(worst);
+}
+
+void find_seam(const Series& series, MotionFaults& out) {
+  Finding worst = finding_of(Rule::loop_seam, series, 0);
+  const int last = series.frames - 1;
+  const auto local = [&](int joint, int frame) {
+    const auto pose = series.clip.frame_orientations(frame);
+    const int parent = series.clip.skeleton.parents[at(joint)];
+    return Quat((pose[at(parent)].conjugate() * pose[at(joint)]).cast<double>());
+  };
+  for (int j = 0; j < series.joints; ++j) {
+    if (series.clip.skeleton.parents[at(j)] < 0 || series.clip.skeleton.end_sites[at(j)] != 0)
+      continue;
+    // The last pose is the first one, or the one before it.
+    const auto turns = series.turns_of(j);
+    const double step = std::max(turns[at(last)].norm(), turns[1].norm());
+    const double off = angle_between(local(j, last), local(j, 0)) - step;
+    if (off / kRadiansPerDegree > worst.value)
+      worst.value = off / kRadiansPerDegree, worst.joint = j;
+    worst.joints += off / kRadiansPerDegree > worst.threshold ? 1 : 0;
+  }
+  worst.joints = std::max(1, worst.joints - 1);
+  worst.worst = last;
+  if (worst.value > worst.threshold) out.findings.push_back(worst);
+}
+
+}  // namespace
+
+void find_body_faults(const Series& series, MotionFaults& out) {
+  if (series.has(Rule::unit)) find_unit(series, out);
+  if (series.has(Rule::asymmetric_rest_pose)) find_asymmetry(series, out);
+  if (series.frames > 0 && series.has(Rule::bone_length)) find_bones(series, out);
+  if (series.has(Rule::joint_limit)) find_limits(series, out);
+  if (series.frames < 3) return;
+  const RestPose rest = find_rest_pose(series.clip, series.roles);
+  if (rest.first_frame_is_rest) {
+    Finding finding = finding_of(Rule::rest_frame, series, 1);
+    finding.last = 0;
+    finding.detail = rest.reason;
+    out.findings.push_back(finding);
+  }
+  if (series.options.is_loop && series.has(Rule::loop_seam)) find_seam(series, out);
+}
+
+}  // namespace krok::lint

@@ -1,0 +1,343 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "contacts/contacts.h"
+#include "core/index.h"
+#include "core/numbers.h"
+#include "lint/series_internal.h"
+
+// foot-slide, drift and ground.
+
+namespace krok::lint {
+
+namespace {
+
+constexpr double kNear = 0.03;           // metres above the support, of points that may carry
+constexpr double kRising = 0.25;         // metres per second; faster up or down is a step
+constexpr double kFastest = 1.7;         // metres per second; faster is a swing, not a slide
+constexpr double kShortestSlide = 0.1;   // seconds
+constexpr double kResting = 0.045;       // metres per second; slower is rest
+constexpr double kTogether = 0.35;       // difference of two feet's velocities over their size
+constexpr double kUneven = 0.1;          // metres, of heights of contacts on level ground
+constexpr double kFloor = 2;             // times the threshold, of the floor's height
+constexpr double kUpright = 0.8;         // of the legs' length, height of the hips
+constexpr double kShortestHover = 0.25;  // seconds
+constexpr double kLeastFall = 4;         // metres per second squared
+
+// The feet's points over the frames.
+struct Soles {
+  FoundContacts found;
+  std::vector<std::vector<Vec3>> places;      // [tracks][frames], metres
+  std::vector<std::vector<Vec3>> velocities;  // [tracks][frames], metres per second, level
+  std::vector<std::vector<double>> rises;     // the same, upwards
+};
+
+std::vector<Vec3> velocities_of(const std::vector<Vec3>& places, double rate, double seconds) {
+  const int frames = static_cast<int>(places.size());
+  const int reach = std::max(1, static_cast<int>(std::lround(seconds * rate / 2)));
+  std::vector<Vec3> velocities(places.size());
+  for (int f = 0; f < frames; ++f) {
+    const int a = std::max(0, f - reach), b = std::min(frames - 1, f + reach);
+    const Vec3 moved = places[at(b)] - places[at(a)];
+    velocities[at(f)] = b > a ? Vec3(moved * (rate / (b - a))) : Vec3::Zero();
+  }
+  return velocities;
+}
+
+std::optional<Soles> soles_of(const Series& series) {
+  auto found = find_contacts(series.clip, series.roles);
+  if (!found) return std::nullopt;
+  Soles soles{*std::move(found), {}, {}, {}};
+  for (const PointTrack& track : soles.found.tracks) {
+    soles.places.push_back(track_of(series.clip, track.point, soles.found.leg_length));
+    std::vector<Vec3> velocities = velocities_of(soles.places.back(), series.rate, 0.07);
+    std::vector<double>& rises = soles.rises.emplace_back();
+    for (Vec3& velocity : velocities) {
+      rises.push_back(velocity.y());
+      velocity.y() = 0;
+    }
+    soles.velocities.push_back(std::move(velocities));
+  }
+  return soles;
+}
+
+// The slowest point of each foot that is near the ground, -1 for a foot in the air.
+std::array<int, 2> carrying(const Series& series, const Soles& soles, int frame) {
+  std::array<int, 2> slowest = {-1, -1};
+  for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
+    const PointTrack& track = soles.found.tracks[at(t)];
+    if (track.height[at(frame)] > kNear * series.scale ||
+        std::abs(soles.rises[at(t)][at(frame)]) > kRising * series.scale) {
+      continue;
+    }
+    int& best = slowest[static_cast<std::size_t>(track.point.side)];
+    const auto speed = [&](int i) { return soles.velocities[at(i)][at(frame)].squaredNorm(); };
+    if (best < 0 || speed(t) < speed(best)) best = t;
+  }
+  return slowest;
+}
+
+// Runs of frames in which no point of the soles rests, though some are on the ground.
+class Slides {
+ public:
+  Slides(const Series& series, const Soles& soles, std::vector<Finding>& found)
+      : series_(series), soles_(soles), found_(found) {}
+
+  void find() {
+    for (int f = 0; f < series_.frames; ++f) {
+      const auto feet = carrying(series_, soles_, f);
+      const int left = feet[0], right = feet[1];
+      int slowest = left < 0 ? right : left;
+      if (left >= 0 && right >= 0 && velocity(right, f).norm() < velocity(left, f).norm()) {
+        slowest = right;
+      }
+      const double speed = slowest < 0 ? 0 : velocity(slowest, f).norm() / series_.scale;
+      if (speed < kResting || speed > kFastest) {
+        end(f);
+        continue;
+      }
+      if (frames_ == 0) first_ = f;
+      ++frames_;
+      const Vec3 moved = velocity(slowest, f) / series_.rate;
+      way_ += moved;
+      if (moved.norm() > fastest_) fastest_ = moved.norm(), worst_ = f, point_ = slowest;
+      if (left >= 0 && right >= 0) {
+        const Vec3 a = velocity(left, f), b = velocity(right, f);
+        ++both_;
+        if ((a - b).norm() < kTogether * std::max(a.norm(), b.norm())) ++together_;
+      }
+    }
+    end(series_.frames);
+  }
+
+ private:
+  const Vec3& velocity(int track, int frame) const {
+    return soles_.velocities[at(track)][at(frame)];
+  }
+  void end(int frame) {
+    if (frames_ >= series_.frames_in(kShortestSlide, 3)) {
+      Finding finding;
+      const bool body = both_ > frames_ / 3 && together_ > both_ / 2;
+      finding.rule = body ? Rule::drift : Rule::foot_slide;
+      finding.joint = soles_.found.tracks[at(point_)].point.joint;
+      finding.first = first_, finding.last = frame - 1, finding.worst = worst_;
+      finding.value = way_.norm();
+      finding.threshold = series_.threshold(finding.rule) * series_.scale, finding.unit = "m";
+      finding.detail = fmt::format("up to {} m/s", readable(fastest_ * series_.rate, 2));
+      if (finding.value > finding.threshold) found_.push_back(finding);
+    }
+    frames_ = both_ = together_ = 0;
+    way_ = Vec3::Zero();
+    fastest_ = 0;
+  }
+
+  const Series& series_;
+  const Soles& soles_;
+  std::vector<Finding>& found_;
+  int frames_ = 0, first_ = 0, worst_ = 0, point_ = 0, both_ = 0, together_ = 0;
+  Vec3 way_ = Vec3::Zero();
+  double fastest_ = 0;
+};
+
+// How far a foot moves in one contact.
+void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& found) {
+  for (const Stay& stay : soles.found.stays) {
+    const PointTrack& track = soles.found.tracks[at(stay.track)];
+    if (track.point.part == FootPart::tip) continue;
+    const auto& places = soles.places[at(stay.track)];
+    // The ends of a contact belong to the step.
+    const double margin = std::min(0.06, (stay.end - stay.start) / 4);
+    const int first = static_cast<int>(std::ceil((stay.start + margin) * series.rate));
+    const int last = std::min(series.frames - 1,
+                              static_cast<int>(std::floor((stay.end - margin) * series.rate)));
+    if (last - first < 3) continue;
+    Vec3 moved = places[at(last)] - places[at(first)];
+    moved.y() = 0;
+    Finding finding;
+    finding.rule = Rule::foot_slide;
+    finding.joint = track.point.joint;
+    finding.first = first, finding.last = last, finding.worst = (first + last) / 2;
+    finding.value = moved.norm();
+    finding.threshold = series.threshold(Rule::foot_slide) * series.scale, finding.unit = "m";
+    finding.detail =
+        fmt::format("{} {} in one contact", name_of(track.point.side), name_of(track.point.part));
+    if (finding.value > finding.threshold) found.push_back(finding);
+  }
+}
+
+struct Level {
+  double height = 0;
+  double spread = 0;  // of the middle 80 % of the time that feet stand
+  bool known = false;
+};
+
+Level level_of(const Soles& soles) {
+  std::vector<std::pair<double, double>> heights;  // and seconds
+  double total = 0;
+  for (const Stay& stay : soles.found.stays) {
+    const double seconds = stay.end - stay.start;
+    heights.emplace_back(stay.place.y(), seconds);
+    total += seconds;
+  }
+  Level level;
+  if (total <= 0) return level;
+  std::ranges::sort(heights);
+  const auto at_part = [&](double part) {
+    double sum = 0;
+    for (const auto& [height, seconds] : heights) {
+      sum += seconds;
+      if (sum >= part * total) return height;
+    }
+    return heights.back().first;
+  };
+  return {at_part(0.5), at_part(0.9) - at_part(0.1), true};
+}
+
+class GroundRule {
+ public:
+  GroundRule(const Series& series, const Soles& soles, MotionFaults& out)
+      : series_(series), soles_(soles), out_(out), level_(level_of(soles)) {
+    limit_ = series.threshold(Rule::ground) * series.scale;
+  }
+
+  void find() {
+    if (!series_.options.ground) {
+      if (!level_.known) {
+        out_.notes.emplace_back("ground: no foot stands anywhere, so the ground is not known");
+        return;
+      }
+      if (level_.spread > kUneven * series_.scale) {
+        out_.notes.push_back(fmt::format(
+            "ground: the feet stand at heights that differ by {} m; --ground says what is below",
+            readable(level_.spread, 2)));
+        return;
+      }
+      if (std::abs(level_.height) > kFloor * limit_)
+        add("floor", 0, series_.frames - 1, 0, std::abs(level_.height), kFloor * limit_);
+    }
+    find_sinking();
+    find_hovering();
+  }
+
+ private:
+  std::optional<double> ground_at(const Vec3& point) const {
+    return series_.options.ground ? series_.options.ground(point) : level_.height;
+  }
+
+  void add(const char* kind, int first, int last, int worst, double value, double limit,
+           int joint = -1) {
+    Finding finding;
+    finding.rule = Rule::ground;
+    finding.kind = kind;
+    finding.joint = joint;
+    finding.first = first, finding.last = last, finding.worst = worst;
+    finding.value = value, finding.threshold = limit, finding.unit = "m";
+    out_.findings.push_back(finding);
+  }
+
+  void find_sinking() {
+    double deepest = 0;
+    int first = 0, worst = 0, joint = -1, frames = 0;
+    for (int f = 0; f <= series_.frames; ++f) {
+      double deep = 0;
+      int here = -1;
+      for (std::size_t t = 0; f < series_.frames && t < soles_.places.size(); ++t) {
+        const Vec3& place = soles_.places[t][at(f)];
+        const auto ground = ground_at(place);
+        if (ground && *ground - place.y() > deep) {
+          deep = *ground - place.y();
+          here = soles_.found.tracks[t].point.joint;
+        }
+      }
+      if (deep > limit_) {
+        if (frames++ == 0) first = f;
+        if (deep > deepest) deepest = deep, worst = f, joint = here;
+      } else if (frames > 0) {
+        if (frames > 1) add("sinking", first, f - 1, worst, deepest, limit_, joint);
+        frames = 0, deepest = 0;
+      }
+    }
+  }
+
+  // Height of the lowest joint above the ground, infinite where there is none.
+  double clearance(int frame) const {
+    double lowest = INFINITY;
+    for (const Vec3f& place : series_.clip.frame_positions(frame)) {
+      const auto ground = ground_at(place.cast<double>());
+      if (ground) lowest = std::min(lowest, static_cast<double>(place.y()) - *ground);
+    }
+    for (const auto& places : soles_.places) {
+      const auto ground = ground_at(places[at(frame)]);
+      if (ground) lowest = std::min(lowest, places[at(frame)].y() - *ground);
+    }
+    return lowest;
+  }
+
+  // Bodies in the air fall; those that do not hang, are carried or float.
+  void find_hovering() {
+    const int shortest = series_.frames_in(kShortestHover, 4);
+    int first = -1, worst = 0;
+    double highest = 0;
+    for (int f = 0; f <= series_.frames; ++f) {
+      double over = 0;
+      if (f < series_.frames) {
+        over = clearance(f);
+        const Vec3 hips = series_.clip.frame_positions(f)[at(series_.carrier)].cast<double>();
+        const auto ground = ground_at(hips);
+        if (!ground || hips.y() - *ground < kUpright * soles_.found.leg_length) over = 0;
+      }
+      if (over > limit_ && std::isfinite(over)) {
+        if (first < 0) first = f;
+        if (over > highest) highest = over, worst = f;
+      } else if (first >= 0) {
+        if (f - first >= shortest && fall(first, f - 1) < kLeastFall) {
+          add("hovering", first, f - 1, worst, highest, limit_);
+        }
+        first = -1, highest = 0;
+      }
+    }
+  }
+
+  // The hips' mean acceleration downwards, metres per second squared.
+  double fall(int first, int last) const {
+    const auto height = [&](int f) {
+      return static_cast<double>(series_.clip.frame_positions(f)[at(series_.carrier)].y());
+    };
+    const int middle = (first + last) / 2, reach = std::min(middle - first, last - middle);
+    const double seconds = reach / series_.rate;
+    if (reach < 1) return 9.81;
+    const double sag = height(middle) - 0.5 * (height(middle - reach) + height(middle + reach));
+    return 2 * sag / (seconds * seconds) / series_.scale;
+  }
+
+  const Series& series_;
+  const Soles& soles_;
+  MotionFaults& out_;
+  Level level_;
+  double limit_ = 0;
+};
+
+}  // namespace
+
+void find_foot_faults(const Series& series, MotionFaults& out) {
+  const bool slides = series.has(Rule::foot_slide) || series.has(Rule::drift);
+  if (!slides && !series.has(Rule::ground)) return;
+  const auto soles = soles_of(series);
+  if (!soles) return;
+  std::vector<Finding> found;
+  if (slides && !series.options.treadmill) {
+    Slides(series, *soles, found).find();
+    find_stays(series, *soles, found);
+    if (soles->found.stays.empty() && series.frames > series.rate) {
+      out.notes.emplace_back("foot-slide: no foot rests; --treadmill if the ground moves");
+    }
+  }
+  merge_joints(found, 1);
+  out.findings.insert(out.findings.end(), found.begin(), found.end());
+  if (series.has(Rule::ground)) GroundRule(series, *soles, out).find();
+}
+
+}  // namespace krok::lint

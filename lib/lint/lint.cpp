@@ -1,0 +1,128 @@
+#include "lint/lint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "contacts/sole_points.h"
+#include "core/index.h"
+#include "lint/series_internal.h"
+#include "motion/ground_frame.h"
+
+namespace krok::lint {
+
+namespace {
+
+constexpr double kUsualLeg = 0.86;  // metres
+
+double legs_of(const Skeleton& skeleton, const RoleMap& roles) {
+  double sum = 0;
+  int legs = 0;
+  for (const auto& [upper, lower, foot] :
+       {std::tuple(Role::left_upper_leg, Role::left_lower_leg, Role::left_foot),
+        std::tuple(Role::right_upper_leg, Role::right_lower_leg, Role::right_foot)}) {
+    const int a = roles.joint(upper), b = roles.joint(lower), c = roles.joint(foot);
+    if (a < 0 || b < 0 || c < 0) continue;
+    const auto place = [&](int joint) { return skeleton.reference[at(joint)].position; };
+    sum += (place(a) - place(b)).norm() + (place(b) - place(c)).norm();
+    ++legs;
+  }
+  return legs > 0 ? sum / legs : 0;
+}
+
+// q and -q are one rotation; the one with w >= 0 turns less.
+Vec3f turn_between(const Quatf& before, const Quatf& after) {
+  const Quatf turn = after * before.conjugate();
+  return (turn.w() < 0 ? -2.0F : 2.0F) * turn.vec();
+}
+
+}  // namespace
+
+double Finding::excess() const {
+  if (threshold <= 0) return value > 0 ? value : 1;
+  const bool both_ways = rule == Rule::frame_rate || rule == Rule::unit;
+  if (both_ways && value > 0 && value < 1) return 1 / (value * threshold);
+  return value / threshold;
+}
+
+Series::Series(const Clip& motion, const RoleMap& role_map, const MotionOptions& how)
+    : clip(motion), roles(role_map), options(how) {
+  joints = clip.joint_count();
+  frames = clip.frame_count();
+  rate = clip.rate;
+  const double legs = legs_of(clip.skeleton, roles);
+  scale = legs > 0 ? legs / kUsualLeg : 1;
+  carrier = std::max(0, carrying_joint(roles));
+  turns.assign(at(joints) * at(frames), Vec3f::Zero());
+  steps.assign(at(frames), Vec3f::Zero());
+  moved.assign(at(frames), 0.0F);
+  std::vector<Quatf> before(at(joints)), now(at(joints));
+  for (int f = 0; f < frames; ++f) {
+    const auto orientations = clip.frame_orientations(f);
+    for (int j = 0; j < joints; ++j) {
+      const int parent = clip.skeleton.parents[at(j)];
+      now[at(j)] = parent < 0 ? orientations[at(j)]
+                              : orientations[at(parent)].conjugate() * orientations[at(j)];
+    }
+    if (f > 0) {
+      float most = 0;
+      for (int j = 0; j < joints; ++j) {
+        const Vec3f turn = turn_between(before[at(j)], now[at(j)]);
+        turns[at(j) * at(frames) + at(f)] = turn;
+        most = std::max(most, turn.squaredNorm());
+      }
+      steps[at(f)] =
+          clip.frame_positions(f)[at(carrier)] - clip.frame_positions(f - 1)[at(carrier)];
+      moved[at(f)] = std::sqrt(std::max(most, steps[at(f)].squaredNorm()));
+    }
+    std::swap(before, now);
+  }
+}
+
+std::span<const Vec3f> Series::turns_of(int joint) const {
+  return std::span(turns).subspan(at(joint) * at(frames), at(frames));
+}
+
+int Series::frames_in(double seconds, int at_least) const {
+  return std::max(at_least, static_cast<int>(std::lround(seconds * rate)));
+}
+
+void merge_joints(std::vector<Finding>& findings, int near) {
+  std::ranges::stable_sort(findings, {}, [](const Finding& f) {
+    return std::tuple(static_cast<int>(f.rule), f.kind, f.first);
+  });
+  std::vector<Finding> merged;
+  for (Finding& finding : findings) {
+    Finding* last = merged.empty() ? nullptr : &merged.back();
+    if (last == nullptr || last->rule != finding.rule || last->kind != finding.kind ||
+        finding.first > last->last + near) {
+      merged.push_back(std::move(finding));
+      continue;
+    }
+    const int joints = last->joint == finding.joint ? last->joints : last->joints + finding.joints;
+    const int first = std::min(last->first, finding.first),
+              end = std::max(last->last, finding.last);
+    if (finding.excess() > last->excess()) *last = std::move(finding);
+    last->joints = joints, last->first = first, last->last = end;
+  }
+  findings = std::move(merged);
+}
+
+MotionFaults lint_motion(const Clip& clip, const RoleMap& roles, const MotionOptions& options) {
+  MotionFaults out;
+  const Series series(clip, roles, options);
+  find_body_faults(series, out);
+  if (series.frames >= 3) {
+    find_rate_faults(series, out);
+    find_rotation_faults(series, out);
+    find_noise_faults(series, out);
+    find_foot_faults(series, out);
+  }
+  std::erase_if(out.findings, [&](const Finding& finding) { return !series.has(finding.rule); });
+  std::ranges::stable_sort(out.findings, {}, [](const Finding& f) {
+    return std::tuple(static_cast<int>(f.rule), f.first);
+  });
+  return out;
+}
+
+}  // namespace krok::lint

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "lint/rules.h"
+#include "roles/roles.h"
+#include "scene/clip.h"
+
+// Finds faults of motions: what a capture or an export broke, by rule, with its place.
+
+namespace krok::lint {
+
+struct Finding {
+  Rule rule = Rule::unreadable;
+  std::string kind;         // of rules that tell several apart: "spike", "step", "seam"
+  int joint = -1;           // the worst joint, -1: the whole body
+  int joints = 1;           // how many show the fault at the same time
+  int first = 0, last = 0;  // frames, inclusive
+  int worst = 0;            // the frame at which the fault shows best
+  double value = 0;         // in `unit`
+  double threshold = 0;     // in `unit`
+  std::string unit;         // "m", "deg", "s", "%", "fps" or ""
+  std::string detail;       // what the value alone does not say; may be empty
+
+  // How many times the threshold the value is, for sorting; a value far below a lower bound counts
+  // by its inverse.
+  double excess() const;
+};
+
+struct MotionOptions {
+  Settings settings;
+  bool is_loop = false;    // the first pose follows the last
+  bool treadmill = false;  // feet are carried by the ground: foot-slide and drift do not apply
+  // Height of the ground below a point (metres, world), empty where there is none. Without it the
+  // ground is taken to be level where the feet stand.
+  std::function<std::optional<double>(const Vec3& point)> ground;
+};
+
+struct MotionFaults {
+  std::vector<Finding> findings;  // by rule, then frame
+  // Rules that could not judge the motion, with the reason: "ground: the feet stand at heights
+  // that differ by 0.61 m".
+  std::vector<std::string> notes;
+};
+
+// All rules of one motion. `roles`: of the clip's joints; rules about feet, limits and sides need
+// them and are left out otherwise. The clip must pass check().
+//
+// - pop, flip, jitter, over-smooth: rotations of each joint in its parent, and the path of the
+//   hips. A pop is a pattern of accelerations that only a jump makes (1 -2 1 for a spike of one
+//   frame, 1 -1 for a step), larger than what is left around it when it is taken out, unlike in a
+//   fast gesture, and than the usual of the second around it. Noise is the deviation left by the
+//   fourth difference (weights 1 -4 6 -4 1), where successive accelerations have opposite signs as
+//   noise makes them.
+// - foot-slide: how far the slowest point of the soles near the ground moves without a rest, and
+//   how far a foot moves in one contact (find_contacts()).
+// - frame-rate: repeated frames, and the duration of swings, about that of a pendulum whatever the
+//   speed (Mochon and McMahon, "Ballistic walking", J. Biomech. 13, 1980).
+// - joint-limit: knees that bend forwards. Ranges of other joints depend on how a skeleton shares
+//   them and on its reference pose.
+MotionFaults lint_motion(const Clip& clip, const RoleMap& roles, const MotionOptions& options);
+
+}  // namespace krok::lint

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/index.h"
+#include "lint/series_internal.h"
+#include "math/window.h"
+
+// jitter, over-smooth and frozen: how much fine detail a stretch has.
+
+namespace krok::lint {
+
+namespace {
+
+constexpr double kWindow = 0.5;           // seconds
+constexpr double kMedianOfNorm = 1.538;   // of three normal variables (Maxwell distribution)
+constexpr double kFourthDifference = 70;  // its variance over that of white noise: 1+16+36+16+1
+// Lag-1 correlation of accelerations: -2/3 for white noise, near 1 for a smooth motion.
+constexpr double kNoiseLike = -0.45;
+constexpr float kMoves = 2e-3F;          // rad a frame
+constexpr double kDeviations = 5;        // of the detail of a motion's windows
+constexpr double kFrozenLongest = 3600;  // seconds
+
+// What a window of one joint shows; the windows overlap by half.
+struct Detail {
+  float noise = 0;        // rad, the standard deviation of each axis
+  float correlation = 1;  // of successive accelerations
+  float speed = 0;        // rad a frame, root mean square
+};
+
+struct Windows {
+  int length = 0, stride = 0, count = 0;
+  int first(int window) const { return 1 + window * stride; }  // a turn's frame
+};
+
+Windows windows_of(const Series& series) {
+  Windows windows;
+  windows.length = series.frames_in(kWindow, 12);
+  windows.stride = windows.length / 2;
+  const int turns = series.frames - 1;
+  windows.count = turns < windows.length ? 0 : 1 + (turns - windows.length) / windows.stride;
+  return windows;
+}
+
+// Details of one joint, [windows].
+void look_at(std::span<const Vec3f> turns, const Windows& windows, std::vector<float>& sizes,
+             std::vector<Detail>& details) {
+  details.resize(at(windows.count));
+  for (int w = 0; w < windows.count; ++w) {
+    const auto part = turns.subspan(at(windows.first(w)), at(windows.length));
+    sizes.clear();
+    double squares = 0, products = 0, accelerations = 0;
+    Vec3f one = Vec3f::Zero(), two = Vec3f::Zero();
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      squares += part[i].squaredNorm();
+      if (i == 0) continue;
+      const Vec3f now = part[i] - part[i - 1];
+      accelerations += now.squaredNorm();
+      products += now.dot(one);
+      if (i >= 3) sizes.push_back((now - 2 * one + two).squaredNorm());
+      two = one, one = now;
+    }
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::ranges::nth_element(sizes, middle);
+    Detail& detail = details[at(w)];
+    detail.noise = static_cast<float>(std::sqrt(*middle / kFourthDifference) / kMedianOfNorm);
+    detail.correlation = accelerations > 0 ? static_cast<float>(products / accelerations) : 1.0F;
+    detail.speed = static_cast<float>(std::sqrt(squares / static_cast<double>(part.size())));
+  }
+}
+
+void find_jitter(const Series& series, int joint, const Windows& windows,
+                 std::span<const Detail> details, std::vector<Finding>& found) {
+  const double limit = series.threshold(Rule::jitter) * kRadiansPerDegree;
+  for (int w = 0; w < windows.count; ++w) {
+    const Detail& detail = details[at(w)];
+    if (detail.noise <= limit || detail.correlation > kNoiseLike) continue;
+    Finding finding;
+    finding.rule = Rule::jitter;
+    finding.joint = joint;
+    finding.first = windows.first(w) - 1;
+    finding.last = finding.first + windows.length;
+    finding.worst = finding.first + windows.length / 2;
+    finding.value = detail.noise / kRadiansPerDegree;
+    finding.threshold = limit / kRadiansPerDegree, finding.unit = "deg";
+    found.push_back(finding);
+  }
+}
+
+// How much detail a motion has for its speed, as a logarithm: [windows], the median over the joints
+// that move; not a number where less than four do.
+class DetailOfBody {
+ public:
+  explicit DetailOfBody(int windows) : ratios_(at(windows)) {}
+  void add(std::span<const Detail> details) {
+    for (std::size_t w = 0; w < details.size(); ++w) {
+      if (details[w].speed < kMoves) continue;
+      ratios_[w].push_back(std::log(std::max(details[w].noise, 1e-7F) / details[w].speed));
+    }
+  }
+  std::vector<double> medians() const {
+    std::vector<double> all;
+    for (const auto& ratios : ratios_) {
+      all.push_back(ratios.size() < 4 ? NAN : median({ratios.begin(), ratios.end()}));
+    }
+    return all;
+  }
+
+ private:
+  std::vector<std::vector<float>> ratios_;
+};
+
+void find_smooth(const Series& series, const Windows& windows, const DetailOfBody& body,
+                 std::vector<Finding>& found) {
+  const std::vector<double> detail = body.medians();
+  std::vector<double> known;
+  std::ranges::copy_if(detail, std::back_inserter(known), [](double v) { return !std::isnan(v); });
+  if (known.size() < 6) return;
+  const double usual = median(known);
+  std::vector<double> off;
+  for (const double value : known) off.push_back(std::abs(value - usual));
+  const double spread = 1.4826 * median(off);
+  const double limit = series.threshold(Rule::over_smooth);
+  for (int w = 0; w < windows.count; ++w) {
+    const double less = usual - detail[at(w)];
+    if (std::isnan(less) || less < std::log(limit) || less < kDeviations * spread) continue;
+    Finding finding;
+    finding.rule = Rule::over_smooth;
+    finding.first = windows.first(w) - 1;
+    finding.last = finding.first + windows.length;
+    finding.worst = finding.first + windows.length / 2;
+    finding.value = std::exp(less);
+    finding.threshold = limit;
+    finding.detail = "times less detail than the rest of the motion";
+    found.push_back(finding);
+  }
+}
+
+void find_frozen(const Series& series, std::vector<Finding>& found) {
+  const int shortest = series.frames_in(series.threshold(Rule::frozen), 3);
+  int still = 0;
+  const auto moving =
+      std::ranges::count_if(series.moved, [](float moved) { return moved > 1e-4F; });
+  // A pose that is held all the time is a pose and no fault.
+  if (moving < series.frames / 10 + 2) return;
+  for (int f = 1; f <= series.frames; ++f) {
+    if (f < series.frames && series.moved[at(f)] < kStill) {
+      ++still;
+      continue;
+    }
+    if (still >= shortest) {
+      Finding finding;
+      finding.rule = Rule::frozen;
+      finding.first = f - 1 - still, finding.last = f - 1;
+      finding.worst = finding.first;
+      finding.value = std::min(kFrozenLongest, still / series.rate);
+      finding.threshold = shortest / series.rate, finding.unit = "s";
+      found.push_back(finding);
+    }
+    still = 0;
+  }
+}
+
+}  // namespace
+
+void find_noise_faults(const Series& series, MotionFaults& out) {
+  std::vector<Finding> found;
+  if (series.has(Rule::jitter) || series.has(Rule::over_smooth)) {
+    const Windows windows = windows_of(series);
+    DetailOfBody body(windows.count);
+    std::vector<float> sizes;
+    std::vector<Detail> details;
+    for (int j = 0; j < series.joints; ++j) {
+      if (series.clip.skeleton.end_sites[at(j)] != 0) continue;
+      look_at(series.turns_of(j), windows, sizes, details);
+      // Toes give way to the ground and spring back, as fast as noise.
+      const Role role = series.roles.roles[at(j)];
+      if (role != Role::left_toes && role != Role::right_toes) {
+        find_jitter(series, j, windows, details, found);
+      }
+      body.add(details);
+    }
+    if (series.has(Rule::over_smooth)) find_smooth(series, windows, body, found);
+  }
+  if (series.has(Rule::frozen)) find_frozen(series, found);
+  merge_joints(found, 1);
+  out.findings.insert(out.findings.end(), found.begin(), found.end());
+}
+
+}  // namespace krok::lint

@@ -1,0 +1,289 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/index.h"
+#include "lint/series_internal.h"
+
+// pop and flip: what happens between two frames.
+
+namespace krok::lint {
+
+namespace {
+
+constexpr float kTimesUsual = 8;       // of the median acceleration of a second, of kinks
+constexpr float kTimesNeighbours = 4;  // of the largest acceleration just before and after
+constexpr int kNeighbours = 4;         // frames looked at on either side
+constexpr double kSeamJoints = 0.3;    // of the joints that move
+constexpr double kMinPath = 0.03;      // metres, of a jump of the hips
+
+enum class PopKind : std::uint8_t { spike, step, kink };
+
+struct Pop {
+  PopKind kind = PopKind::spike;
+  int first = 0, last = 0, worst = 0;
+  double value = 0;
+};
+
+// Medians of the accelerations' sizes over blocks of a second; a frame's usual acceleration is the
+// largest of its own block and those beside it, so that a gesture's beginning counts.
+class UsualSize {
+ public:
+  UsualSize(std::span<const float> sizes, int block) : block_(block) {
+    std::vector<float> some;
+    for (std::size_t begin = 0; begin < sizes.size(); begin += at(block)) {
+      const auto part = sizes.subspan(begin, std::min(at(block), sizes.size() - begin));
+      some.assign(part.begin(), part.end());
+      const auto middle = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
+      std::ranges::nth_element(some, middle);
+      medians_.push_back(*middle);
+    }
+  }
+  float at_frame(int frame) const {
+    const int own = frame / block_, last = static_cast<int>(medians_.size()) - 1;
+    float most = 0;
+    for (int b = std::max(0, own - 1); b <= std::min(last, own + 1); ++b) {
+      most = std::max(most, medians_[at(b)]);
+    }
+    return most;
+  }
+
+ private:
+  int block_;
+  std::vector<float> medians_;
+};
+
+// What a jump of size 1 does to the accelerations of successive frames, and how the jump must stand
+// out: `over_rest` times the largest acceleration around it that is left without the jump, and
+// `over_usual` times the median of the second.
+struct Template {
+  PopKind kind;
+  int length;
+  std::array<float, 4> weights;
+  float over_rest, over_usual;
+};
+constexpr std::array<Template, 3> kTemplates = {{{PopKind::spike, 3, {1, -2, 1, 0}, 0.9F, 3},
+                                                 {PopKind::spike, 4, {1, -1, -1, 1}, 1.2F, 4},
+                                                 {PopKind::step, 2, {1, -1, 0, 0}, 2.2F, 5}}};
+
+// A place where a template was tried.
+struct Match {
+  Pop pop;
+  float score = 0;  // size over the largest acceleration around it, relative to what it must be
+};
+
+class PopFinder {
+ public:
+  PopFinder(std::span<const Vec3f> turns, float threshold, int block, std::vector<float>& sizes)
+      : turns_(turns), threshold_(threshold), block_(block), sizes_(sizes) {}
+
+  std::vector<Pop> find() {
+    const int frames = static_cast<int>(turns_.size());
+    sizes_.assign(at(frames), 0.0F);
+    float most = 0;
+    for (int f = 1; f + 1 < frames; ++f) {
+      sizes_[at(f)] = acceleration(f).squaredNorm();
+      most = std::max(most, sizes_[at(f)]);
+    }
+    std::vector<Pop> pops;
+    if (most < threshold_ * threshold_) return pops;
+    for (float& size : sizes_) size = std::sqrt(size);
+    const UsualSize usual(sizes_, block_);
+    int last = -kNeighbours;
+    float last_score = 0;
+    for (int f = 1; f + 1 < frames; ++f) {
+      if (sizes_[at(f)] < threshold_) continue;
+      const Match match = best_at(f, usual.at_frame(f));
+      if (match.score < 1) continue;
+      // Templates also match beside the jump, less well.
+      if (f - last > 3) {
+        pops.push_back(match.pop);
+      } else if (match.score > last_score) {
+        pops.back() = match.pop;
+      } else {
+        continue;
+      }
+      last = f, last_score = match.score;
+    }
+    return pops;
+  }
+
+ private:
+  Vec3f acceleration(int frame) const { return turns_[at(frame + 1)] - turns_[at(frame)]; }
+
+  float largest_beside(int first, int last) const {
+    float most = 0;
+    for (int n = 1; n <= kNeighbours; ++n) {
+      if (first - n >= 1) most = std::max(most, sizes_[at(first - n)]);
+      if (last + n + 1 < static_cast<int>(turns_.size())) {
+        most = std::max(most, sizes_[at(last + n)]);
+      }
+    }
+    return most;
+  }
+
+  // The template that begins at a frame and fits best.
+  Match best_at(int first, float usual) const {
+    Match best;
+    const int frames = static_cast<int>(turns_.size());
+    for (const Template& shape : kTemplates) {
+      const int last = first + shape.length - 1;
+      if (first < 3 || last + 3 >= frames) continue;
+      Vec3f size = Vec3f::Zero();
+      float norm = 0;
+      for (int i = 0; i < shape.length; ++i) {
+        const float weight = shape.weights[at(i)];
+        size += weight * acceleration(first + i);
+        norm += weight * weight;
+      }
+      size /= norm;
+      float rest = largest_beside(first, last);
+      for (int i = 0; i < shape.length; ++i) {
+        rest = std::max(rest, (acceleration(first + i) - shape.weights[at(i)] * size).norm());
+      }
+      const float value = size.norm();
+      if (value < threshold_) continue;
+      const float score = std::min(value / (shape.over_rest * std::max(rest, 1e-6F)),
+                                   value / (shape.over_usual * std::max(usual, 1e-6F)));
+      if (score > best.score) {
+        best = {{shape.kind, first, last, first + 1, value}, score};
+      }
+    }
+    // A change of speed alone.
+    const float rest = largest_beside(first, first);
+    if (best.score < 1 && first >= 3 && first + 3 < frames &&
+        sizes_[at(first)] > kTimesNeighbours * rest && sizes_[at(first)] > kTimesUsual * usual) {
+      best = {{PopKind::kink, first, first, first, sizes_[at(first)]}, 1};
+    }
+    return best;
+  }
+
+  std::span<const Vec3f> turns_;
+  float threshold_;
+  int block_;
+  std::vector<float>& sizes_;
+};
+
+std::vector<Pop> pops_of(std::span<const Vec3f> turns, float threshold, int block,
+                         std::vector<float>& sizes) {
+  return PopFinder(turns, threshold, block, sizes).find();
+}
+
+// Joints that turn anywhere, and are more than the mark of a bone's end.
+std::vector<int> moving(const Series& series) {
+  std::vector<int> joints;
+  for (int j = 0; j < series.joints; ++j) {
+    if (series.clip.skeleton.end_sites[at(j)] != 0) continue;
+    const auto turns = series.turns_of(j);
+    if (std::ranges::any_of(turns, [](const Vec3f& t) { return t.squaredNorm() > 1e-6F; })) {
+      joints.push_back(j);
+    }
+  }
+  return joints;
+}
+
+// The angle between a rotation's axis and the bone, 0 to 90 degrees: small for a turn about it.
+bool about_own_bone(const Series& series, int joint, const Vec3f& turn) {
+  const auto& parents = series.clip.skeleton.parents;
+  const auto child = std::ranges::find(parents, joint);
+  const int parent = parents[at(joint)];
+  if (child == parents.end() || parent < 0) return false;
+  const Transform bone =
+      series.clip.skeleton.reference_local(static_cast<int>(child - parents.begin()));
+  const Quat joint_to_parent = series.clip.skeleton.reference_local(joint).orientation;
+  const Vec3 along = joint_to_parent * bone.position;
+  if (along.norm() < 1e-6) return false;
+  return std::abs(along.normalized().dot(turn.normalized().cast<double>())) > 0.87;
+}
+
+void find_flips(const Series& series, int joint, std::span<const Vec3f> turns,
+                std::vector<Finding>& flips) {
+  // Turns are twice the sine of half the angle.
+  const double degrees = std::min(179.0, series.threshold(Rule::flip));
+  const auto limit = static_cast<float>(2 * std::sin(degrees * kRadiansPerDegree / 2));
+  for (int f = 1; f < series.frames; ++f) {
+    const float size = turns[at(f)].norm();
+    if (size < limit) continue;
+    Finding finding;
+    finding.rule = Rule::flip;
+    finding.kind = about_own_bone(series, joint, turns[at(f)]) ? "twist" : "limb";
+    finding.joint = joint;
+    finding.first = f - 1, finding.last = finding.worst = f;
+    finding.value = 2 * std::asin(std::min(1.0F, size / 2)) / kRadiansPerDegree;
+    finding.threshold = degrees, finding.unit = "deg";
+    flips.push_back(finding);
+  }
+}
+
+}  // namespace
+
+void find_rotation_faults(const Series& series, MotionFaults& out) {
+  const int block = series.frames_in(1, 21);
+  const double degrees = series.threshold(Rule::pop);
+  std::vector<Finding> flips, pops, kinks, found;
+  std::vector<float> sizes;
+  const std::vector<int> joints = moving(series);
+  const auto add = [&](const Pop& pop, int joint, bool path) {
+    Finding finding;
+    finding.rule = Rule::pop;
+    finding.kind = pop.kind == PopKind::spike ? "spike" : "step";
+    finding.joint = joint;
+    finding.first = pop.first, finding.last = pop.last, finding.worst = pop.worst;
+    finding.value = path ? pop.value : pop.value / kRadiansPerDegree;
+    finding.threshold = path ? kMinPath * series.scale : degrees;
+    finding.unit = path ? "m" : "deg";
+    if (path) finding.detail = "path of the hips";
+    (pop.kind == PopKind::kink ? kinks : pops).push_back(std::move(finding));
+  };
+  for (const int j : joints) {
+    const auto turns = series.turns_of(j);
+    if (series.has(Rule::flip)) find_flips(series, j, turns, flips);
+    // Toes spring back within a frame or two when they leave the ground.
+    const Role role = series.roles.roles[at(j)];
+    if (!series.has(Rule::pop) || role == Role::left_toes || role == Role::right_toes) continue;
+    for (const Pop& pop :
+         pops_of(turns, static_cast<float>(degrees * kRadiansPerDegree), block, sizes)) {
+      add(pop, j, false);
+    }
+  }
+  if (series.has(Rule::pop)) {
+    for (const Pop& pop :
+         pops_of(series.steps, static_cast<float>(kMinPath * series.scale), block, sizes)) {
+      if (pop.kind != PopKind::kink) add(pop, series.carrier, true);
+    }
+  }
+  // A flip is a pop, too, and what belongs to one rest frame is neither.
+  const bool rest = std::ranges::any_of(
+      out.findings, [](const Finding& finding) { return finding.rule == Rule::rest_frame; });
+  std::erase_if(pops, [&](const Finding& pop) {
+    return (rest && pop.first <= 2) || std::ranges::any_of(flips, [&](const Finding& flip) {
+             return flip.joint == pop.joint && flip.last >= pop.first && flip.first <= pop.last;
+           });
+  });
+  merge_joints(flips, 0);
+  // Where a third of the body jumps or changes its speed at once, two takes were joined.
+  std::vector<int> at_once(at(series.frames), 0);
+  for (const auto* list : {&pops, &kinks}) {
+    for (const Finding& pop : *list) {
+      if (pop.kind == "step") ++at_once[at(pop.worst)];
+    }
+  }
+  const double enough = std::max(4.0, kSeamJoints * static_cast<double>(joints.size()));
+  for (auto* list : {&pops, &kinks}) {
+    for (Finding& pop : *list) {
+      if (pop.kind != "step") continue;
+      int joints_here = 0;
+      for (int f = pop.worst - 1; f <= pop.worst + 1; ++f) {
+        if (f >= 0 && f < series.frames) joints_here += at_once[at(f)];
+      }
+      if (joints_here >= enough) pop.kind = "seam";
+    }
+  }
+  std::erase_if(kinks, [](const Finding& kink) { return kink.kind != "seam"; });
+  pops.insert(pops.end(), kinks.begin(), kinks.end());
+  merge_joints(pops, 0);
+  out.findings.insert(out.findings.end(), flips.begin(), flips.end());
+  out.findings.insert(out.findings.end(), pops.begin(), pops.end());
+}
+
+}  // namespace krok::lint

@@ -1,0 +1,60 @@
+#include "lint/rules.h"
+
+#include <algorithm>
+
+namespace krok::lint {
+
+namespace {
+
+constexpr auto kError = Severity::error;
+constexpr auto kWarning = Severity::warning;
+
+constexpr std::array<RuleFacts, kRuleCount> kRules = {{
+    {Rule::unreadable, "unreadable", kError, 0, "", "The file cannot be read"},
+    {Rule::unit, "unit", kError, 2, "", "The body is far taller or shorter than people are"},
+    {Rule::frame_rate, "frame-rate", kError, 1.55, "",
+     "The motion plays at another speed than it was captured, or frames are doubled"},
+    {Rule::flip, "flip", kError, 90, "deg", "A joint turns half round within a frame"},
+    {Rule::pop, "pop", kError, 4, "deg", "A joint jumps: a spike, a step, or a seam of two takes"},
+    {Rule::frozen, "frozen", kError, 0.15, "s", "The whole body stands still, to the last digit"},
+    {Rule::jitter, "jitter", kWarning, 0.8, "deg", "Joints shake from frame to frame"},
+    {Rule::over_smooth, "over-smooth", kWarning, 10, "",
+     "A stretch has lost the detail that the rest of the motion has"},
+    {Rule::foot_slide, "foot-slide", kWarning, 0.04, "m", "A foot slides while it stands"},
+    {Rule::drift, "drift", kWarning, 0.1, "m",
+     "The whole body is carried off while the feet stand"},
+    {Rule::ground, "ground", kWarning, 0.06, "m", "Feet sink into the ground or float above it"},
+    {Rule::bone_length, "bone-length", kError, 2, "%", "A bone changes its length"},
+    {Rule::joint_limit, "joint-limit", kWarning, 15, "deg", "A knee bends forwards"},
+    {Rule::loop_seam, "loop-seam", kWarning, 3, "deg",
+     "The last pose of a loop does not lead to the first"},
+    {Rule::rest_frame, "rest-frame", kWarning, 0, "", "The first frame is a rest pose"},
+    {Rule::asymmetric_rest_pose, "asymmetric-rest-pose", kWarning, 4, "%",
+     "Left and right limbs of the reference pose differ in length"},
+    {Rule::duplicate, "duplicate", kWarning, 4, "deg", "The same motion is in two files"},
+}};
+
+}  // namespace
+
+std::span<const RuleFacts, kRuleCount> rules() {
+  return kRules;
+}
+
+const RuleFacts& facts_of(Rule rule) {
+  return kRules[static_cast<std::size_t>(rule)];
+}
+
+std::optional<Rule> find_rule(std::string_view id) {
+  const auto found = std::ranges::find(kRules, id, &RuleFacts::id);
+  if (found == kRules.end()) return std::nullopt;
+  return found->rule;
+}
+
+Settings::Settings() {
+  enabled.fill(true);
+  for (const RuleFacts& facts : kRules) {
+    thresholds[static_cast<std::size_t>(facts.rule)] = facts.threshold;
+  }
+}
+
+}  // namespace krok::lint

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "core/result.h"
+
+// The rules of krok-lint, in one table.
+
+namespace krok::lint {
+
+enum class Rule : std::uint8_t {
+  unreadable,
+  unit,
+  frame_rate,
+  flip,
+  pop,
+  frozen,
+  jitter,
+  over_smooth,
+  foot_slide,
+  drift,
+  ground,
+  bone_length,
+  joint_limit,
+  loop_seam,
+  rest_frame,
+  asymmetric_rest_pose,
+  duplicate
+};
+inline constexpr std::size_t kRuleCount = 17;
+
+struct RuleFacts {
+  Rule rule;
+  std::string_view id;  // "foot-slide"
+  Severity severity;
+  // A fault is a value above it; of frame-rate and unit also one below its inverse. In `unit`.
+  // Lengths of motions are those of a body with legs of 0.86 m and scale with the legs.
+  double threshold;
+  std::string_view unit;     // "m", "deg", "s", "%", or "" for factors and counts
+  std::string_view meaning;  // one line
+};
+
+// In the order of Rule.
+std::span<const RuleFacts, kRuleCount> rules();
+const RuleFacts& facts_of(Rule rule);
+std::optional<Rule> find_rule(std::string_view id);
+
+// Which rules run, and their thresholds.
+struct Settings {
+  std::array<bool, kRuleCount> enabled{};
+  std::array<double, kRuleCount> thresholds{};
+
+  // All rules with their own thresholds.
+  Settings();
+  bool has(Rule rule) const { return enabled[static_cast<std::size_t>(rule)]; }
+  double threshold(Rule rule) const { return thresholds[static_cast<std::size_t>(rule)]; }
+};
+
+}  // namespace krok::lint

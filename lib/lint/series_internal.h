@@ -1,0 +1,51 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "lint/lint.h"
+
+// What the rules of one motion share.
+
+namespace krok::lint {
+
+// A motion as the rules look at it.
+struct Series {
+  const Clip& clip;
+  const RoleMap& roles;
+  const MotionOptions& options;
+  int joints = 0, frames = 0;
+  double rate = 30;
+  double scale = 1;  // legs as a multiple of 0.86 m; 1 if they are not known
+  int carrier = 0;   // carrying_joint()
+
+  // Rotation of each joint in its parent (the root's in the world) from the frame before, radians:
+  // twice the vector part of its quaternion, shape [joints x frames], joint by joint; the first of
+  // each is zero.
+  std::vector<Vec3f> turns;
+  std::vector<Vec3f> steps;  // [frames] of the carrier, metres; the first is zero
+  std::vector<float> moved;  // [frames], the largest turn (rad) or step (m) of all joints
+
+  Series(const Clip& clip, const RoleMap& roles, const MotionOptions& options);
+  std::span<const Vec3f> turns_of(int joint) const;
+  int frames_in(double seconds, int at_least) const;
+
+  bool has(Rule rule) const { return options.settings.has(rule); }
+  double threshold(Rule rule) const { return options.settings.threshold(rule); }
+};
+
+// Radians or metres a frame, more than rounding leaves of a pose that is held.
+inline constexpr float kStill = 2e-5F;
+
+// One finding for all joints with the same fault at the same time: of findings of one rule and kind
+// that overlap in time (or are `near` frames apart) the worst stays and counts the others' joints.
+void merge_joints(std::vector<Finding>& findings, int near);
+
+void find_rotation_faults(const Series& series, MotionFaults& out);  // pop, flip
+void find_noise_faults(const Series& series, MotionFaults& out);     // jitter, over-smooth, frozen
+void find_foot_faults(const Series& series, MotionFaults& out);      // foot-slide, drift, ground
+void find_body_faults(const Series& series, MotionFaults& out);      // bones, limits, poses, unit
+void find_rate_faults(const Series& series, MotionFaults& out);  // doubled frames, swings, falls
+
+}  // namespace krok::lint

@@ -1,0 +1,138 @@
+// If these fail, krok-lint answers scripts and CI wrongly: exit codes, formats, what is left out.
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "cli/motion_fixture.h"
+#include "core/index.h"
+#include "math/quaternion.h"
+#include "motion/local_motion.h"
+
+namespace krok::lint_test {
+namespace {
+
+using namespace test;
+
+using testing::HasSubstr;
+using testing::Not;
+
+class KrokLint : public MotionTest {
+ protected:
+  // A walk whose left forearm jumps away and back at 2 s.
+  Clip write_spiked(const std::string& name) const {
+    Clip clip = write_walk(8);
+    LocalMotion local = local_motion(clip);
+    auto turns = local.joint_orientations(clip.skeleton.find("LeftForeArm"));
+    turns[120] = turns[120] * from_rotation_vector(Vec3(0, 0.5, 0.2));
+    set_local_motion(local, clip);
+    write(name, clip);
+    return clip;
+  }
+  void write_text(const std::string& name, const std::string& text) const {
+    auto file = OutputFile::create(path(name));
+    ASSERT_TRUE(file.ok() && file->write(text).ok() && file->commit().ok());
+  }
+  std::string text_of(const std::string& name) const {
+    return std::string(InputFile::open(path(name))->text());
+  }
+};
+
+TEST_F(KrokLint, ExitCodesTellCleanFaultyUnreadableAndPartly) {
+  write_walk(8);
+  EXPECT_EQ(run_here("krok-lint", {"walk.anim"}).exit_code, 0);
+  write_spiked("spiked.anim");
+  const ToolRun faulty = run_here("krok-lint", {"walk.anim", "spiked.anim"});
+  EXPECT_EQ(faulty.exit_code, 1);
+  EXPECT_THAT(faulty.out, HasSubstr("spiked.anim: 2.00 s: error: LeftForeArm, spike: "));
+  EXPECT_THAT(faulty.out, HasSubstr("[pop]"));
+  EXPECT_THAT(faulty.out, HasSubstr("the same motion as walk.anim [duplicate]"));
+  EXPECT_THAT(faulty.err, HasSubstr("2 files, 1 with faults: 1 error, 1 warning"));
+  write_text("broken.bvh", "HIERARCHY\nROOT");
+  EXPECT_EQ(run_here("krok-lint", {"broken.bvh"}).exit_code, 2);
+  const ToolRun partly = run_here("krok-lint", {"walk.anim", "broken.bvh"});
+  EXPECT_EQ(partly.exit_code, 3);
+  EXPECT_THAT(partly.out, HasSubstr("[unreadable]"));
+  EXPECT_EQ(run_here("krok-lint", {}).exit_code, 2);
+}
+
+TEST_F(KrokLint, RulesAreChosen) {
+  write_spiked("spiked.anim");
+  EXPECT_EQ(run_here("krok-lint", {"spiked.anim", "--ignore", "pop"}).exit_code, 0);
+  EXPECT_EQ(run_here("krok-lint", {"spiked.anim", "--only", "flip"}).exit_code, 0);
+  EXPECT_EQ(run_here("krok-lint", {"spiked.anim", "--only", "pop"}).exit_code, 1);
+  const ToolRun unknown = run_here("krok-lint", {"spiked.anim", "--only", "popp"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean"));
+  write_text("loose.json",
+             R"({"schema": "krok.lint-profile/1", "rules": [{"rule": "pop", "limit": 60}]})");
+  EXPECT_EQ(run_here("krok-lint", {"spiked.anim", "--profile", "loose.json"}).exit_code, 0);
+  write_text("wrong.json", R"({"schema": "krok.lint-profile/1", "rules": [{"rule": "plop"}]})");
+  EXPECT_THAT(run_here("krok-lint", {"spiked.anim", "--profile", "wrong.json"}).err,
+              HasSubstr("'plop' is no rule"));
+}
+
+TEST_F(KrokLint, SuppressionsNeedAReason) {
+  write_spiked("spiked.anim");
+  write_text("spiked.lint.json", R"({"schema": "krok.lint-suppressions/1", "suppressions": [
+    {"rule": "pop", "from": 1.9, "to": 2.1, "reason": "the actor flinches"}]})");
+  const ToolRun run = run_here("krok-lint", {"spiked.anim"});
+  EXPECT_EQ(run.exit_code, 0) << run.out;
+  EXPECT_THAT(run.err, HasSubstr("1 suppressed"));
+  write_text("spiked.lint.json", R"({"schema": "krok.lint-suppressions/1", "suppressions": [
+    {"rule": "pop", "reason": " "}]})");
+  const ToolRun without = run_here("krok-lint", {"spiked.anim"});
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_THAT(without.out, HasSubstr("reason"));
+}
+
+TEST_F(KrokLint, BaselinesHoldUnderExportResamplingAndUnits) {
+  write_spiked("spiked.anim");
+  ASSERT_EQ(run_here("krok-lint", {"spiked.anim", "--save-baseline", "known.json"}).exit_code, 1);
+  std::filesystem::create_directory(path("other"));
+  ASSERT_EQ(run_here("krok-export", {"spiked.anim", "-o", "other/spiked.bvh"}).exit_code, 0);
+  const ToolRun exported = run_here("krok-lint", {"other/spiked.bvh", "--baseline", "known.json"});
+  EXPECT_EQ(exported.exit_code, 0) << exported.out;
+  EXPECT_THAT(exported.err, HasSubstr("1 known"));
+  // A new fault fails.
+  write_spiked("new.anim");
+  EXPECT_EQ(run_here("krok-lint", {"new.anim", "--baseline", "known.json"}).exit_code, 1);
+}
+
+TEST_F(KrokLint, ReportsAreWhatOtherProgramsRead) {
+  write_spiked("spi ked.anim");
+  write_text("broken.bvh", "HIERARCHY\nROOT");
+  const ToolRun run = run_here(
+      "krok-lint", {"spi ked.anim", "walk.anim", "broken.bvh", "--sarif", "out.sarif", "--junit",
+                    "out.xml", "--table", "out.csv", "--json", "--ignore", "duplicate"});
+  EXPECT_EQ(run.exit_code, 3);
+  const json report = json::parse(run.out)["result"];
+  EXPECT_EQ(report["errors"], 1);
+  EXPECT_EQ(report["unreadable"], 1);
+  const json sarif = json::parse(text_of("out.sarif"));
+  EXPECT_EQ(sarif["version"], "2.1.0");
+  const json& results = sarif["runs"][0]["results"];
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(results[0]["ruleId"], "unreadable");
+  EXPECT_EQ(results[1]["ruleId"], "pop");
+  EXPECT_EQ(results[1]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"],
+            "spi%20ked.anim");
+  EXPECT_EQ(results[1]["partialFingerprints"]["krokLint/v1"],
+            report["files"][1]["faults"][0]["fingerprint"]);
+  const std::string junit = text_of("out.xml");
+  EXPECT_THAT(junit, HasSubstr("failures=\"1\" errors=\"1\""));
+  EXPECT_THAT(junit, HasSubstr("name=\"pop\"><failure type=\"error\""));
+  EXPECT_THAT(text_of("out.csv"), HasSubstr("spi ked.anim,pop,spike,error,2,120,LeftForeArm,1,"));
+}
+
+TEST_F(KrokLint, AnyNumberOfThreadsGivesTheSame) {
+  write_spiked("spiked.anim");
+  const std::vector<std::string> inputs = {"walk.anim", "spiked.anim", "walk.anim"};
+  std::vector<std::string> one = inputs, three = inputs;
+  one.insert(one.end(), {"-j", "1", "--json"});
+  three.insert(three.end(), {"-j", "3", "--json"});
+  EXPECT_EQ(run_here("krok-lint", one).out, run_here("krok-lint", three).out);
+}
+
+}  // namespace
+}  // namespace krok::lint_test

@@ -1,0 +1,224 @@
+// The style of real steps on top of smoothed weights, and sums of examples. If these fail, walks
+// from many captures look like nobody, mix what several people do, are not the same again, or long
+// walks differ from what the weights say.
+
+#include <gmock/gmock.h>
+
+#include "core/index.h"
+#include "gait/step_style_internal.h"
+#include "math/euler.h"
+#include "math/quaternion.h"
+#include "parametric/example_sums.h"
+#include "unit/gait/walkers.h"
+
+namespace krok::gait {
+namespace {
+
+constexpr double kHunched = 0.5;  // radians
+
+// The chest and all above it turned forward about the chest, in every frame.
+void hunch(Clip& clip) {
+  const int chest = find_roles(clip.skeleton).joint(Role::chest);
+  ASSERT_GE(chest, 0);
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    clip.get_pose(f, pose);
+    const Quat turn = axis_rotation(Axis::x, kHunched);
+    const Vec3 about = pose[at(chest)].position;
+    for (int j = 0; j < clip.joint_count(); ++j) {
+      if (j != chest && !is_below(clip.skeleton, j, chest)) continue;
+      pose[at(j)].position = about + turn * (pose[at(j)].position - about);
+      pose[at(j)].orientation = turn * pose[at(j)].orientation;
+    }
+    clip.set_pose(f, pose);
+  }
+}
+
+// Ten noisy walks, every second one hunched; their steps, which contradict each other, smoothed.
+StepLibrary noisy_library(double smoothing = 10) {
+  std::vector<parametric::test::KeyedWalk> walks;
+  for (int i = 0; i < 10; ++i) {
+    samples::WalkOptions options;
+    options.steps = 8;
+    options.step_length = 0.5 + 0.03 * i;
+    options.noise_angle = 0.002;
+    options.seed = static_cast<std::uint64_t>(i) + 1;
+    walks.push_back(parametric::test::keyed_walk(options));
+    if (i % 2 == 1) hunch(walks.back().walk.clip);
+  }
+  auto library =
+      parametric::test::library_of(walks, {"step.length"}, {.mirror = true, .outlier = 0}).library;
+  std::vector<double> parameters;
+  for (auto& example : library.examples) {
+    const bool is_hunched = (example.name[4] - '0') % 2 == 1;  // "walk3 2 left"
+    example.name = (is_hunched ? "Hunched " : "upright ") + example.name;
+    parameters.insert(parameters.end(), example.parameters.begin(), example.parameters.end());
+  }
+  rbf::SolverOptions options;
+  options.smoothing = smoothing;
+  const auto solver = rbf::WeightSolver::create(1, parameters, options);
+  EXPECT_TRUE(solver.ok());
+  const RoleMap roles = find_roles(library.skeleton);
+  auto made = StepLibrary::create("noisy", std::move(library), solver->function(), roles);
+  EXPECT_TRUE(made.ok()) << made.error().message;
+  return *std::move(made);
+}
+
+std::span<const StepLibrary> noisy() {
+  static const std::vector<StepLibrary> kLibraries = [] {
+    std::vector<StepLibrary> libraries;
+    libraries.push_back(noisy_library());
+    return libraries;
+  }();
+  return kLibraries;
+}
+
+WalkOptions seeded(std::uint64_t seed) {
+  WalkOptions options;
+  options.seed = seed;
+  return options;
+}
+
+WholeWalk walked(const WalkOptions& options, int steps = 8) {
+  auto made =
+      walk(noisy(), test::prints_of({.steps = steps, .length = 0.62}), test::slope(0), options);
+  EXPECT_TRUE(made.ok()) << made.error().message;
+  return *std::move(made);
+}
+
+// Radians by which the chest leans forward, mean over the middle of the walk.
+double lean(const Clip& clip) {
+  const int chest = find_roles(clip.skeleton).joint(Role::chest);
+  double sum = 0;
+  int count = 0;
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  for (int f = clip.frame_count() / 3; f < 2 * clip.frame_count() / 3; ++f, ++count) {
+    clip.get_pose(f, pose);
+    const Vec3 up = pose[at(chest)].orientation * Vec3::UnitY();
+    sum += std::atan2(up.z(), up.y());
+  }
+  return sum / count;
+}
+
+// Would fail if a step were still the average of all captures, or took the style of others.
+TEST(StepStyle, IsThatOfTheNamedCaptures) {
+  WalkOptions options;
+  options.variation = 1;
+  options.style_of = "hunched";  // in any case
+  const double hunched = lean(walked(options).clip);
+  options.style_of = "UPRIGHT";
+  const double upright = lean(walked(options).clip);
+  options.style_of.clear();
+  options.variation = 0;
+  const double average = lean(walked(options).clip);
+  EXPECT_NEAR(hunched - upright, kHunched, 0.1 * kHunched);
+  EXPECT_NEAR(average - upright, 0.5 * kHunched, 0.15 * kHunched);
+  options.variation = 1;
+  options.style_of = "hunched";
+  const WalkDetails details = walked(options).details;
+  EXPECT_FALSE(details.steps.front().example.empty());
+  for (const StepReport& step : details.steps) {
+    // The last one comes to stand, which no example does.
+    if (step.example.empty() && &step == &details.steps.back()) continue;
+    EXPECT_THAT(step.example, testing::StartsWith("Hunched ")) << step.stance;
+  }
+}
+
+// Would fail if a walk changed its style from step to step.
+TEST(StepStyle, IsOneForTheWholeWalk) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const WalkDetails details = walked(seeded(seed)).details;
+    for (const StepReport& step : std::span(details.steps).first(details.steps.size() - 1)) {
+      EXPECT_EQ(step.example.substr(0, 7), details.steps.front().example.substr(0, 7)) << seed;
+    }
+  }
+}
+
+TEST(StepStyle, VariesStepsAndDurationsBySeedAndIsTheSameAgain) {
+  const WholeWalk first = walked(seeded(3)), again = walked(seeded(3));
+  EXPECT_EQ(first.clip.positions, again.clip.positions);
+  const WholeWalk other = walked(seeded(4));
+  EXPECT_NE(first.clip.positions, other.clip.positions);
+  // Prints are met whatever the style.
+  for (const WholeWalk* one : {&first, &other}) {
+    for (const StepReport& step : one->details.steps) EXPECT_LT(step.missed, 1e-6);
+  }
+}
+
+// Would fail if the variation changed walks whose weights meet their examples.
+TEST(StepStyle, ChangesNothingWhereWeightsMeetTheExamples) {
+  const auto prints = test::prints_of({});
+  const test::Ground level = test::slope(0);
+  const auto with = walk(test::walking(), prints, level, {});
+  WalkOptions average;
+  average.variation = 0;
+  const auto without = walk(test::walking(), prints, level, average);
+  ASSERT_TRUE(with.ok() && without.ok());
+  EXPECT_EQ(with->clip.positions, without->clip.positions);
+}
+
+TEST(StepStyle, RefusesACaptureThatTheLibraryLacks) {
+  WalkOptions options;
+  options.style_of = "tired";
+  const auto made = walk(noisy(), test::prints_of({}), test::slope(0), options);
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().code, "walk-style");
+  EXPECT_THAT(made.error().hint, testing::HasSubstr("Hunched walk1"));
+}
+
+// Poses of blends from sums against the blends themselves. Would fail if sums left out more than
+// they say, or were in another hemisphere or time than the examples.
+TEST(ExampleSums, MakeTheSamePoses) {
+  const parametric::Synthesiser& steps = noisy().front().steps(FootSide::left);
+  const std::size_t examples = steps.library().examples.size();
+  ASSERT_GE(examples, at(parametric::ExampleSums::kMinExamples));
+  std::vector<std::vector<double>> rows;
+  for (int i = 0; i <= 20; ++i) {
+    auto made = steps.weights(std::vector{0.5 + 0.013 * i}, {true, 3});
+    ASSERT_TRUE(made.ok());
+    rows.push_back(std::move(made->weights));
+  }
+  const std::vector<std::span<const double>> spans(rows.begin(), rows.end());
+  const auto sums = parametric::ExampleSums::create(steps.packed(), spans);
+  ASSERT_TRUE(sums.has_value());
+  EXPECT_LE(sums->count(), 12);
+  const int apart = 5;
+  double position = 0, angle = 0;
+  for (const double share : {0.0, 1.0}) {
+    for (const auto& row : rows) {
+      std::vector<double> weights = row;
+      for (double& weight : weights) weight *= 1 - share;
+      weights[apart] += share;
+      const auto plain = steps.motion(weights);
+      auto summed = steps.motion(weights);
+      ASSERT_TRUE(plain.ok() && summed.ok());
+      ASSERT_TRUE(summed->use(*sums, share > 0 ? apart : -1, share));
+      auto scratch = plain->make_scratch();
+      std::vector<PoseBlock> a(scratch.reference.size()), b(a.size());
+      std::vector<Transform> pose(steps.packed().skeleton.names.size()), other(pose.size());
+      for (int k = 0; k <= 50; ++k) {
+        plain->pose(plain->duration() * k / 50, a, scratch);
+        summed->pose(summed->duration() * k / 50, b, scratch);
+        unpack_pose(a, pose);
+        unpack_pose(b, other);
+        for (std::size_t j = 0; j < pose.size(); ++j) {
+          position = std::max(position, (pose[j].position - other[j].position).norm());
+          angle = std::max(angle, angle_between(pose[j].orientation, other[j].orientation));
+        }
+      }
+    }
+  }
+  // What is left out, and what interpolation differs by where examples have a corner at a frame, as
+  // toes do when they strike: a quarter of a degree.
+  EXPECT_LT(position, 5 * parametric::ExampleSums::kMaxLeftOut);
+  EXPECT_LT(angle, 0.25 * kRadiansPerDegree);
+  // A row that they do not span is not used.
+  std::vector<double> one(examples, 0);
+  one[apart] = 1;
+  auto alone = steps.motion(one);
+  ASSERT_TRUE(alone.ok());
+  EXPECT_FALSE(alone->use(*sums));
+}
+
+}  // namespace
+}  // namespace krok::gait

@@ -1,0 +1,304 @@
+// If these fail, krok-lint misses a fault that was put into a clean motion, names it wrongly, or
+// blames a motion that has none.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+
+#include "core/index.h"
+#include "lint/duplicates.h"
+#include "lint/lint.h"
+#include "math/quaternion.h"
+#include "motion/local_motion.h"
+#include "samples/generator/walk.h"
+
+namespace krok::lint_test {
+namespace {
+
+using lint::Rule;
+using samples::WalkOptions;
+
+Clip walk_of(WalkOptions options) {
+  auto made = samples::make_walk(options);
+  EXPECT_TRUE(made.ok());
+  return std::move(made->clip);
+}
+
+Clip usual_walk(double rate = 60) {
+  WalkOptions options;
+  options.steps = 10;
+  options.rate = rate;
+  // As much as optical captures have: a motion without any noise is none.
+  options.noise_angle = 0.05 * kRadiansPerDegree;
+  return walk_of(options);
+}
+
+lint::MotionFaults faults_of(const Clip& clip, const lint::MotionOptions& options = {}) {
+  return lint::lint_motion(clip, find_roles(clip.skeleton), options);
+}
+
+std::string listed(const Clip& clip, const lint::MotionFaults& faults) {
+  std::string text;
+  for (const lint::Finding& f : faults.findings) {
+    text += std::string(facts_of(f.rule).id) + " " + f.kind + " " +
+            (f.joint >= 0 ? clip.skeleton.names[at(f.joint)] : "body") + " at " +
+            std::to_string(f.worst) + ": " + std::to_string(f.value) + "\n";
+  }
+  return text;
+}
+
+const lint::Finding* find(const lint::MotionFaults& faults, Rule rule, int frame) {
+  for (const lint::Finding& finding : faults.findings) {
+    if (finding.rule == rule && finding.first - 2 <= frame && frame <= finding.last + 2) {
+      return &finding;
+    }
+  }
+  return nullptr;
+}
+
+using Change = std::function<void(LocalMotion&, Clip&)>;
+
+Clip changed(const Clip& clip, const Change& change) {
+  LocalMotion local = local_motion(clip);
+  Clip result = clip;
+  change(local, result);
+  set_local_motion(local, result);
+  return result;
+}
+
+TEST(LintClean, GeneratedWalksHaveNoFault) {
+  for (const double rate : {24.0, 30.0, 60.0, 120.0}) {
+    const Clip clip = usual_walk(rate);
+    const auto faults = faults_of(clip);
+    EXPECT_TRUE(faults.findings.empty()) << rate << " fps\n" << listed(clip, faults);
+  }
+}
+
+TEST(LintClean, SlowFastAndTurningWalksHaveNoFault) {
+  for (const double length : {0.45, 0.7, 0.9}) {
+    for (const double turn : {0.0, 12.0}) {
+      WalkOptions options;
+      options.steps = 10;
+      options.step_length = length;
+      options.turn = turn * kRadiansPerDegree;
+      const Clip clip = walk_of(options);
+      const auto faults = faults_of(clip);
+      EXPECT_TRUE(faults.findings.empty()) << length << " m, " << turn << " degrees\n"
+                                           << listed(clip, faults);
+    }
+  }
+}
+
+struct Seeded {
+  const char* name;
+  Rule rule;
+  std::string kind;
+  Change change;
+};
+
+constexpr int kAt = 150;  // frame, of a walk at 60 frames a second
+
+Quat turn(double degrees) {
+  return from_rotation_vector(Vec3(0.6, 0.0, 0.8) * degrees * kRadiansPerDegree);
+}
+
+std::vector<Seeded> seeded_faults() {
+  const auto joint = [](const Clip& clip, const char* name) {
+    const int found = clip.skeleton.find(name);
+    EXPECT_GE(found, 0) << name;
+    return found;
+  };
+  return {
+      {"spike", Rule::pop, "spike",
+       [=](LocalMotion& m, Clip& clip) {
+         auto all = m.joint_orientations(joint(clip, "LeftForeArm"));
+         all[kAt] = all[kAt] * turn(15);
+       }},
+      {"step", Rule::pop, "step",
+       [=](LocalMotion& m, Clip& clip) {
+         auto all = m.joint_orientations(joint(clip, "RightArm"));
+         for (std::size_t f = kAt; f < all.size(); ++f) all[f] = all[f] * turn(12);
+       }},
+      {"seam", Rule::pop, "seam",
+       [](LocalMotion& m, Clip&) {
+         for (int j = 1; j < m.joints; ++j) {
+           auto all = m.joint_orientations(j);
+           for (std::size_t f = kAt; f < all.size(); ++f) all[f] = all[f] * turn(10);
+         }
+       }},
+      {"jump of the hips", Rule::pop, "step",
+       [](LocalMotion& m, Clip&) {
+         auto all = m.joint_positions(0);
+         for (std::size_t f = kAt; f < all.size(); ++f) all[f] += Vec3(0, 0, 0.2);
+       }},
+      {"flip", Rule::flip, "",
+       [=](LocalMotion& m, Clip& clip) {
+         auto all = m.joint_orientations(joint(clip, "LeftArm"));
+         for (std::size_t f = kAt; f < kAt + 20; ++f) all[f] = all[f] * turn(170);
+       }},
+      {"frozen", Rule::frozen, "",
+       [](LocalMotion& m, Clip&) {
+         for (int j = 0; j < m.joints; ++j) {
+           for (int f = kAt; f < kAt + 15; ++f) m.set(j, f, m.at(j, kAt));
+         }
+       }},
+      {"jitter", Rule::jitter, "",
+       [=](LocalMotion& m, Clip& clip) {
+         std::mt19937 random(1);
+         std::normal_distribution<double> noise(0, 3 * kRadiansPerDegree);
+         auto all = m.joint_orientations(joint(clip, "Spine"));
+         for (std::size_t f = kAt; f < kAt + 60; ++f) {
+           all[f] = all[f] * from_rotation_vector({noise(random), noise(random), noise(random)});
+         }
+       }},
+      {"slide", Rule::foot_slide, "",
+       [](LocalMotion& m, Clip&) {
+         auto all = m.joint_positions(0);
+         const std::vector<Vec3> before(all.begin(), all.end());
+         for (std::size_t f = 1; f < all.size(); ++f) {
+           const double factor = f > kAt && f < kAt + 80 ? 1.3 : 1;
+           Vec3 step = before[f] - before[f - 1];
+           step.x() *= factor, step.z() *= factor;
+           all[f] = all[f - 1] + step;
+         }
+       }},
+      {"bone", Rule::bone_length, "",
+       [=](LocalMotion& m, Clip& clip) {
+         auto all = m.joint_positions(joint(clip, "LeftForeArm"));
+         for (std::size_t f = kAt; f < kAt + 30; ++f) all[f] *= 1.1;
+       }},
+      {"knee", Rule::joint_limit, "",
+       [=](LocalMotion& m, Clip& clip) {
+         // The shin forwards: about the body's left axis, whatever the joint's own axes are.
+         const int knee = joint(clip, "LeftLeg");
+         const Vec3 left =
+             clip.skeleton.reference[at(knee)].orientation.conjugate() * Vec3::UnitX();
+         const Quat bent = clip.skeleton.reference_local(knee).orientation *
+                           from_rotation_vector(-60 * kRadiansPerDegree * left);
+         auto all = m.joint_orientations(knee);
+         for (std::size_t f = kAt; f < kAt + 60; ++f) all[f] = bent;
+       }},
+      {"doubled frames", Rule::frame_rate, "doubled",
+       [](LocalMotion& m, Clip&) {
+         for (int j = 0; j < m.joints; ++j) {
+           for (int f = 1; f < m.frames; f += 2) m.set(j, f, m.at(j, f - 1));
+         }
+       }},
+      {"half speed", Rule::frame_rate, "slow", [](LocalMotion&, Clip& clip) { clip.rate /= 2; }},
+      {"double speed", Rule::frame_rate, "fast", [](LocalMotion&, Clip& clip) { clip.rate *= 2; }},
+      {"floor", Rule::ground, "floor",
+       [](LocalMotion& m, Clip&) {
+         for (Vec3& place : m.joint_positions(0)) place.y() += 0.3;
+       }},
+  };
+}
+
+TEST(LintFaults, EachIsFoundByItsRuleWhereItIs) {
+  const Clip clean = usual_walk();
+  for (const Seeded& seeded : seeded_faults()) {
+    const Clip clip = changed(clean, seeded.change);
+    const auto faults = faults_of(clip);
+    const lint::Finding* found = find(faults, seeded.rule, kAt);
+    ASSERT_NE(found, nullptr) << seeded.name << "; found:\n" << listed(clip, faults);
+    if (!seeded.kind.empty()) EXPECT_EQ(found->kind, seeded.kind) << seeded.name;
+    EXPECT_GT(found->excess(), 1) << seeded.name;
+  }
+}
+
+TEST(LintFaults, UnitOfAGiantIsFound) {
+  Clip clip = usual_walk();
+  for (Transform& joint : clip.skeleton.reference) joint.position *= 10;
+  for (Vec3f& place : clip.positions) place *= 10;
+  EXPECT_NE(find(faults_of(clip), Rule::unit, 0), nullptr);
+}
+
+TEST(LintFaults, LoopsAreJudgedAtTheirSeamAlone) {
+  const Clip clip = usual_walk();
+  lint::MotionOptions loop;
+  loop.is_loop = true;
+  EXPECT_EQ(find(faults_of(clip), Rule::loop_seam, 0), nullptr);
+  // Cut in the middle of a step: its end does not lead to its beginning.
+  Clip part = clip;
+  part.resize(140);
+  EXPECT_NE(find(faults_of(part, loop), Rule::loop_seam, 0), nullptr);
+}
+
+TEST(LintFaults, StairsAreNoFaultOfTheGround) {
+  WalkOptions options;
+  options.steps = 8;
+  options.step_length = 0.32;
+  options.rise = 0.16;
+  const Clip clip = walk_of(options);
+  const auto faults = faults_of(clip);
+  EXPECT_EQ(find(faults, Rule::ground, 60), nullptr) << listed(clip, faults);
+  ASSERT_FALSE(faults.notes.empty());
+  EXPECT_NE(faults.notes.front().find("--ground"), std::string::npos) << faults.notes.front();
+}
+
+TEST(LintFaults, TreadmillsSlideNoFeet) {
+  Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
+    for (Vec3& place : m.joint_positions(0)) place.x() = place.z() = 0;
+  });
+  EXPECT_NE(find(faults_of(clip), Rule::foot_slide, kAt), nullptr);
+  lint::MotionOptions options;
+  options.treadmill = true;
+  EXPECT_EQ(find(faults_of(clip, options), Rule::foot_slide, kAt), nullptr);
+}
+
+TEST(LintRules, RunOnlyIfEnabledAndByTheirLimits) {
+  const Clip clip = changed(usual_walk(), seeded_faults().front().change);
+  lint::MotionOptions options;
+  options.settings.enabled.fill(false);
+  EXPECT_TRUE(faults_of(clip, options).findings.empty());
+  options.settings.enabled[static_cast<std::size_t>(Rule::pop)] = true;
+  EXPECT_NE(find(faults_of(clip, options), Rule::pop, kAt), nullptr);
+  options.settings.thresholds[static_cast<std::size_t>(Rule::pop)] = 30;
+  EXPECT_EQ(find(faults_of(clip, options), Rule::pop, kAt), nullptr);
+}
+
+TEST(LintRules, ShortMotionsAndLoneJointsAreNoTrouble) {
+  Clip clip = usual_walk();
+  for (const int frames : {0, 1, 2, 3, 4, 7}) {
+    Clip part = clip;
+    part.resize(frames);
+    EXPECT_EQ(find(faults_of(part), Rule::pop, 0), nullptr) << frames;
+  }
+  Clip lone;
+  lone.skeleton.add("joint", -1, Transform());
+  lone.resize(100);
+  for (auto& orientation : lone.orientations) orientation.setIdentity();
+  for (auto& position : lone.positions) position.setZero();
+  EXPECT_TRUE(faults_of(lone).findings.empty());
+}
+
+TEST(LintDuplicates, AreFoundUnderAnotherRatePlaceAndSize) {
+  const auto signature = [](const Clip& clip) {
+    return lint::signature_of(clip, find_roles(clip.skeleton));
+  };
+  WalkOptions slower;
+  slower.steps = 10;
+  slower.step_length = 0.6;
+  slower.cadence = 110;
+  const Clip clip = usual_walk(60);
+  const Clip moved = changed(clip, [](LocalMotion& m, Clip&) {
+    const Quat turned = from_rotation_vector(Vec3(0, 1, 0));
+    for (Vec3& place : m.joint_positions(0)) place = turned * place + Vec3(3, 0, 1);
+    for (Quat& one : m.joint_orientations(0)) one = turned * one;
+  });
+  Clip resampled = clip;
+  resampled.rate = 30;
+  resampled.resize((clip.frame_count() + 1) / 2);
+  for (int f = 0; f < resampled.frame_count(); ++f) {
+    std::ranges::copy(clip.frame_positions(2 * f), resampled.frame_positions(f).begin());
+    std::ranges::copy(clip.frame_orientations(2 * f), resampled.frame_orientations(f).begin());
+  }
+  const std::vector<lint::Signature> all = {signature(clip), signature(walk_of(slower)),
+                                            signature(resampled), signature(moved)};
+  const auto pairs = lint::find_duplicates(all, 4 * kRadiansPerDegree);
+  EXPECT_EQ(pairs, (std::vector<std::pair<int, int>>{{0, 2}, {0, 3}}));
+}
+
+}  // namespace
+}  // namespace krok::lint_test

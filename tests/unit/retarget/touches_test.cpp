@@ -1,0 +1,167 @@
+// If these fail, hands of a retargeted handstand slide or hover, clasped hands part, or a motion
+// that touches nothing is bent towards something.
+
+#include "retarget/touches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/unit/retarget/actors.h"
+
+namespace krok {
+namespace {
+
+using namespace test;
+
+// A human with long arms on broad shoulders and short legs.
+Skeleton long_armed() {
+  Skeleton skeleton = human_skeleton(1.6);
+  for (const std::string side : {"Left", "Right"}) {
+    const double outwards = side == "Left" ? 1 : -1;
+    for (const std::string part : {"Arm", "ForeArm", "Hand", "Hand_end"}) {
+      Vec3& place = skeleton.reference[at(skeleton.find(side + part))].position;
+      place.x() = outwards * (0.09 + 1.25 * (std::abs(place.x()) - 0.05));
+    }
+  }
+  return with_other_axes(skeleton, 5);
+}
+
+// A pose of human_skeleton(): turns of joints about the axes of the world in the T-pose.
+struct Turned {
+  std::string joint;
+  Vec3 turn;
+};
+
+// From the T-pose into a pose, held there, and back: a second each, the whole body turned by
+// `hips` and with the lowest joint of the pose on the ground.
+Clip into_pose(const std::vector<Turned>& turns, const Vec3& hips) {
+  Clip clip;
+  clip.skeleton = human_skeleton();
+  clip.rate = 60;
+  clip.resize(180);
+  const auto& skeleton = clip.skeleton;
+  std::vector<Transform> local(skeleton.names.size()), world(skeleton.names.size());
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const double u = std::clamp(std::min(f / 60.0, (179 - f) / 60.0), 0.0, 1.0);
+    const double part = u * u * (3 - 2 * u);
+    for (int j = 0; j < skeleton.joint_count(); ++j) local[at(j)] = skeleton.reference_local(j);
+    for (const Turned& turned : turns) {
+      local[at(skeleton.find(turned.joint))].orientation = from_rotation_vector(part * turned.turn);
+    }
+    local[0].orientation = from_rotation_vector(part * hips);
+    local_to_world(skeleton.parents, local, world);
+    double lowest = 1e9;
+    for (const Transform& joint : world) lowest = std::min(lowest, joint.position.y());
+    for (Transform& joint : world) joint.position.y() -= lowest - 0.014;
+    clip.set_pose(f, world);
+  }
+  return clip;
+}
+
+Vec3 place(const Clip& clip, int frame, const std::string& joint) {
+  return clip.frame_positions(frame)[at(clip.skeleton.find(joint))].cast<double>();
+}
+
+// Both hands before the chest.
+Clip clasping() {
+  return into_pose({{"LeftArm", Vec3(0, -1.3, 0)},
+                    {"RightArm", Vec3(0, 1.3, 0)},
+                    {"LeftForeArm", Vec3(0, -1.3, 0)},
+                    {"RightForeArm", Vec3(0, 1.3, 0)}},
+                   Vec3::Zero());
+}
+
+// The middle of a palm.
+Vec3 palm(const Clip& clip, int frame, const std::string& hand) {
+  return 0.5 * (place(clip, frame, hand) + place(clip, frame, hand + "_end"));
+}
+
+double largest_parting(const Clip& source, const Clip& result, double scale) {
+  double most = 0;
+  for (int f = 62; f < 118; ++f) {
+    const Vec3 was = palm(source, f, "RightHand") - palm(source, f, "LeftHand");
+    const Vec3 is = palm(result, f, "rig:RightHand") - palm(result, f, "rig:LeftHand");
+    most = std::max(most, std::abs(is.norm() - scale * was.norm()));
+  }
+  return most;
+}
+
+TEST(Touches, HandsThatTouchStayAsNear) {
+  const Clip source = clasping();
+  ASSERT_LT((palm(source, 90, "RightHand") - palm(source, 90, "LeftHand")).norm(), 0.1);
+  const auto kept = transfer(source, long_armed());
+  const auto free = transfer(source, long_armed(), {.touches = retarget::Touches::free});
+  ASSERT_TRUE(kept.ok() && free.ok());
+  EXPECT_LT(largest_parting(source, kept->clip, kept->report.scale), 0.01);
+  EXPECT_GT(largest_parting(source, free->clip, free->report.scale), 0.05);
+  const auto reported = std::ranges::find_if(
+      kept->report.contacts, [](const auto& contact) { return contact.on == "right hand"; });
+  ASSERT_NE(reported, kept->report.contacts.end());
+  EXPECT_LT(reported->apart, 0.01);
+  EXPECT_TRUE(free->report.contacts.empty());
+}
+
+// Upside down on straight arms, hands on the ground.
+Clip handstand() {
+  return into_pose({{"LeftArm", Vec3(0, 0, 1.5)}, {"RightArm", Vec3(0, 0, -1.5)}}, Vec3(3.0, 0, 0));
+}
+
+TEST(Touches, HandsOfAHandstandNeitherSlideNorHover) {
+  const Clip source = handstand();
+  const auto kept = transfer(source, long_armed());
+  const auto free = transfer(source, long_armed(), {.touches = retarget::Touches::free});
+  ASSERT_TRUE(kept.ok() && free.ok());
+  const double scale = kept->report.scale;
+  double hovers = 0, hovered = 0, slides = 0;
+  for (int f = 62; f < 118; ++f) {
+    for (const std::string hand : {"LeftHand", "RightHand"}) {
+      const double wanted = scale * palm(source, f, hand).y();
+      hovers = std::max(hovers, std::abs(palm(kept->clip, f, "rig:" + hand).y() - wanted));
+      hovered = std::max(hovered, std::abs(palm(free->clip, f, "rig:" + hand).y() - wanted));
+      Vec3 way = palm(kept->clip, f, "rig:" + hand) - palm(kept->clip, 62, "rig:" + hand);
+      way.y() = 0;
+      slides = std::max(slides, way.norm());
+    }
+  }
+  EXPECT_LT(hovers, 0.01);
+  EXPECT_GT(hovered, 0.1);
+  EXPECT_LT(slides, 0.005);
+  EXPECT_GT(kept->report.largest_shift, 0.05);
+}
+
+TEST(Touches, AMotionThatTouchesNothingKeepsItsRotations) {
+  const Clip source =
+      into_pose({{"LeftArm", Vec3(0, 0, 0.8)}, {"Spine1", Vec3(0.2, 0.3, 0)}}, Vec3::Zero());
+  const auto kept = transfer(source, long_armed());
+  const auto free = transfer(source, long_armed(), {.touches = retarget::Touches::free});
+  ASSERT_TRUE(kept.ok() && free.ok());
+  EXPECT_LT(largest_distance(kept->clip, free->clip), 1e-6);
+}
+
+TEST(FindTouch, WeighsStaysAndFadesBesideThem) {
+  std::vector<double> distance(100, 1.0), speed(100, 0.0);
+  std::fill(distance.begin() + 40, distance.begin() + 60, 0.05);
+  distance[80] = 0.05;  // too short
+  const auto touch = retarget::find_touch(distance, speed, {0.1, 0.3, 0.5, 0.1}, 30);
+  ASSERT_EQ(touch.stays.size(), 1u);
+  EXPECT_EQ(touch.stays[0].first, 40);
+  EXPECT_EQ(touch.stays[0].last, 59);
+  for (int f = 40; f < 60; ++f) EXPECT_NEAR(touch.weight[at(f)], 1, 1e-12) << f;
+  EXPECT_EQ(touch.weight[20], 0);
+  EXPECT_EQ(touch.weight[80], 0);
+  std::fill(speed.begin(), speed.end(), 1.0);  // passes by
+  EXPECT_TRUE(retarget::find_touch(distance, speed, {0.1, 0.3, 0.5, 0.1}, 30).stays.empty());
+  EXPECT_TRUE(retarget::find_touch({}, {}, {0.1, 0.3, 0.5, 0.1}, 30).weight.empty());
+}
+
+TEST(BesideLine, IsNearestToTheLine) {
+  const auto beside = retarget::beside_line({1, 2, 0}, {0, 0, 0}, {4, 0, 0});
+  EXPECT_DOUBLE_EQ(beside.along, 0.25);
+  EXPECT_LT((beside.off - Vec3(0, 2, 0)).norm(), 1e-12);
+  EXPECT_EQ(retarget::beside_line({9, 0, 0}, {0, 0, 0}, {4, 0, 0}).along, 1);
+  EXPECT_EQ(retarget::beside_line({9, 0, 0}, {4, 0, 0}, {4, 0, 0}).along, 0);  // no line
+}
+
+}  // namespace
+}  // namespace krok

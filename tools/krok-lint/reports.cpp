@@ -1,0 +1,234 @@
+#include "tools/krok-lint/reports.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "core/markup.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/csv/field.h"
+#include "tools/krok-lint/baseline.h"
+
+namespace krok::cli::lint {
+
+namespace {
+
+using krok::lint::facts_of;
+using krok::lint::Finding;
+
+constexpr std::size_t kMostSarifResults = 25'000;  // GitHub's limit for a run
+
+std::string shown_path(const LintedFile& file) {
+  return printable(to_utf8(file.path));
+}
+
+// A path as a URI reference (RFC 3986).
+std::string uri_of(const std::string& path) {
+  std::string uri;
+  for (const char c : to_utf8(std::filesystem::path(path).generic_string())) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
+                       (byte >= '0' && byte <= '9') ||
+                       std::string_view("-._~/").find(c) != std::string_view::npos;
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
+  }
+  return uri;
+}
+
+Json sarif_rules() {
+  Json list = Json::array();
+  for (const auto& facts : krok::lint::rules()) {
+    list.push_back({{"id", facts.id},
+                    {"shortDescription", {{"text", facts.meaning}}},
+                    {"defaultConfiguration", {{"level", name_of(facts.severity)}}}});
+  }
+  return list;
+}
+
+Json sarif_result(const LintedFile& file, std::string_view rule, Severity severity,
+                  const std::string& text, const std::string& fingerprint) {
+  Json location = {{"artifactLocation", {{"uri", uri_of(file.path)}}},
+                   {"region", {{"startLine", 1}}}};
+  Json physical = {{"physicalLocation", std::move(location)}};
+  return {{"ruleId", rule},
+          {"level", name_of(severity)},
+          {"message", {{"text", text}}},
+          {"locations", Json::array({std::move(physical)})},
+          {"partialFingerprints", {{"krokLint/v1", fingerprint}}}};
+}
+
+}  // namespace
+
+const char* name_of(Severity severity) {
+  return severity == Severity::error ? "error" : "warning";
+}
+
+std::string rules_text() {
+  std::string text;
+  for (const auto& facts : krok::lint::rules()) {
+    text += fmt::format(
+        "{:<22}{:<9}{:>9}  {}\n", facts.id, name_of(facts.severity),
+        facts.threshold > 0 ? quantity_text(facts.threshold, std::string(facts.unit)) : "",
+        facts.meaning);
+  }
+  return text;
+}
+
+std::string console_text(const LintedFile& file) {
+  if (file.error) {
+    return fmt::format("{}: error: {} [unreadable]\n", shown_path(file),
+                       printable(file.error->message));
+  }
+  std::string text;
+  for (const Finding& finding : file.findings) {
+    const auto& facts = facts_of(finding.rule);
+    text +=
+        fmt::format("{}: {:.2f} s: {}: {} [{}]\n", shown_path(file), file.seconds(finding.worst),
+                    name_of(facts.severity), text_of(finding, file), facts.id);
+  }
+  return text;
+}
+
+std::string table_of(LintedFiles files) {
+  std::string text =
+      "file,rule,kind,severity,time [s],frame,joint,joints,value,limit,unit,from [s],to [s],"
+      "detail\n";
+  for (const LintedFile* file : files) {
+    const std::string path = csv::field(to_utf8(file->path));
+    if (file->error) {
+      text +=
+          fmt::format("{},unreadable,,error,,,,,,,,,,{}\n", path, csv::field(file->error->message));
+    }
+    for (const Finding& f : file->findings) {
+      const auto& facts = facts_of(f.rule);
+      text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", path, facts.id, f.kind,
+                          name_of(facts.severity), readable(file->seconds(f.worst), 6), f.worst,
+                          csv::field(file->joint_of(f)), f.joints, readable(f.value, 4),
+                          readable(f.threshold, 4), f.unit, readable(file->seconds(f.first), 6),
+                          readable(file->seconds(f.last), 6), csv::field(f.detail));
+    }
+  }
+  return text;
+}
+
+Json json_of(const LintedFile& file) {
+  Json json = {{"path", to_utf8(file.path)}};
+  if (file.error) {
+    json["error"] = {{"code", file.error->code}, {"message", file.error->message}};
+    return json;
+  }
+  Json faults = Json::array();
+  const auto prints = fingerprints_of(file);
+  for (std::size_t i = 0; i < file.findings.size(); ++i) {
+    const Finding& f = file.findings[i];
+    const auto& facts = facts_of(f.rule);
+    Json fault = {{"rule", facts.id}, {"severity", name_of(facts.severity)}};
+    if (!f.kind.empty()) fault["kind"] = f.kind;
+    if (f.joint >= 0) fault["joint"] = file.joint_of(f);
+    fault["joints"] = f.joints;
+    fault["time"] = file.seconds(f.worst);
+    fault["frame"] = f.worst;
+    fault["from"] = file.seconds(f.first);
+    fault["to"] = file.seconds(f.last);
+    fault["value"] = f.value;
+    fault["limit"] = f.threshold;
+    fault["unit"] = f.unit;
+    if (!f.detail.empty()) fault["detail"] = f.detail;
+    fault["fingerprint"] = prints[i];
+    faults.push_back(std::move(fault));
+  }
+  json["frames"] = file.frames;
+  json["rate"] = file.rate;
+  json["faults"] = std::move(faults);
+  if (file.suppressed > 0) json["suppressed"] = file.suppressed;
+  if (file.known > 0) json["known"] = file.known;
+  json["notes"] = file.notes;
+  return json;
+}
+
+std::string sarif_of(LintedFiles files, const std::string& version) {
+  Json results = Json::array();
+  std::size_t left_out = 0;
+  for (const LintedFile* file : files) {
+    const auto add = [&](Json result) {
+      if (results.size() < kMostSarifResults) {
+        results.push_back(std::move(result));
+      } else {
+        ++left_out;
+      }
+    };
+    if (file->error) {
+      add(sarif_result(*file, "unreadable", Severity::error, file->error->message,
+                       fingerprint_of(file->path, "unreadable", 0)));
+    }
+    const auto prints = fingerprints_of(*file);
+    for (std::size_t i = 0; i < file->findings.size(); ++i) {
+      const Finding& f = file->findings[i];
+      const auto& facts = facts_of(f.rule);
+      add(sarif_result(*file, facts.id, facts.severity,
+                       fmt::format("{} At {:.2f} s: {}", std::string(facts.meaning) + ".",
+                                   file->seconds(f.worst), text_of(f, *file)),
+                       prints[i]));
+    }
+  }
+  Json driver = {{"name", "krok-lint"}, {"version", version}, {"rules", sarif_rules()}};
+  Json run;
+  run["tool"]["driver"] = std::move(driver);
+  run["results"] = std::move(results);
+  if (left_out > 0) run["properties"]["leftOut"] = left_out;
+  Json sarif = {{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"}, {"version", "2.1.0"}};
+  sarif["runs"] = Json::array({std::move(run)});
+  return sarif.dump(1) + "\n";
+}
+
+std::string junit_of(LintedFiles files) {
+  std::string suites;
+  std::size_t tests = 0, failures = 0, errors = 0;
+  for (const LintedFile* file : files) {
+    const std::string path = to_markup(to_utf8(file->path));
+    if (file->error) {
+      suites += fmt::format(
+          "  <testsuite name=\"{0}\" tests=\"1\" failures=\"0\" errors=\"1\">\n"
+          "    <testcase classname=\"{0}\" name=\"unreadable\"><error "
+          "message=\"{1}\"/></testcase>\n"
+          "  </testsuite>\n",
+          path, to_markup(file->error->message));
+      ++tests, ++errors;
+      continue;
+    }
+    std::string cases;
+    std::size_t here = 0, failed = 0;
+    for (const auto& facts : krok::lint::rules()) {
+      if (facts.rule == krok::lint::Rule::unreadable) continue;
+      ++here;
+      std::string text;
+      for (const Finding& f : file->findings) {
+        if (f.rule == facts.rule) {
+          text += fmt::format("{:.2f} s: {}\n", file->seconds(f.worst), text_of(f, *file));
+        }
+      }
+      cases += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", path, facts.id);
+      if (text.empty()) {
+        cases += "/>\n";
+        continue;
+      }
+      ++failed;
+      cases += fmt::format("><failure type=\"{}\" message=\"{}\">{}</failure></testcase>\n",
+                           name_of(facts.severity), to_markup(facts.meaning), to_markup(text));
+    }
+    suites += fmt::format(
+        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\">\n{}  </testsuite>\n",
+        path, here, failed, cases);
+    tests += here, failures += failed;
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuites name=\"krok-lint\" tests=\"{}\" failures=\"{}\" "
+      "errors=\"{}\">\n{}</testsuites>\n",
+      tests, failures, errors, suites);
+}
+
+}  // namespace krok::cli::lint
