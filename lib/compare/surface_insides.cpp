@@ -132,16 +132,20 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
       }
     }
   });
-  const auto turned = std::ranges::find_if(triangles, &Sampled::turned);
-  if (turned != triangles.end()) {
-    const auto m = static_cast<std::size_t>(turned->match->mesh);
-    comparison.say(fmt::format(
-        "{}{}: {} wound the other way: the first at vertices {}, {}, {}",
-        turned->match->in_second ? "the second's " : "",
-        label("mesh", surfaces.own.meshes[m].name, turned->match->mesh),
-        counted(std::ranges::count_if(triangles, &Sampled::turned), "triangle is", "triangles are"),
-        turned->corners[0], turned->corners[1], turned->corners[2]));
-  }
+  const auto report_turned = [&] {
+    const auto turned = std::ranges::find_if(triangles, &Sampled::turned);
+    if (turned != triangles.end()) {
+      const auto m = static_cast<std::size_t>(turned->match->mesh);
+      comparison.say(fmt::format("{}{}: {} wound the other way: the first at vertices {}, {}, {}",
+                                 turned->match->in_second ? "the second's " : "",
+                                 label("mesh", surfaces.own.meshes[m].name, turned->match->mesh),
+                                 counted(std::ranges::count_if(triangles, &Sampled::turned),
+                                         "triangle is", "triangles are"),
+                                 turned->corners[0], turned->corners[1], turned->corners[2]));
+    }
+  };
+  // Those with a gap are told as holes.
+  for (Sampled& one : triangles) one.turned = one.turned && !(one.gap > 0);
   double missing = 0;
   std::size_t count = 0;
   const Sampled* worst = nullptr;
@@ -151,7 +155,7 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
     ++count;
     if (worst == nullptr || one.gap > worst->gap) worst = &one;
   }
-  if (worst == nullptr) return;
+  if (worst == nullptr) return report_turned();
   const bool in_second = worst->match->in_second;
   const auto m = static_cast<std::size_t>(worst->match->mesh);
   comparison.say(fmt::format(
@@ -163,6 +167,7 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
       readable(100 * missing / all_area, 2), count == 1 ? "is" : "are",
       in_second ? "first" : "second", readable(1000 * worst->gap, 3), worst->corners[0],
       worst->corners[1], worst->corners[2]));
+  report_turned();
 }
 
 void compare_areas(SceneComparison& comparison, const SurfaceGroup& group,

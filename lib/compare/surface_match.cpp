@@ -254,8 +254,6 @@ void report_missing_on(SceneComparison& comparison, const SceneMesh& mesh, const
   report(!mesh.texture_coordinates.empty(), !other.texture_coordinates.empty(),
          "texture coordinates", true);
   report(mesh.is_painted(), !other.colours.empty(), "vertex colours", comparison.options.materials);
-  report(mesh.has_tangents && has_normal_texture(mesh) && has_normal_texture(other),
-         other.has_tangents, "tangents, which normal textures need", true);
 }
 
 // The static data of a mesh at its nearest points: texture coordinates, colours, sides, materials.

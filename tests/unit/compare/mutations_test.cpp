@@ -231,7 +231,7 @@ class File : public GlbBuilder {
   }
 };
 
-struct Change {
+struct Mutation {
   const char* what;
   std::function<void(File&)> make;
   unsigned ways = kAll;  // in which it is told, or for those that show nothing, not
@@ -259,7 +259,7 @@ Scene scene_of_file(const File& file, const char* what) {
 }
 
 // The ways, as bits, in which a change is told; twice, for both directions.
-std::array<unsigned, 2> told(const Change& change, std::string* texts = nullptr) {
+std::array<unsigned, 2> told(const Mutation& change, std::string* texts = nullptr) {
   File file;
   change.make(file);
   const Scene a = scene_of_file(File(), "the file"), b = scene_of_file(file, change.what);
@@ -343,17 +343,17 @@ std::vector<std::uint16_t> counted_to(std::size_t count) {
 constexpr int kVertex = 17;  // inside the skin's part of the body
 
 // Sets, or with `by` adds to, a number of an accessor.
-Change number(const char* what, int accessor, int index, float by, unsigned ways = kAll) {
+Mutation number(const char* what, int accessor, int index, float by, unsigned ways = kAll) {
   return {what, [=](File& file) { file.values(accessor)[index] += by; }, ways};
 }
 
-Change json_change(const char* what, std::function<void(File&)> make, unsigned ways = kAll) {
+Mutation json_change(const char* what, std::function<void(File&)> make, unsigned ways = kAll) {
   return {what, std::move(make), ways};
 }
 
 // What must be told. Two things are documented as not compared: names with `order` (and those of
 // animations with `nearest`), and morph targets with `nearest`, but for what they do to the shape.
-const std::vector<Change> kChanges = {
+const std::vector<Mutation> kChanges = {
     // Shape.
     number("a vertex is 0.5 mm out of the surface", kPositions, 3 * kVertex + 2, 5e-4f),
     number("a vertex of the rim is 0.5 mm out", kPositions, 0, -5e-4f),
@@ -626,7 +626,7 @@ const std::vector<Change> kChanges = {
 };
 
 // What shows nothing.
-const std::vector<Change> kRewritings = {
+const std::vector<Mutation> kRewritings = {
     {"nothing", [](File&) {}},
     {"other extras and names of accessors",
      [](File& file) {
@@ -757,7 +757,7 @@ std::string words_of(unsigned ways) {
 TEST(Mutations, EachIsToldInEachWayAndBothDirections) {
   EXPECT_GE(kChanges.size(), 85u);
   int missed = 0;
-  for (const Change& change : kChanges) {
+  for (const Mutation& change : kChanges) {
     for (const unsigned ways : told(change)) {
       if ((change.ways & ~ways) == 0) continue;
       ++missed;
@@ -768,7 +768,7 @@ TEST(Mutations, EachIsToldInEachWayAndBothDirections) {
 }
 
 TEST(Mutations, NoneIsToldWhereNothingShows) {
-  for (const Change& change : kRewritings) {
+  for (const Mutation& change : kRewritings) {
     std::string texts;
     for (const unsigned ways : told(change, &texts)) {
       EXPECT_EQ(change.ways & ways, 0u)
