@@ -143,7 +143,7 @@ inline bool same_bits(const Clip& a, const Clip& b) {
 }
 
 // The largest distance or angle between joints of two motions of one skeleton: metres, radians.
-inline double apart(const Clip& a, const Clip& b) {
+inline double metres_apart(const Clip& a, const Clip& b) {
   if (a.positions.size() != b.positions.size()) return 1e9;
   double most = 0;
   for (std::size_t i = 0; i < a.positions.size(); ++i) {

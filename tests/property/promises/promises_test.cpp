@@ -64,7 +64,7 @@ TEST(Promises, ResampledUpAndDownIsTheMotion) {
       back.rate = clip.rate;
       EXPECT_TRUE(same_bits(back, clip)) << name << ", " << times << " times as dense";
       const Clip again = *resample(dense, clip.rate);
-      EXPECT_LT(apart(again, clip), 1e-5 * extent(clip)) << name << ", " << times;
+      EXPECT_LT(test::metres_apart(again, clip), 1e-5 * extent(clip)) << name << ", " << times;
     }
     std::vector<Transform> pose(clip.skeleton.names.size()), sampled = pose,
                                                              scratch(3 * pose.size());
@@ -86,7 +86,7 @@ TEST(Promises, RetimedByNothingIsTheMotion) {
     }
     const Clip slow = *retime(clip, clip.rate, 0.25, LastFrame::kept);
     const Clip back = *retime(slow, clip.rate, 4, LastFrame::kept);
-    EXPECT_LT(apart(back, clip), 1e-5 * extent(clip)) << name;
+    EXPECT_LT(test::metres_apart(back, clip), 1e-5 * extent(clip)) << name;
   }
 }
 
@@ -99,13 +99,13 @@ TEST(Promises, AMotionThatRepeatsIsItsLoop) {
     ASSERT_TRUE(looped.ok());
     // A jump of velocity by finite differences is not nothing where a motion turns fast between
     // frames.
-    EXPECT_LT(apart(looped->clip, clip), 1e-3 * extent(clip)) << round;
+    EXPECT_LT(test::metres_apart(looped->clip, clip), 1e-3 * extent(clip)) << round;
     EXPECT_TRUE(same_bits(*repeated(looped->clip, looped->displacement, 1), looped->clip));
     // A round of many is one of them.
     const Clip twice = *repeated(looped->clip, looped->displacement, 2);
     const auto again = loop(twice, 0, {.end = LoopEnd::closed, .climb = LoopClimb::keep});
     ASSERT_TRUE(again.ok());
-    EXPECT_LT(apart(again->clip, twice), 1e-3 * extent(twice)) << round;
+    EXPECT_LT(test::metres_apart(again->clip, twice), 1e-3 * extent(twice)) << round;
   }
 }
 
@@ -116,7 +116,7 @@ TEST(Promises, CutAndAppendedIsTheMotion) {
     const auto joined = join(cut(clip, 0, at), cut(clip, at, clip.frame_count() - 1),
                              carrier_of(clip), {.blend = 0, .match_height = true});
     ASSERT_TRUE(joined.ok()) << name;
-    EXPECT_LT(apart(joined->clip, clip), 3e-6 * extent(clip)) << name;
+    EXPECT_LT(test::metres_apart(joined->clip, clip), 3e-6 * extent(clip)) << name;
   }
 }
 
@@ -144,12 +144,12 @@ TEST(Promises, PlacedTwiceIsPlacedOnce) {
     const double angle = dice.between(-3, 3);
     move_clip(turned_about_start(moved, carrier, angle), moved);
     move_clip(turned_about_start(moved, carrier, -angle), moved);
-    EXPECT_LT(apart(moved, clip), 4 * kFloat * extent(clip)) << name;
+    EXPECT_LT(test::metres_apart(moved, clip), 4 * kFloat * extent(clip)) << name;
     moved = clip;
     ASSERT_TRUE(scale_clip(1, moved));
     EXPECT_TRUE(same_bits(moved, clip)) << name;
     ASSERT_TRUE(scale_clip(3, moved) && scale_clip(1 / 3.0, moved));
-    EXPECT_LT(apart(moved, clip), kFloat * extent(clip)) << name;
+    EXPECT_LT(test::metres_apart(moved, clip), kFloat * extent(clip)) << name;
   }
 }
 
@@ -163,7 +163,8 @@ TEST(Promises, InPlaceTwiceIsInPlaceOnce) {
         ASSERT_EQ(once.positions[i].y(), clip.positions[i].y()) << name;
         ASSERT_EQ(once.orientations[i].coeffs(), clip.orientations[i].coeffs()) << name;
       }
-      EXPECT_LT(apart(in_place(once, carrier, travel), once), kFloat * extent(clip)) << name;
+      EXPECT_LT(test::metres_apart(in_place(once, carrier, travel), once), kFloat * extent(clip))
+          << name;
     }
     const Clip still = cut(clip, 0, 0);
     EXPECT_TRUE(same_bits(in_place(still, carrier, Travel::all), still)) << name;
@@ -185,7 +186,7 @@ TEST(Promises, RootedAndRestoredIsTheMotion) {
       }
     }
     // Jitter of less than what counts as standing still goes.
-    EXPECT_LT(apart(back, clip), 1e-3) << name;
+    EXPECT_LT(test::metres_apart(back, clip), 1e-3) << name;
   }
 }
 
@@ -203,11 +204,12 @@ TEST(Promises, FiltersKeepWhatTheySayTheyKeep) {
       }
       const auto kept = filter::smooth(constant, smoothing, {});
       ASSERT_TRUE(kept.ok()) << name;
-      EXPECT_LT(apart(*kept, constant), 4 * kFloat * extent(clip)) << name;
+      EXPECT_LT(test::metres_apart(*kept, constant), 4 * kFloat * extent(clip)) << name;
       const Clip two = cut(clip, 0, 1);
       EXPECT_TRUE(same_bits(*filter::smooth(two, smoothing, {}), two)) << name;
       const std::vector<std::uint8_t> none(clip.skeleton.names.size(), 0);
-      EXPECT_LT(apart(*filter::smooth(clip, smoothing, none), clip), 4 * kFloat * extent(clip))
+      EXPECT_LT(test::metres_apart(*filter::smooth(clip, smoothing, none), clip),
+                4 * kFloat * extent(clip))
           << name;
       const auto smooth = filter::smooth(clip, smoothing, {});
       ASSERT_TRUE(smooth.ok()) << name;
@@ -280,7 +282,7 @@ TEST(Promises, WithoutSpikesNothingChanges) {
 TEST(Promises, ReducedAndReducedAgainIsWithinTheTolerance) {
   for (const auto& [name, clip] : motions()) {
     const Clip same = *uniform_clip(keyed_clip(clip), clip.rate);
-    EXPECT_LT(apart(same, clip), kFloat * extent(clip) * 4) << name;
+    EXPECT_LT(test::metres_apart(same, clip), kFloat * extent(clip) * 4) << name;
     const ReduceOptions options{.tolerance = 1e-3};
     const auto once = reduce_keys(clip, options);
     ASSERT_TRUE(once.ok()) << name;
@@ -397,7 +399,7 @@ TEST(Promises, RetargetedOntoItselfIsTheMotion) {
     ASSERT_TRUE(scaled.ok()) << name;
     Clip expected = clip;
     ASSERT_TRUE(scale_clip(1.25, expected));
-    EXPECT_LT(apart(scaled->clip, expected), 1e-5 * extent(clip)) << name;
+    EXPECT_LT(test::metres_apart(scaled->clip, expected), 1e-5 * extent(clip)) << name;
   }
 }
 
@@ -424,7 +426,7 @@ TEST(Promises, GoalsAtTheirOwnPlacesChangeNothing) {
     ASSERT_TRUE(done.ok()) << name << ": " << done.error().message;
     for (int f = 0; f < clip.frame_count(); ++f) {
       const bool active = std::abs(f - frame) <= 5;
-      const double off = apart(cut(done->clip, f, f), cut(clip, f, f));
+      const double off = test::metres_apart(cut(done->clip, f, f), cut(clip, f, f));
       if (active) {
         EXPECT_LT(off, 2e-3) << name << ", frame " << f;
       } else {
@@ -448,7 +450,7 @@ TEST(Promises, BlendedWithItselfIsTheMotion) {
       const auto blended =
           blend::blend_clips(inputs, find_roles(clip.skeleton), blend::ends_of(inputs), options);
       ASSERT_TRUE(blended.ok()) << name << ": " << blended.error().message;
-      EXPECT_LT(apart(blended->clip, clip), 2e-5 * extent(clip)) << name;
+      EXPECT_LT(test::metres_apart(blended->clip, clip), 2e-5 * extent(clip)) << name;
     }
   }
 }

@@ -12,14 +12,14 @@
 namespace krok {
 namespace {
 
-struct Mesh {
+struct ShadedMesh {
   std::vector<Vec3f> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
 // A sphere of rings and columns, cut along one meridian: there vertices stand twice.
-Mesh sphere(int rings, int columns) {
-  Mesh mesh;
+ShadedMesh sphere(int rings, int columns) {
+  ShadedMesh mesh;
   for (int r = 0; r <= rings; ++r) {
     for (int c = 0; c <= columns; ++c) {
       const double up = kPi * r / rings, around = 2 * kPi * (c % columns) / columns;
@@ -38,14 +38,14 @@ Mesh sphere(int rings, int columns) {
   return mesh;
 }
 
-std::vector<Vec3f> normals(const Mesh& mesh) {
+std::vector<Vec3f> normals(const ShadedMesh& mesh) {
   std::vector<Vec3f> result(mesh.positions.size());
   normals_of(mesh.triangles, mesh.positions, shading_groups(mesh.positions, {}), result);
   return result;
 }
 
 TEST(SurfaceNormals, ASphereShadesRoundSeamAndAll) {
-  const Mesh mesh = sphere(40, 60);
+  const ShadedMesh mesh = sphere(40, 60);
   const std::vector<Vec3f> found = normals(mesh);
   for (std::size_t v = 0; v < found.size(); ++v) {
     EXPECT_GT(found[v].dot(mesh.positions[v]), 0.9995f) << v;
@@ -62,12 +62,13 @@ TEST(SurfaceNormals, VerticesWithOtherNormalsStayApart) {
 }
 
 TEST(SurfaceNormals, WithoutAnAreaTheyPointUp) {
-  const Mesh flat = {{Vec3f::Zero(), Vec3f::UnitX(), Vec3f(2, 0, 0), Vec3f(0, 0, 3)}, {{0, 1, 2}}};
+  const ShadedMesh flat = {{Vec3f::Zero(), Vec3f::UnitX(), Vec3f(2, 0, 0), Vec3f(0, 0, 3)},
+                           {{0, 1, 2}}};
   for (const Vec3f& normal : normals(flat)) EXPECT_EQ(normal, Vec3f::UnitY());
 }
 
 TEST(SurfaceNormals, OnlyWhatMovesChanges) {
-  const Mesh mesh = sphere(20, 30);
+  const ShadedMesh mesh = sphere(20, 30);
   // An artist's own normals, which no triangle gives.
   std::vector<Vec3f> own(mesh.positions.size());
   for (std::size_t v = 0; v < own.size(); ++v) {
