@@ -24,8 +24,10 @@ void declare(CommandOptions& command, Options& o) {
                      "Motions: .anim files, or captures and characters as krok-import reads them; "
                      "folders stand for all motions in them");
   command.add_flag("--rules", o.list_rules, "Print the rules with their limits, and end");
-  command.add("--only", o.only, rule(), "Use this rule alone; repeatable").type_name("RULE");
-  command.add("--ignore", o.ignore, rule(), "Leave this rule out; repeatable").type_name("RULE");
+  command.add("--only RULE", o.only, rule(), "Use this rule alone; repeatable")
+      .allow_extra_args(false);
+  command.add("--ignore RULE", o.ignore, rule(), "Leave this rule out; repeatable")
+      .allow_extra_args(false);
   command.add_option("--profile IN.json", o.profile,
                      "Rules and limits (formats/lint/SPEC.md), before --only and --ignore");
   command.add_option("--baseline IN.json", o.baseline,
