@@ -174,13 +174,14 @@ TEST(Promises, InPlaceTwiceIsInPlaceOnce) {
 // are the root neither changes anything".
 TEST(Promises, RootedAndRestoredIsTheMotion) {
   for (const auto& [name, clip] : motions()) {
-    const HipsRoot root(clip, carrier_of(clip));
+    const int carrier = carrier_of(clip);
+    const HipsRoot root(clip, carrier);
     const Clip rooted = root.rooted(clip);
     if (!root.changes()) EXPECT_TRUE(same_bits(rooted, clip)) << name;
     const Clip back = root.restored(rooted, clip.skeleton);
     for (int f = 0; f < clip.frame_count(); ++f) {
       for (std::size_t j = 0; j < root.below().size(); ++j) {
-        if (root.below()[j] == 0 || static_cast<int>(j) == carrier_of(clip)) continue;
+        if (root.below()[j] == 0 || static_cast<int>(j) == carrier) continue;
         ASSERT_EQ(back.frame_positions(f)[j], clip.frame_positions(f)[j]) << name;
       }
     }
