@@ -74,7 +74,7 @@ const std::vector<Value>& values() {
       {"krok-render", {"--rate", "0"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--depth", "-1"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--fade", "-1s"}, "usage"},
-      {"krok-ik", {"--goals", "x.goals", "--plot", "x.png"}, "usage"},
+      {"krok-ik", {"--goals", "x.goals", "--plot", "x.txt"}, "usage"},
       {"krok-ik", {"--goals", "x.goals", "--reach", "Hand=0m,0m@1s"}, "usage"},
       {"krok-ragdoll", {"--at", "-1s"}, "usage"},
       {"krok-ragdoll", {"--at", "1s", "--push", "Chest=1,2"}, "usage"},

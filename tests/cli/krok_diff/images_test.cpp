@@ -149,7 +149,7 @@ TEST_F(KrokDiffImages, RefusesWhatItCannotDraw) {
       {camera, camera, "--sheet", path("d.png")},
       {model, model, "--plot", path("d.svg")},
       {a, a, "--sheet", path("d.svg")},
-      {a, a, "--plot", path("d.png")},
+      {a, a, "--plot", path("d.txt")},
       {a, a, "--actor-size", "100"},
       {a, a, "--sheet", path("d.png"), "--actor-size", "1"},
       {a, a, "--sheet", path("d.png"), "--moments", "77f"}};

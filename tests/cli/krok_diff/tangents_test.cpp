@@ -170,7 +170,7 @@ TEST_F(DiffTangents, AFileWithoutThemIsToldAndADifferenceWhereANormalTextureNeed
                                    "textures need\n"));
 }
 
-// With krok-skin's own files: bones turn the rig's tangents, the clip's are baked.
+// With krok-skin's own files, which have no tangents where the model has none: viewers make them.
 class DiffBumpyHero : public HeroCharacter {};
 
 TEST_F(DiffBumpyHero, ARigAgreesWithItsBakedClip) {
@@ -179,10 +179,9 @@ TEST_F(DiffBumpyHero, ARigAgreesWithItsBakedClip) {
   tool("krok-skin", {"hero.character", "in.anim", "--as", "rig", "-o", "rig.glb"});
   tool("krok-skin", {"hero.character", "in.anim", "--as", "baked", "-o", "clip.glb"});
   const ToolRun done = tool("krok-diff", {"rig.glb", "clip.glb"});
-  EXPECT_THAT(done.out, HasSubstr("  tangents: largest "));
-  EXPECT_THAT(done.out, Not(HasSubstr("only the first has tangents")));
-  const ToolRun near = tool("krok-diff", {"rig.glb", "clip.glb", "--match", "nearest"});
-  EXPECT_THAT(near.out, HasSubstr("  tangents: largest "));
+  EXPECT_EQ(done.exit_code, 0) << done.out;
+  EXPECT_THAT(done.out, Not(HasSubstr("has tangents")));
+  EXPECT_EQ(tool("krok-diff", {"rig.glb", "clip.glb", "--match", "nearest"}).exit_code, 0);
 }
 
 }  // namespace

@@ -169,7 +169,7 @@ TEST_F(KrokIkPlant, WhatCannotBeDoneIsAnError) {
   refused({"walk.anim", "--reach", good, "--contacts", "none.json", "-o", "x.anim"}, "--plant");
   refused({"walk.anim", "--plant"}, "no output given");
   refused({"walk.anim", "--plant", "-o", "x.anim", "--plot", "x.svg"}, "--plot is for --goals");
-  refused({"walk.anim", "--reach", good, "-o", "x.anim", "--plot", "x.png"}, ".svg");
+  refused({"walk.anim", "--reach", good, "-o", "x.anim", "--plot", "x.txt"}, ".svg");
   refused({"walk.anim", "--reach", good, "--plot", "x.svg", "--out-dir", "out"}, "--plot");
 }
 

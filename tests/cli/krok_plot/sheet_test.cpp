@@ -276,7 +276,7 @@ TEST_F(KrokPlotSheet, ManyMotionsAreAGridOfASizeThatFits) {
   inputs.insert(inputs.end(), {"--columns", "6"});
   ASSERT_EQ(plot(inputs).exit_code, 0);
   const json cells = report()["sheet"]["cells"];
-  ASSERT_EQ(cells.size(), 60U);
+  ASSERT_EQ(cells.size(), 120U);  // from two sides
   EXPECT_EQ(cells[0]["box"][1], cells[11]["box"][1]);
   EXPECT_LT(cells[0]["box"][1], cells[12]["box"][1]);
 }

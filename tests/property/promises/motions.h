@@ -122,7 +122,7 @@ inline const std::vector<NamedMotion>& people() {
 }
 
 // Those and random ones.
-inline const std::vector<NamedMotion>& motions() {
+inline const std::vector<NamedMotion>& promised_motions() {
   static const std::vector<NamedMotion> all = [] {
     std::vector<NamedMotion> motions = people();
     Dice dice(44);

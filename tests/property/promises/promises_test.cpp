@@ -32,10 +32,9 @@
 namespace krok {
 namespace {
 
-using test::apart;
 using test::Dice;
 using test::extent;
-using test::motions;
+using test::metres_apart;
 using test::people;
 using test::same_bits;
 
@@ -47,7 +46,7 @@ int carrier_of(const Clip& clip) {
 
 // motion/cut.h: "Copies every step-th frame".
 TEST(Promises, CutOfAllFramesIsTheMotion) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     EXPECT_TRUE(same_bits(cut(clip, 0, clip.frame_count() - 1), clip)) << name;
   }
 }
@@ -55,7 +54,7 @@ TEST(Promises, CutOfAllFramesIsTheMotion) {
 // motion/sample.h: "bit-identical to the original's frame if it falls on one"; "At a frame's time
 // the result equals Clip::get_pose".
 TEST(Promises, ResampledUpAndDownIsTheMotion) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     EXPECT_TRUE(same_bits(*resample(clip, clip.rate), clip)) << name;
     for (const int times : {2, 3, 7}) {
@@ -65,7 +64,7 @@ TEST(Promises, ResampledUpAndDownIsTheMotion) {
       back.rate = clip.rate;
       EXPECT_TRUE(same_bits(back, clip)) << name << ", " << times << " times as dense";
       const Clip again = *resample(dense, clip.rate);
-      EXPECT_LT(apart(again, clip), 1e-5 * size) << name << ", " << times;
+      EXPECT_LT(metres_apart(again, clip), 1e-5 * size) << name << ", " << times;
     }
     std::vector<Transform> pose(clip.skeleton.names.size()), sampled = pose,
                                                              scratch(3 * pose.size());
@@ -81,14 +80,14 @@ TEST(Promises, ResampledUpAndDownIsTheMotion) {
 
 // motion/retime.h: "The clip at `rate`, played `speed` times as fast; the rate may be unchanged".
 TEST(Promises, RetimedByNothingIsTheMotion) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     for (const auto last : {LastFrame::within, LastFrame::kept}) {
       EXPECT_TRUE(same_bits(*retime(clip, clip.rate, 1, last), clip)) << name;
     }
     const Clip slow = *retime(clip, clip.rate, 0.25, LastFrame::kept);
     const Clip back = *retime(slow, clip.rate, 4, LastFrame::kept);
-    EXPECT_LT(apart(back, clip), 1e-5 * size) << name;
+    EXPECT_LT(metres_apart(back, clip), 1e-5 * size) << name;
   }
 }
 
@@ -101,32 +100,32 @@ TEST(Promises, AMotionThatRepeatsIsItsLoop) {
     ASSERT_TRUE(looped.ok());
     // A jump of velocity by finite differences is not nothing where a motion turns fast between
     // frames.
-    EXPECT_LT(apart(looped->clip, clip), 1e-3 * extent(clip)) << round;
+    EXPECT_LT(metres_apart(looped->clip, clip), 1e-3 * extent(clip)) << round;
     EXPECT_TRUE(same_bits(*repeated(looped->clip, looped->displacement, 1), looped->clip));
     // A round of many is one of them.
     const Clip twice = *repeated(looped->clip, looped->displacement, 2);
     const auto again = loop(twice, 0, {.end = LoopEnd::closed, .climb = LoopClimb::keep});
     ASSERT_TRUE(again.ok());
-    EXPECT_LT(apart(again->clip, twice), 1e-3 * extent(twice)) << round;
+    EXPECT_LT(metres_apart(again->clip, twice), 1e-3 * extent(twice)) << round;
   }
 }
 
 // motion/join.h: "0: a hard cut; the first's last frame replaces the second's first".
 TEST(Promises, CutAndAppendedIsTheMotion) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     const int at = clip.frame_count() / 2;
     const auto joined = join(cut(clip, 0, at), cut(clip, at, clip.frame_count() - 1),
                              carrier_of(clip), {.blend = 0, .match_height = true});
     ASSERT_TRUE(joined.ok()) << name;
-    EXPECT_LT(apart(joined->clip, clip), 3e-6 * size) << name;
+    EXPECT_LT(metres_apart(joined->clip, clip), 3e-6 * size) << name;
   }
 }
 
 // motion/place.h, each function; done twice it is done once.
 TEST(Promises, PlacedTwiceIsPlacedOnce) {
   Dice dice(1);
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     const int carrier = carrier_of(clip);
     const auto stays = [&](const Transform& move) {
@@ -148,18 +147,18 @@ TEST(Promises, PlacedTwiceIsPlacedOnce) {
     const double angle = dice.between(-3, 3);
     move_clip(turned_about_start(moved, carrier, angle), moved);
     move_clip(turned_about_start(moved, carrier, -angle), moved);
-    EXPECT_LT(apart(moved, clip), 4 * kFloat * size) << name;
+    EXPECT_LT(metres_apart(moved, clip), 4 * kFloat * size) << name;
     moved = clip;
     ASSERT_TRUE(scale_clip(1, moved));
     EXPECT_TRUE(same_bits(moved, clip)) << name;
     ASSERT_TRUE(scale_clip(3, moved) && scale_clip(1 / 3.0, moved));
-    EXPECT_LT(apart(moved, clip), kFloat * size) << name;
+    EXPECT_LT(metres_apart(moved, clip), kFloat * size) << name;
   }
 }
 
 // motion/travel.h: "Heights and rotations are unchanged"; "So are clips of fewer than two frames".
 TEST(Promises, InPlaceTwiceIsInPlaceOnce) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     const int carrier = carrier_of(clip);
     for (const Travel travel : {Travel::all, Travel::trend}) {
@@ -168,7 +167,7 @@ TEST(Promises, InPlaceTwiceIsInPlaceOnce) {
         ASSERT_EQ(once.positions[i].y(), clip.positions[i].y()) << name;
         ASSERT_EQ(once.orientations[i].coeffs(), clip.orientations[i].coeffs()) << name;
       }
-      EXPECT_LT(apart(in_place(once, carrier, travel), once), kFloat * size) << name;
+      EXPECT_LT(metres_apart(in_place(once, carrier, travel), once), kFloat * size) << name;
     }
     const Clip still = cut(clip, 0, 0);
     EXPECT_TRUE(same_bits(in_place(still, carrier, Travel::all), still)) << name;
@@ -178,7 +177,7 @@ TEST(Promises, InPlaceTwiceIsInPlaceOnce) {
 // motion/hips_root.h: "The inverse"; "the joints below bit for bit where they are"; "Where the hips
 // are the root neither changes anything".
 TEST(Promises, RootedAndRestoredIsTheMotion) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const int carrier = carrier_of(clip);
     const HipsRoot root(clip, carrier);
     const Clip rooted = root.rooted(clip);
@@ -191,14 +190,14 @@ TEST(Promises, RootedAndRestoredIsTheMotion) {
       }
     }
     // Jitter of less than what counts as standing still goes.
-    EXPECT_LT(apart(back, clip), 1e-3) << name;
+    EXPECT_LT(metres_apart(back, clip), 1e-3) << name;
   }
 }
 
 // filter/smooth_clip.h: "Preserves bone lengths, timing, frame rate and frame count"; "Joints with
 // 0 in `joints` keep"; "returned unchanged". filter/rotation_series.h: "preserves constants".
 TEST(Promises, FiltersKeepWhatTheySayTheyKeep) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     for (const filter::Smoothing& smoothing :
          {filter::Smoothing(filter::Butterworth{clip.rate / 6, 4}),
@@ -210,11 +209,12 @@ TEST(Promises, FiltersKeepWhatTheySayTheyKeep) {
       }
       const auto kept = filter::smooth(constant, smoothing, {});
       ASSERT_TRUE(kept.ok()) << name;
-      EXPECT_LT(apart(*kept, constant), 4 * kFloat * size) << name;
+      EXPECT_LT(metres_apart(*kept, constant), 4 * kFloat * size) << name;
       const Clip two = cut(clip, 0, 1);
       EXPECT_TRUE(same_bits(*filter::smooth(two, smoothing, {}), two)) << name;
       const std::vector<std::uint8_t> none(clip.skeleton.names.size(), 0);
-      EXPECT_LT(apart(*filter::smooth(clip, smoothing, none), clip), 4 * kFloat * size) << name;
+      EXPECT_LT(metres_apart(*filter::smooth(clip, smoothing, none), clip), 4 * kFloat * size)
+          << name;
       const auto smooth = filter::smooth(clip, smoothing, {});
       ASSERT_TRUE(smooth.ok()) << name;
       EXPECT_EQ(smooth->frame_count(), clip.frame_count());
@@ -273,7 +273,7 @@ TEST(Promises, SeriesFiltersKeepUniformMotion) {
 // filter/spikes.h: "Without spikes the clip is returned bit for bit"; "Joints with 0 are
 // unchanged".
 TEST(Promises, WithoutSpikesNothingChanges) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const auto once = filter::remove_spikes(clip, {}, {});
     ASSERT_TRUE(once.ok()) << name;
     EXPECT_TRUE(!once->spikes.empty() || same_bits(once->clip, clip)) << name;
@@ -284,10 +284,10 @@ TEST(Promises, WithoutSpikesNothingChanges) {
 
 // tracks/reduce_keys.h: "metres, <= tolerance"; tracks/keyed_clip.h: "lossless".
 TEST(Promises, ReducedAndReducedAgainIsWithinTheTolerance) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     const Clip same = *uniform_clip(keyed_clip(clip), clip.rate);
-    EXPECT_LT(apart(same, clip), kFloat * size * 4) << name;
+    EXPECT_LT(metres_apart(same, clip), kFloat * size * 4) << name;
     const ReduceOptions options{.tolerance = 1e-3};
     const auto once = reduce_keys(clip, options);
     ASSERT_TRUE(once.ok()) << name;
@@ -345,7 +345,7 @@ TEST(Promises, AFileReadAndWrittenIsTheFile) {
     const auto input = InputFile::open(path + "/a.anim");
     return std::string(input->text());
   };
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     for (const auto orientation : {OrientationEncoding::xyz, OrientationEncoding::xyzw}) {
       const std::string bytes = written(clip, orientation);
       const auto read = anim::read(std::as_bytes(std::span(bytes)));
@@ -360,7 +360,7 @@ TEST(Promises, AFileReadAndWrittenIsTheFile) {
 // way of another.
 TEST(Promises, DifferencesAreAMetric) {
   Dice dice(5);
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const auto nudged = [&](double size) {
       Clip other = clip;
       for (Vec3f& position : other.positions) position += dice.vector(size).cast<float>();
@@ -405,7 +405,7 @@ TEST(Promises, RetargetedOntoItselfIsTheMotion) {
     ASSERT_TRUE(scaled.ok()) << name;
     Clip expected = clip;
     ASSERT_TRUE(scale_clip(1.25, expected));
-    EXPECT_LT(apart(scaled->clip, expected), 1e-5 * size) << name;
+    EXPECT_LT(metres_apart(scaled->clip, expected), 1e-5 * size) << name;
   }
 }
 
@@ -432,7 +432,7 @@ TEST(Promises, GoalsAtTheirOwnPlacesChangeNothing) {
     ASSERT_TRUE(done.ok()) << name << ": " << done.error().message;
     for (int f = 0; f < clip.frame_count(); ++f) {
       const bool active = std::abs(f - frame) <= 5;
-      const double off = apart(cut(done->clip, f, f), cut(clip, f, f));
+      const double off = metres_apart(cut(done->clip, f, f), cut(clip, f, f));
       if (active) {
         EXPECT_LT(off, 2e-3) << name << ", frame " << f;
       } else {
@@ -444,7 +444,7 @@ TEST(Promises, GoalsAtTheirOwnPlacesChangeNothing) {
 
 // blend/blend_clips.h: weighted sums that sum to 1.
 TEST(Promises, BlendedWithItselfIsTheMotion) {
-  for (const auto& [name, clip] : motions()) {
+  for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
     std::vector<blend::BlendInput> inputs(2);
     inputs[0].clip = inputs[1].clip = &clip;
@@ -457,7 +457,7 @@ TEST(Promises, BlendedWithItselfIsTheMotion) {
       const auto blended =
           blend::blend_clips(inputs, find_roles(clip.skeleton), blend::ends_of(inputs), options);
       ASSERT_TRUE(blended.ok()) << name << ": " << blended.error().message;
-      EXPECT_LT(apart(blended->clip, clip), 2e-5 * size) << name;
+      EXPECT_LT(metres_apart(blended->clip, clip), 2e-5 * size) << name;
     }
   }
 }

@@ -85,21 +85,19 @@ TEST_F(FileTest, LeavesNothingWithoutCommit) {
     auto file = OutputFile::create(path("out"));
     ASSERT_TRUE(file.ok());
     ASSERT_TRUE(file->write(std::string(1 << 20, 'n')).ok());
-    EXPECT_EQ(listing().size(), 2u);
+    EXPECT_EQ(listing(), Names{"out"}) << "a name before it is complete outlives a kill";
   }
   EXPECT_EQ(get(path("out")), "old");
   EXPECT_EQ(listing(), Names{"out"});
 }
 
 TEST_F(FileTest, AnAssignedOverFileIsDiscarded) {
-  // What replaces a file has a name meanwhile.
   put("first", "old");
   put("second", "old");
   auto first = OutputFile::create(path("first"));
   auto second = OutputFile::create(path("second"));
   ASSERT_TRUE(first.ok() && second.ok() && second->write("new").ok());
   *first = std::move(*second);
-  EXPECT_EQ(listing().size(), 3u);
   ASSERT_TRUE(first->commit().ok());
   EXPECT_EQ(listing(), (Names{"first", "second"}));
   EXPECT_EQ(get(path("first")), "old");
@@ -323,10 +321,7 @@ class SignalTest : public FileTest, public testing::WithParamInterface<int> {
     }
     char byte = 0;
     EXPECT_EQ(read(ready[0], &byte, 1), 1);
-    if (!ignored) {
-      EXPECT_EQ(listing().size(), 2u) << "the temporary file should be there";
-      kill(child, signal_number);
-    }
+    if (!ignored) kill(child, signal_number);
     int status = 0;
     waitpid(child, &status, 0);
     close(ready[0]);

@@ -60,10 +60,6 @@ const std::vector<Fault>& faults() {
        [](Json& j) {
          j["scenes"][0]["nodes"] = {0, 12};
        }},
-      {"scene_root_is_child", "gltf-node",
-       [](Json& j) {
-         j["scenes"][0]["nodes"] = {0, 2};
-       }},
       {"mesh_without_primitives", "gltf-structure",
        [](Json& j) { j["meshes"][0]["primitives"] = Json::array(); }},
       {"mesh_primitive_number", "gltf-structure",
