@@ -206,10 +206,15 @@ Status write(const render::Sheet& sheet, const render::SheetOptions& options,
 
 constexpr int kSmallest = 64;  // pixels: of actors on a sheet of many
 
-// Rows side by side: one until a sheet of them would be a long ribbon.
-int usual_columns(std::size_t rows) {
-  constexpr double kFew = 12;
-  return static_cast<int>(std::ceil(std::sqrt(static_cast<double>(rows) / kFew)));
+// Rows side by side: one for a few, then as many as make the sheet about as high as wide.
+int usual_columns(const render::Sheet& sheet) {
+  constexpr std::size_t kFew = 12;
+  constexpr double kCell = 0.6;  // width of a standing person's cell, of its height
+  if (sheet.rows.size() <= kFew) return 1;
+  std::size_t cells = 1;
+  for (const render::SheetRow& row : sheet.rows) cells = std::max(cells, row.cells.size());
+  const double wide = kCell * static_cast<double>(cells);
+  return std::max(1, static_cast<int>(std::sqrt(static_cast<double>(sheet.rows.size()) / wide)));
 }
 
 Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
@@ -218,7 +223,7 @@ Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<Imag
   if (!all) return all.error();
   render::Sheet sheet = contact_sheet(*all, sides, options);
   keep_most_large(*all, sheet);
-  sheet.columns = options.columns.value_or(usual_columns(sheet.rows.size()));
+  sheet.columns = options.columns.value_or(usual_columns(sheet));
   render::SheetOptions how;
   how.jobs = results.context.jobs;
   for (int size = options.image.size;; size = size * 4 / 5) {
