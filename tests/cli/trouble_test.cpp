@@ -211,7 +211,9 @@ TEST_P(Signals, InTheMiddleLeaveTheOldOutput) {
   const ToolRun run =
       run_tool("krok-import", {path("in.bvh"), "-o", path("out.anim"), "-q"}, options);
   ASSERT_FALSE(run.timed_out);
-  if (run.signal != 0) EXPECT_EQ(run.signal, GetParam());
+  if (run.signal != 0) {
+    EXPECT_EQ(run.signal, GetParam());
+  }
   // The output may have been in place before the signal came; then the file is whole.
   if (run.signal == 0 || get(path("out.anim")) != "old") {
     EXPECT_EQ(run_tool("krok-info", {path("out.anim")}).exit_code, 0);
