@@ -202,7 +202,9 @@ TEST(LintFaults, EachIsFoundByItsRuleWhereItIs) {
     const auto faults = faults_of(clip);
     const lint::Finding* found = find(faults, seeded.rule, kAt);
     ASSERT_NE(found, nullptr) << seeded.name << "; found:\n" << listed(clip, faults);
-    if (!seeded.kind.empty()) EXPECT_EQ(found->kind, seeded.kind) << seeded.name;
+    if (!seeded.kind.empty()) {
+      EXPECT_EQ(found->kind, seeded.kind) << seeded.name;
+    }
     EXPECT_GT(found->excess(), 1) << seeded.name;
   }
 }
