@@ -192,7 +192,7 @@ lint: lint-deps headers
 	cmake --preset lint > /dev/null
 	@$(if $(FILES),echo $(FILES) | xargs -P $(JOBS) -n 1 clang-tidy -p build-lint --quiet,$(LINT_UNITS))
 
-# Every source and header that changed since the newest commit older than three days.
+# Every source and header that changed since the newest commit that CI passed.
 check-changed: lint-deps
 	@cmake --preset lint > /dev/null
 	@cmake --preset lint -B build-lint/alone -DKROK_PRECOMPILED_HEADERS=ON > /dev/null

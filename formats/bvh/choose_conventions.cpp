@@ -28,7 +28,7 @@ std::optional<std::string> looks_like_radians(const Hierarchy& hierarchy, const 
   // A moving character rotates some joint by more than 0.5 rad, and many by more than 0.1 rad.
   constexpr double kMoves = 0.5;
   constexpr double kTurns = 0.1;
-  constexpr int kFewestChannels = 6;
+  constexpr int kMinChannels = 6;
   constexpr double kWholeTurn = 2.0 * kPi * 1.001;
   double largest = 0;
   int turning = 0;
@@ -42,7 +42,7 @@ std::optional<std::string> looks_like_radians(const Hierarchy& hierarchy, const 
     largest = std::max(largest, most);
     if (most > kTurns) ++turning;
   }
-  if (largest < kMoves || turning < kFewestChannels) return std::nullopt;
+  if (largest < kMoves || turning < kMinChannels) return std::nullopt;
   return fmt::format("no rotation exceeds {}, which is less than a full turn in radians",
                      readable(largest, 3));
 }

@@ -142,7 +142,7 @@ class SecondCodec {
 // YCoCg of reversible integers with the bits of alpha's range; see the appendix.
 template <typename Unsigned, typename Signed>
 void unfilter(std::span<std::byte> bytes) {
-  constexpr float kMost = static_cast<float>(static_cast<Unsigned>(~Unsigned{0}));
+  constexpr float kMax = static_cast<float>(static_cast<Unsigned>(~Unsigned{0}));
   auto* const values = reinterpret_cast<Unsigned*>(bytes.data());
   for (std::size_t i = 0; i + 3 < bytes.size() / sizeof(Unsigned); i += 4) {
     Unsigned* const c = values + i;
@@ -152,8 +152,8 @@ void unfilter(std::span<std::byte> bytes) {
     const std::array<int, 4> colour = {y + co - cg, y + cg, y - co - cg, alpha};
     for (std::size_t k = 0; k < 4; ++k) {
       const float scaled =
-          range > 0 ? static_cast<float>(colour[k]) * (kMost / static_cast<float>(range)) : 0;
-      c[k] = static_cast<Unsigned>(std::clamp(scaled + 0.5f, 0.0f, kMost));
+          range > 0 ? static_cast<float>(colour[k]) * (kMax / static_cast<float>(range)) : 0;
+      c[k] = static_cast<Unsigned>(std::clamp(scaled + 0.5f, 0.0f, kMax));
     }
   }
 }

@@ -9,7 +9,7 @@ namespace {
 using json::Given;
 
 constexpr std::string_view kFormat = "lint";
-constexpr std::size_t kMostItems = 1'000'000;
+constexpr std::size_t kMaxItems = 1'000'000;
 constexpr double kLatest = 1e7;  // seconds
 
 struct Rules {
@@ -36,7 +36,7 @@ json::Object<Rules> profile_table() {
   json::Object<Rules> file;
   file.file("krok.lint-profile/1", "Rules of krok-lint and their limits (krok.lint-profile/1)");
   file.field("rules", &Rules::items,
-             json::list<RuleChoice>(json::object(rule), {"rule {0}", 0, kMostItems}))
+             json::list<RuleChoice>(json::object(rule), {"rule {0}", 0, kMaxItems}))
       .required();
   return file;
 }
@@ -56,7 +56,7 @@ json::Object<Suppressions> suppressions_table() {
   file.file("krok.lint-suppressions/1",
             "Faults of a motion that are accepted (krok.lint-suppressions/1)");
   file.field("suppressions", &Suppressions::items,
-             json::list<Suppression>(json::object(item), {"suppression {0}", 0, kMostItems}))
+             json::list<Suppression>(json::object(item), {"suppression {0}", 0, kMaxItems}))
       .required();
   return file;
 }
@@ -74,7 +74,7 @@ json::Object<Faults> baseline_table() {
   file.field("faults", &Faults::items,
              json::list<KnownFault>(
                  json::object(fault),
-                 {.each = "fault {0}", .least = 0, .most = kMostItems, .lines = true}))
+                 {.each = "fault {0}", .least = 0, .most = kMaxItems, .lines = true}))
       .required();
   return file;
 }

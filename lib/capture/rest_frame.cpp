@@ -121,8 +121,8 @@ const char* name_of(PoseKind kind) {
 RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   RestPose result;
   result.reference = name_of(kind_of_pose(roles, clip.skeleton.reference));
-  constexpr int kFewest = 4;
-  if (clip.frame_count() < kFewest) return result;
+  constexpr int kMinFrames = 4;
+  if (clip.frame_count() < kMinFrames) return result;
   Steps steps(clip);
   const Step first_step = steps.next();
   double later_step = 0;

@@ -21,7 +21,7 @@ constexpr std::array kCommonRates = {30.0,         24.0,         25.0,          
 constexpr double kMinRate = 20.0;  // below this, keys are too sparse to be frames
 constexpr double kUsualRate = 30.0;
 constexpr double kUnevenRate = 60.0;
-constexpr double kLeastRate = 0.001, kMostRate = 100'000;  // of files, see check_frame_rate()
+constexpr double kMinFileRate = 0.001, kMaxFileRate = 100'000;  // of files, see check_frame_rate()
 constexpr double kMaxFrames = 1e7;
 
 // The float rounding error of a time, in frames. From half a frame on, every time would match.
@@ -64,7 +64,7 @@ struct FoundRate {
 };
 
 FoundRate find_rate(const std::vector<double>& times, double of_file) {
-  if (of_file >= kLeastRate && of_file <= kMostRate && misfit(times, of_file, false)) {
+  if (of_file >= kMinFileRate && of_file <= kMaxFileRate && misfit(times, of_file, false)) {
     return {of_file, true, "as the file says; all keys are on its frames", Confidence::certain};
   }
   if (times.size() < 2) return {kUsualRate, true, "fewer than two keys", Confidence::guess};

@@ -15,7 +15,7 @@ namespace {
 constexpr int kParts = 4;           // of the time between two frames
 constexpr double kOnFrame = 0.01;   // frames
 constexpr std::size_t kTried = 16;  // of the times between two frames, the worst
-constexpr int kMostTimes = 32;      // the rate
+constexpr int kMaxTimes = 32;       // the rate
 constexpr double kFastest = 1000;   // frames per second that are suggested
 constexpr std::size_t kGapsAtOnce = 16;
 
@@ -129,7 +129,7 @@ SamplingError sampling_error(const nodes::Evaluator& evaluator, const Rig& rig,
       hardest, hardest.begin() + static_cast<std::ptrdiff_t>(tried),
       [&](int a, int b) { return errors[at(a)].largest > errors[at(b)].largest; });
   hardest.resize(tried);
-  for (int times = 2; times <= kMostTimes && sampling.rate * times <= kFastest; times *= 2) {
+  for (int times = 2; times <= kMaxTimes && sampling.rate * times <= kFastest; times *= 2) {
     if (largest_of(errors_of(sampled, sampling, hardest, times, jobs)).largest > wanted) continue;
     if (largest_of(errors_of(sampled, sampling, all, times, jobs)).largest > wanted) continue;
     result.rate = sampling.rate * times;

@@ -24,7 +24,7 @@ constexpr double kLowestAnkle = 0.04, kHighestAnkle = 0.16;
 constexpr double kStillSpeed = 0.17;    // leg lengths per second: 0.15 m/s for a leg of 0.86 m
 constexpr double kJump = 0.1;           // leg lengths
 constexpr double kLowest = 0.2;         // of all frames
-constexpr int kFewest = 5;              // frames
+constexpr int kMinFrames = 5;           // frames
 constexpr double kShortestToes = 0.02;  // leg lengths
 
 struct Leg : LegJoints {
@@ -100,7 +100,7 @@ Vec3 position(const Clip& clip, int frame, int joint) {
 std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length) {
   const int frames = clip.frame_count();
   std::vector<int> flat;
-  if (frames < kFewest) return flat;
+  if (frames < kMinFrames) return flat;
   const int front = leg.toes >= 0 ? leg.toes : leg.tip >= 0 ? leg.tip : leg.foot;
   const int step = std::max(1, static_cast<int>(std::lround(clip.rate / 30)));
   const auto moved = [&](int joint, int frame) {
@@ -114,7 +114,7 @@ std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length
   const auto height = [&](int f) {
     return position(clip, f, leg.foot).y() + position(clip, f, front).y();
   };
-  if (static_cast<int>(flat.size()) < kFewest) {
+  if (static_cast<int>(flat.size()) < kMinFrames) {
     flat.resize(static_cast<std::size_t>(frames));
     for (int f = 0; f < frames; ++f) flat[static_cast<std::size_t>(f)] = f;
     std::ranges::stable_sort(flat, {}, height);

@@ -19,7 +19,7 @@ namespace krok::lint {
 namespace {
 
 constexpr double kUsualStature = 1.72;  // metres
-constexpr double kLeastChange = 0.005;  // metres, of a bone
+constexpr double kMinChange = 0.005;    // metres, of a bone
 constexpr double kShortestBone = 0.02;  // metres
 constexpr double kLongEnough = 0.1;     // seconds beyond a limit
 constexpr double kForwards = 0.7;       // cosine to where the toes point
@@ -71,7 +71,7 @@ void find_bones(const Series& series, MotionFaults& out) {
     }
     const auto [low, high] = std::ranges::minmax(lengths);
     const double mean = sum / series.frames, range = high - low;
-    if (mean < kShortestBone * series.scale || range < kLeastChange * series.scale) continue;
+    if (mean < kShortestBone * series.scale || range < kMinChange * series.scale) continue;
     Finding finding = finding_of(Rule::bone_length, series, 100 * range / mean);
     if (finding.value <= finding.threshold) continue;
     finding.joint = j;
@@ -142,7 +142,7 @@ void find_asymmetry(const Series& series, MotionFaults& out) {
   const auto compare = [&](std::array<Role, 2> upper, std::array<Role, 2> lower) {
     const double left = length(upper[0], lower[0]), right = length(upper[1], lower[1]);
     if (std::min(left, right) < kShortestBone * series.scale ||
-        std::abs(left - right) < kLeastChange * series.scale) {
+        std::abs(left - right) < kMinChange * series.scale) {
       return;
     }
     const double percent = 100 * std::abs(left - right) / std::max(left, right);

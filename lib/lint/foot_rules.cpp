@@ -25,7 +25,7 @@ constexpr double kUneven = 0.1;          // metres, of heights of contacts on le
 constexpr double kFloor = 2;             // times the threshold, of the floor's height
 constexpr double kUpright = 0.8;         // of the legs' length, height of the hips
 constexpr double kShortestHover = 0.25;  // seconds
-constexpr double kLeastFall = 4;         // metres per second squared
+constexpr double kMinFall = 4;           // metres per second squared
 
 // The feet's points over the frames.
 struct Soles {
@@ -293,7 +293,7 @@ class GroundRule {
         if (first < 0) first = f;
         if (over > highest) highest = over, worst = f;
       } else if (first >= 0) {
-        if (f - first >= shortest && fall(first, f - 1) < kLeastFall) {
+        if (f - first >= shortest && fall(first, f - 1) < kMinFall) {
           add("hovering", first, f - 1, worst, highest, limit_);
         }
         first = -1, highest = 0;

@@ -17,7 +17,7 @@ namespace {
 // Seconds that a foot is faster than a fifth of its fastest speed, of legs of 0.86 m: the median of
 // 66 public captures of walks and runs, nine tenths of which are within a third of it.
 constexpr double kUsualSwing = 0.53;
-constexpr std::size_t kFewestSwings = 4;
+constexpr std::size_t kMinSwings = 4;
 constexpr double kSwingSpeed = 0.2;    // of a foot's fastest speed; slower is a stance
 constexpr double kShortestStep = 0.5;  // metres that a foot moves in a swing
 constexpr double kLongestStep = 2.2;
@@ -81,7 +81,7 @@ void find_swings(const Series& series, MotionFaults& out) {
     const int foot = series.roles.joint(leg.foot);
     if (foot >= 0) add_swings(series, foot, swings);
   }
-  if (swings.size() < kFewestSwings) return;
+  if (swings.size() < kMinSwings) return;
   const double usual = kUsualSwing * std::sqrt(series.scale), swing = median(swings);
   const double limit = series.threshold(Rule::frame_rate), factor = swing / usual;
   if (factor < limit && factor > 1 / limit) return;

@@ -54,12 +54,25 @@ class Correlation {
     return normalized_or_identity(Quat(Mat3(svd_.matrixU() * flip * svd_.matrixV().transpose())));
   }
 
- private:
+  // The line of own bones.
   Vec3 own() const { return svd_.matrixV().col(0); }
+
+ private:
   Vec3 images() const { return svd_.matrixU().col(0); }
 
   Eigen::JacobiSVD<Mat3> svd_;
 };
+
+// Over the joint and those below it in the reference pose.
+double extent_below(const Skeleton& skeleton, int joint) {
+  std::vector<std::uint8_t> below(skeleton.names.size(), 0);
+  Eigen::AlignedBox3d box;
+  for (int j = joint; j < skeleton.joint_count(); ++j) {
+    below[at(j)] = j == joint || below[at(skeleton.parents[at(j)])] != 0 ? 1 : 0;
+    if (below[at(j)] != 0) box.extend(skeleton.reference[at(j)].position);
+  }
+  return box.diagonal().norm();
+}
 
 // How joints' own axes stand to those of their partners, see axes_to_images().
 class AxesFinder {
@@ -70,14 +83,16 @@ class AxesFinder {
         pairs_(pairs),
         pose_(pose),
         children_(skeleton.children()),
-        least_(0.01 * reference_extent(skeleton)),
-        found_(skeleton.names.size(), Quat::Identity()) {}
+        least_(0.01 * extent_below(skeleton, pairs.carrier)),
+        found_(skeleton.names.size(), Quat::Identity()),
+        turned_(skeleton.names.size(), 0) {}
 
   std::vector<Quat> find() {
     for (int j = 0; j < skeleton_.joint_count(); ++j) {
       const int other = pairs_.partners[at(j)];
       if (other == MirrorPairs::kNone) continue;
       found_[at(j)] = other < j ? image(found_[at(other)].conjugate()) : of(j, other);
+      if (other < j) turned_[at(j)] = turned_[at(other)];
     }
     return std::move(found_);
   }
@@ -92,10 +107,19 @@ class AxesFinder {
     for (const int child : children_[at(joint)]) {
       const int partner = pairs_.partners[at(child)];
       if (partner == MirrorPairs::kNone || skeleton_.parents[at(partner)] != other) continue;
-      result.own.push_back(skeleton_.reference_local(child).position);
-      result.images.push_back(image(skeleton_.reference_local(partner).position));
+      result.own.push_back(bone(joint, child));
+      result.images.push_back(image(bone(other, partner)));
     }
     return result;
+  }
+
+  // In the parent's axes. Files whose joints have position channels need not state offsets that
+  // agree with them: where the posture has another direction, its offset counts.
+  Vec3 bone(int parent, int child) const {
+    const Vec3 stated = skeleton_.reference_local(child).position;
+    if (pose_.empty()) return stated;
+    const Vec3 moved = pose_[at(parent)].inverse() * pose_[at(child)].position;
+    return moved.dot(stated) < kSameWay * moved.norm() * stated.norm() ? moved : stated;
   }
 
   static double misfit(const Bones& bones, const Quat& turn) {
@@ -106,7 +130,7 @@ class AxesFinder {
     return most;
   }
 
-  Quat of(int joint, int other) const {
+  Quat of(int joint, int other) {
     const Quat by_reference = image(skeleton_.reference[at(other)].orientation).conjugate() *
                               skeleton_.reference[at(joint)].orientation;
     const int parent = skeleton_.parents[at(joint)];
@@ -116,22 +140,58 @@ class AxesFinder {
     double size = 0;
     for (const Vec3& bone : all.own) size = std::max(size, bone.norm());
     if (size < least_) {
+      if (!has_parents) return by_reference;
       // Turned in its parent as its partner is in the reference pose.
-      return has_parents ? image(skeleton_.reference_local(other).orientation).conjugate() *
-                               found_[at(parent)] * skeleton_.reference_local(joint).orientation
-                         : by_reference;
+      return image(skeleton_.reference_local(other).orientation).conjugate() * found_[at(parent)] *
+             skeleton_.reference_local(joint).orientation;
     }
     const Correlation correlation(correlation_of(all));
     // In most captures joints have their parents' axes at rest, and need no reference pose.
-    const bool by_parent = has_parents && correlation.angle_after(by_reference) >= kFits &&
-                           correlation.angle_after(found_[at(parent)]) < kFits;
+    const bool turned_above = has_parents && turned_[at(parent)] != 0;
+    const bool by_parent =
+        has_parents &&
+        correlation.angle_after(found_[at(parent)]) < (turned_above ? kBent : kFits) &&
+        (turned_above || correlation.angle_after(by_reference) >= kFits);
+    turned_[at(joint)] = by_parent && turned_above ? 1 : 0;
     Quat usual = by_parent ? found_[at(parent)] : by_reference;
     if (joint == other && has_parents && !pose_.empty() && correlation.leaves_twist()) {
       usual = by_posture(joint, correlation, usual);
     }
     // The usual case to the bit, whatever the rounding of the offsets was.
-    if (misfit(all, usual) < kSameOffset) return usual;
-    return correlation.turn(usual);
+    const Quat fitted = misfit(all, usual) < kSameOffset ? usual : correlation.turn(usual);
+    const bool at_trunk = parent >= 0 && pairs_.partners[at(parent)] == parent;
+    if (joint != other && at_trunk && correlation.leaves_twist()) {
+      return by_quarter_turns(joint, other, correlation, fitted);
+    }
+    return fitted;
+  }
+
+  // For a joint with a single bone next to the trunk. Reference poses whose left chains run along
+  // +x and right ones along -x leave the twist to convention: of quarter turns about the bone, the
+  // one that turns the joint least in its parent, if it does so clearly less than `fitted`.
+  Quat by_quarter_turns(int joint, int other, const Correlation& correlation, const Quat& fitted) {
+    Quat best = fitted;
+    for (int quarter = 1; quarter < 4; ++quarter) {
+      const Quat turn = fitted * Quat(Eigen::AngleAxisd(quarter * kPi / 2, correlation.own()));
+      best = less_changed(joint, other, best, turn);
+    }
+    turned_[at(joint)] = best.coeffs() == fitted.coeffs() ? 0 : 1;
+    return best;
+  }
+
+  // `turn` where it turns the joint clearly less in its parent than `usual` does.
+  Quat less_changed(int joint, int other, const Quat& usual, const Quat& turn) const {
+    if (pose_.empty()) return usual;
+    const double gain = change(joint, other, usual) - change(joint, other, turn);
+    return gain > kClearlyLess ? turn : usual;
+  }
+
+  // By how much mirroring turns the joint in its parent, both of the posture.
+  double change(int joint, int other, const Quat& turn) const {
+    const int parent = skeleton_.parents[at(joint)], source = skeleton_.parents[at(other)];
+    const Quat before = pose_[at(parent)].orientation.conjugate() * pose_[at(joint)].orientation;
+    const Quat theirs = pose_[at(source)].orientation.conjugate() * pose_[at(other)].orientation;
+    return angle_between(before, found_[at(parent)].conjugate() * image(theirs) * turn);
   }
 
   // The axes that the nearest joint of the middle below, whose bones leave nothing open, has.
@@ -152,19 +212,12 @@ class AxesFinder {
   // chest, and say nothing. Mirrored, people stand about as before: of `usual` and the axes of the
   // joints above and below, those which turn the joint least in its parent.
   Quat by_posture(int joint, const Correlation& correlation, const Quat& usual) const {
-    const int parent = skeleton_.parents[at(joint)];
-    const Quat above = found_[at(parent)];
-    const auto change = [&](const Quat& turn) {
-      const Quat before = pose_[at(parent)].orientation.conjugate() * pose_[at(joint)].orientation;
-      const Quat after = above.conjugate() * image(before) * turn;
-      return angle_between(before, after);
-    };
     Quat best = usual;
     const auto consider = [&](const Quat& turn) {
       if (correlation.angle_after(turn) >= kBent) return;
-      if (change(turn) < change(best) - kClearlyLess) best = turn;
+      best = less_changed(joint, joint, best, turn);
     };
-    consider(above);
+    consider(found_[at(skeleton_.parents[at(joint)])]);
     if (const auto found = below(joint)) consider(*found);
     return best;
   }
@@ -177,8 +230,9 @@ class AxesFinder {
     return correlation;
   }
 
-  static constexpr double kFits = 0.01;  // radians
-  static constexpr double kBent = 0.3;   // radians, between joints of a spine
+  static constexpr double kFits = 0.01;    // radians
+  static constexpr double kSameWay = 0.9;  // cosine
+  static constexpr double kBent = 0.3;     // radians, between joints of a spine
   static constexpr double kClearlyLess = 60 * kRadiansPerDegree;
 
   const Skeleton& skeleton_;
@@ -187,6 +241,7 @@ class AxesFinder {
   std::vector<std::vector<int>> children_;
   double least_;
   std::vector<Quat> found_;
+  std::vector<std::uint8_t> turned_;  // 1 where by_quarter_turns() changed the twist, and below
 };
 
 constexpr double kStill = 2 * kRadiansPerDegree;     // relative to the parent, over the whole clip
@@ -216,13 +271,10 @@ std::vector<std::uint8_t> still_joints(const Clip& clip, const MirrorPairs& pair
 // Mirrors poses of one skeleton.
 class PoseMirror {
  public:
-  PoseMirror(const Clip& clip, const MirrorPairs& pairs) : skeleton_(clip.skeleton), pairs_(pairs) {
-    std::vector<Transform> pose;
-    if (clip.frame_count() > 0) {
-      pose.resize(clip.skeleton.names.size());
-      clip.get_pose(clip.frame_count() / 2, pose);
-    }
-    axes_ = axes_to_images(clip.skeleton, pairs, pose);
+  PoseMirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture)
+      : skeleton_(clip.skeleton),
+        pairs_(pairs),
+        axes_(axes_to_images(clip.skeleton, pairs, posture.empty() ? middle_pose(clip) : posture)) {
     if (clip.frame_count() > 0) find_axes_above(clip);
   }
 
@@ -312,8 +364,17 @@ std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pa
   return AxesFinder(skeleton, pairs, posture).find();
 }
 
-Clip mirror(const Clip& clip, const MirrorPairs& pairs) {
-  PoseMirror mirror_pose(clip, pairs);
+std::vector<Transform> middle_pose(const Clip& clip) {
+  std::vector<Transform> pose;
+  if (clip.frame_count() > 0) {
+    pose.resize(clip.skeleton.names.size());
+    clip.get_pose(clip.frame_count() / 2, pose);
+  }
+  return pose;
+}
+
+Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture) {
+  PoseMirror mirror_pose(clip, pairs, posture);
   Clip result = clip;
   std::vector<Transform> pose(clip.skeleton.names.size()), mirrored(pose.size());
   if (clip.frame_count() > 0) {

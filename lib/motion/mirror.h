@@ -42,15 +42,22 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // degrees keep their rotations relative to their parents: some exporters' reference poses have them
 // twisted, and what stays that far off is no posture. Joints above the hips that stand, or keep to
 // the hips' ground frame, are not turned.
-Clip mirror(const Clip& clip, const MirrorPairs& pairs);
+//
+// `posture` is that of axes_to_images(), by default the clip's middle_pose(). Clips of one actor
+// that are blended need the same.
+Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture = {});
+
+// joint_to_world of the frame in the middle; empty without frames.
+std::vector<Transform> middle_pose(const Clip& clip);
 
 // For each joint the turn from the image of its partner's axes to its own, [joints]; the identity
 // without a partner. The bones that hang on both tell it: a vector v in the partner's axes has the
 // image turn.conjugate() * (-v.x, v.y, v.z) in the joint's. Only what they leave open, the twist
 // about a single bone or about bones that lie within a hundredth of one line, is taken from the
-// reference pose. `posture` (joint_to_world, of any
-// frame; may be empty) tells where reference poses are twisted between hips, chest and head: joints
-// of the middle then take the axes of a joint next to them rather than be turned half round.
+// reference pose. `posture` (joint_to_world, of any frame; may be empty) corrects the reference
+// pose: bones that it has in another direction count as they are there; joints of the middle take
+// the axes of a joint next to them, and joints next to the trunk those a quarter or half round
+// about their bone, rather than be turned by far in their parents.
 std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pairs,
                                  std::span<const Transform> posture = {});
 

@@ -116,6 +116,7 @@ class Cutter {
       library.parameters.push_back(*parameter);
     }
     pairs_ = find_mirror_pairs(library.skeleton, roles_);
+    posture_ = middle_pose(*walks.front().clip);
     return check(library);
   }
 
@@ -222,7 +223,7 @@ class Cutter {
   }
 
   void flip(Clip& piece, std::vector<Contact>& contacts) const {
-    piece = mirror(piece, pairs_);
+    piece = mirror(piece, pairs_, posture_);
     piece.skeleton = result_.library.skeleton;
     const auto partner = [&](const Contact& contact) {
       return pairs_.partners[static_cast<std::size_t>(contact.joint)];
@@ -266,6 +267,7 @@ class Cutter {
   const RoleMap& roles_;
   const CutOptions& options_;
   MirrorPairs pairs_;
+  std::vector<Transform> posture_;  // see mirror()
   StepLibrary result_;
   std::vector<Origin> origins_;  // [examples]
 };

@@ -268,7 +268,9 @@ Status check(const Library& library) {
 Result<Library> mirrored(const Library& library) {
   const MirrorPairs pairs = find_mirror_pairs(library.skeleton, roles_of(library));
   const auto partner = [&](int joint) { return pairs.partners[static_cast<std::size_t>(joint)]; };
-  const std::vector<Quat> axes = axes_to_images(library.skeleton, pairs);
+  std::vector<Transform> posture;
+  if (!library.examples.empty()) posture = middle_pose(library.examples.front().motion);
+  const std::vector<Quat> axes = axes_to_images(library.skeleton, pairs, posture);
   Library result = library;
   result.swing = library.stance();
   for (const FootSide side : {FootSide::left, FootSide::right}) {
@@ -289,7 +291,7 @@ Result<Library> mirrored(const Library& library) {
     }
   }
   for (Example& example : result.examples) {
-    example.motion = mirror(example.motion, pairs);
+    example.motion = mirror(example.motion, pairs, posture);
     example.motion.skeleton = library.skeleton;
     example.mirrored = !example.mirrored;
     std::erase_if(example.contacts, [&](const Contact& contact) {

@@ -53,9 +53,9 @@ std::vector<Vec3> shared_jitter(const KnownCurve& hips, const std::vector<KnownC
   // Landings move feet and pelvis alike, too, but without jitter from frame to frame.
   both = std::min(both, 3 * kSlower * jitter * jitter * count);
   if (count < 3 || !(both > 0)) return result;
-  constexpr double kLeast = 1e-3;  // of the jitter's variance
-  const double foot_weight = both / std::max(of_feet - both, kLeast * both);
-  const double hips_weight = both / std::max(of_hips - both, kLeast * both);
+  constexpr double kMin = 1e-3;  // of the jitter's variance
+  const double foot_weight = both / std::max(of_feet - both, kMin * both);
+  const double hips_weight = both / std::max(of_hips - both, kMin * both);
   for (std::size_t f = 0; f < frames; ++f) {
     Vec3 sum = hips_weight * hips.values[f];
     double weight = 1 + hips_weight;

@@ -12,7 +12,7 @@ namespace krok::ragdoll {
 namespace {
 
 constexpr double kInside = 0.9;  // share of the vertices that a shape reaches
-constexpr std::size_t kFewest = 12;
+constexpr std::size_t kMinPoints = 12;
 
 double quantile(std::vector<double> values, double share) {
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -74,7 +74,7 @@ void fit_shapes(const Model& model, std::vector<Body>& bodies) {
     points[at(body)].push_back(to_world.inverse() * Vec3(model.positions[v].cast<double>()));
   }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (points[b].size() < kFewest) continue;
+    if (points[b].size() < kMinPoints) continue;
     if (bodies[b].shape.kind == Shape::Kind::box) {
       fit_box(points[b], bodies[b]);
     } else {

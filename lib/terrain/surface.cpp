@@ -27,7 +27,7 @@ constexpr double kJump = 2e-6;  // metres
 constexpr double kProbeSpacing = 0.1;  // metres between the first lines
 constexpr int kMaxProbes = 200;        // lines across, at which a line's heights are read
 constexpr double kFinest = 0.01;       // metres between lines where nothing jumps
-constexpr double kLeastJump = 0.002;   // metres
+constexpr double kMinJump = 0.002;     // metres
 constexpr int kLongestRun = 64;        // lines that may be left out in a row before one is tried
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -69,7 +69,7 @@ bool jumps(const Line& a, const Line& b) {
   for (std::size_t i = 0; i < a.heights.size(); ++i) {
     const double one = a.heights[i], two = b.heights[i];
     if ((one == kNone) != (two == kNone)) return true;
-    if (one != kNone && std::abs(two - one) > std::max(kLeastJump, 4 * (b.at - a.at))) return true;
+    if (one != kNone && std::abs(two - one) > std::max(kMinJump, 4 * (b.at - a.at))) return true;
   }
   return false;
 }

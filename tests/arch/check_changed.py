@@ -1,5 +1,6 @@
-"""Compiles alone and lints what changed: every source and header that differs from the newest commit
-older than three days, those changed last first.
+"""Compiles alone and lints what changed: every source and header that differs from the commit in
+tests/arch/passed_commit, the newest that CI passed, those changed last first; where the history has no
+such commit, from the newest older than three days.
 
 Usage: check_changed.py SOURCE_FOLDER LINT_BUILD [--alone BUILD] [--base COMMIT] [--jobs N] [--seconds N]
                         [--syntax-only | --lint-only]
@@ -120,7 +121,11 @@ def main():
     parser.add_argument("--lint-only", action="store_true")
     arguments = parser.parse_args()
     folder, build = arguments.folder.resolve(), arguments.build.resolve()
-    base = arguments.base or git(folder, "rev-list", "-1", "--before=3 days ago", "HEAD").strip()
+    passed = folder / "tests/arch/passed_commit"
+    base = arguments.base or (passed.read_text().strip() if passed.exists() else "")
+    if subprocess.run(["git", "-C", folder, "merge-base", "--is-ancestor", base, "HEAD"],
+                      capture_output=True).returncode != 0:
+        base = git(folder, "rev-list", "-1", "--before=3 days ago", "HEAD").strip()
     if not base:  # a young or shallow history: everything
         base = git(folder, "hash-object", "-t", "tree", "/dev/null").strip()
     changed = changed_files(folder, base)

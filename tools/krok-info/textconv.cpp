@@ -18,9 +18,9 @@ namespace krok::cli::info {
 
 namespace {
 
-constexpr int kMostLines = 1990;  // besides those of the header
-constexpr double kPlaces = 1e5;   // a metre, to 0.01 mm
-constexpr double kAngles = 1e3;   // a degree
+constexpr int kMaxLines = 1990;  // besides those of the header
+constexpr double kPlaces = 1e5;  // a metre, to 0.01 mm
+constexpr double kAngles = 1e3;  // a degree
 constexpr std::string_view kPointer = "version https://git-lfs.github.com/spec/";
 
 // What a joint does in a stretch of time.
@@ -56,8 +56,8 @@ class Text {
  public:
   explicit Text(const FrameSource& frames) : frames_(frames) {
     const double seconds = std::max(frames.duration(), 1 / frames.rate);
-    shown_ = std::min(frames.joint_count(), kMostLines);
-    const double stretches = std::max(1, kMostLines / std::max(1, shown_));
+    shown_ = std::min(frames.joint_count(), kMaxLines);
+    const double stretches = std::max(1, kMaxLines / std::max(1, shown_));
     stretch_ =
         std::max(1, static_cast<int>(std::ceil(std::ceil(seconds / stretches) * frames.rate)));
   }

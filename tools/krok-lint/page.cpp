@@ -22,7 +22,7 @@ using krok::lint::facts_of;
 using krok::lint::Finding;
 using krok::lint::Rule;
 
-constexpr std::size_t kMostStrips = 100;
+constexpr std::size_t kMaxStrips = 100;
 constexpr int kRowHeight = 170;  // pixels
 constexpr const char* kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem}"
@@ -92,7 +92,7 @@ Result<std::string> page_of(LintedFiles files, ToolContext& context) {
     ++faulty;
     const Finding& worst = file->findings.front();
     body += fmt::format("<h2>{}</h2>\n", to_markup(to_utf8(file->path)));
-    if (strips < kMostStrips) {
+    if (strips < kMaxStrips) {
       const auto strip = strip_of(*file, worst, context);
       if (!strip) return strip.error();
       body += fmt::format("<img alt=\"{} at {:.2f} s\" src=\"data:image/png;base64,{}\">\n",

@@ -19,7 +19,7 @@ namespace {
 using krok::lint::facts_of;
 using krok::lint::Finding;
 
-constexpr std::size_t kMostSarifResults = 25'000;  // GitHub's limit for a run
+constexpr std::size_t kMaxSarifResults = 25'000;  // GitHub's limit for a run
 
 std::string shown_path(const LintedFile& file) {
   return printable(to_utf8(file.path));
@@ -154,7 +154,7 @@ std::string sarif_of(LintedFiles files, const std::string& version) {
   std::size_t left_out = 0;
   for (const LintedFile* file : files) {
     const auto add = [&](Json result) {
-      if (results.size() < kMostSarifResults) {
+      if (results.size() < kMaxSarifResults) {
         results.push_back(std::move(result));
       } else {
         ++left_out;

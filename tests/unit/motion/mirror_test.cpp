@@ -215,6 +215,36 @@ TEST(Mirror, ATrunkTwistedInTheReferencePoseIsNotTwistedByMirroring) {
   }
 }
 
+// Left chains along +x and right ones along -x in the reference pose, where all axes are the
+// world's, and every frame has the right arm half round about its bones: a convention of some
+// exporters. If this fails, mirrored shoulders and arms are half round against all other steps of
+// the actor, and blends of both wring them.
+TEST(Mirror, ArmsHalfRoundInTheReferencePoseKeepTheirAxes) {
+  Clip clip = test::swinging_clip(test::human_skeleton(), 12, 30);
+  const Skeleton& skeleton = clip.skeleton;
+  std::vector<Transform> pose(skeleton.names.size());
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    clip.get_pose(f, pose);
+    for (const char* name : {"RightShoulder", "RightArm", "RightForeArm", "RightHand"}) {
+      Quat& turned = pose[static_cast<std::size_t>(skeleton.find(name))].orientation;
+      turned = turned * Quat(0, 1, 0, 0);
+    }
+    clip.set_pose(f, pose);
+  }
+  const MirrorPairs pairs = pairs_of(skeleton);
+  const Clip mirrored = mirror(clip, pairs);
+  expect_mirrored(clip, mirrored, pairs, 2e-6);
+  expect_twice_is_nothing(clip, pairs);
+  for (const char* name :
+       {"LeftShoulder", "LeftArm", "LeftForeArm", "RightShoulder", "RightArm", "RightForeArm"}) {
+    const int joint = skeleton.find(name);
+    const auto in_parent = [&](const Clip& one) {
+      return local_motion(one).at(joint, 5).orientation;
+    };
+    EXPECT_LT(angle_between(in_parent(clip), in_parent(mirrored)), 75 * kRadiansPerDegree) << name;
+  }
+}
+
 TEST(Mirror, AActorThatStandsBesideTheOriginInItsReferencePose) {
   Skeleton skeleton = test::human_skeleton();
   const Clip centred = test::swinging_clip(skeleton, 6, 30);
