@@ -4,6 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "formats/gltf/json_text_internal.h"
+
 #include "formats/gltf/document_internal.h"
 
 namespace krok::gltf {
