@@ -207,6 +207,7 @@ Status read_animations(const ParsedJson& parsed, Accessors& accessors, Scene& sc
   for (std::size_t i = 0; i < model.animations.size(); ++i) {
     Animation& animation = scene.animations.emplace_back();
     animation.name = model.animations[i].name;
+    animation.from_zero = true;
     if (i < parsed.rates.size()) animation.rate = parsed.rates[i];
     for (std::size_t c = 0; c < model.animations[i].channels.size(); ++c) {
       if (auto read = reader.read_channel(model.animations[i], i, c, animation); !read) return read;

@@ -7,6 +7,7 @@
 #include "formats/gltf/json_text_internal.h"
 
 #include "formats/gltf/document_internal.h"
+#include "formats/gltf/json_text_internal.h"
 
 namespace krok::gltf {
 

@@ -23,6 +23,7 @@ constexpr double kUsualRate = 30.0;
 constexpr double kUnevenRate = 60.0;
 constexpr double kMinFileRate = 0.001, kMaxFileRate = 100'000;  // of files, see check_frame_rate()
 constexpr double kMaxFrames = 1e7;
+constexpr double kMaxHold = 60.0;  // seconds before the first key that are kept
 
 // The float rounding error of a time, in frames. From half a frame on, every time would match.
 double float_rounding(double rate, double time) {
@@ -89,6 +90,24 @@ FoundRate find_rate(const std::vector<double>& times, double of_file) {
           Confidence::guess};
 }
 
+// Whether frame 0 is at time 0, for a viewer that holds the first key until its time: where the
+// keys are on frames counted from 0, at another rate in `found` if need be, or on none anyway.
+bool starts_at_zero(const nodes::Animation& animation, std::vector<double> times,
+                    const SamplingOptions& options, FoundRate& found) {
+  if (!animation.from_zero || times.empty() || times.front() > kMaxHold) return false;
+  if (times.front() == 0) return true;
+  times.insert(times.begin(), 0.0);
+  if (!found.on_keys || misfit(times, found.rate, false)) return true;
+  const auto grid = common_grid(times);
+  if (grid && !options.source_rate) {
+    found = {*grid, true,
+             fmt::format("all keys are on frames at {} fps from time 0", readable(*grid)),
+             Confidence::likely};
+    return true;
+  }
+  return options.rate.has_value() && !options.source_rate;
+}
+
 }  // namespace
 
 std::vector<double> distinct_key_times(const nodes::Animation& animation) {
@@ -140,14 +159,15 @@ std::optional<double> common_grid(const std::vector<double>& times) {
 Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
                                        const SamplingOptions& options, Diagnostics& diagnostics) {
   ChosenSampling chosen;
-  const std::vector<double> times = distinct_key_times(animation);
+  std::vector<double> times = distinct_key_times(animation);
   if (!times.empty()) {
     chosen.keys_from = times.front();
     chosen.keys_to = times.back();
   }
-  const FoundRate found = find_rate(times, animation.rate);
+  FoundRate found = find_rate(times, animation.rate);
   Sampling& sampling = chosen.sampling;
-  sampling.start = chosen.keys_from;
+  const bool held = starts_at_zero(animation, std::move(times), options, found);
+  sampling.start = held ? 0 : chosen.keys_from;
   sampling.rate = found.rate;
   chosen.rate = {readable(found.rate), found.reason, found.confidence};
   double stretch = 1.0;  // scene seconds per second of the result
@@ -167,19 +187,26 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   if (options.rate) sampling.rate = *options.rate;
   sampling.step = stretch / sampling.rate;
 
-  const double steps = (chosen.keys_to - chosen.keys_from) / sampling.step;
+  const double steps = (chosen.keys_to - sampling.start) / sampling.step;
   if (!(steps < kMaxFrames)) {
     return Error("scene-too-long",
                  fmt::format("{} fps over {} s gives too many frames", readable(sampling.rate),
-                             readable(chosen.keys_to - chosen.keys_from)));
+                             readable(chosen.keys_to - sampling.start)));
   }
   // A remainder within rounding adds no frame.
   const double rest = 1e-2 + float_rounding(1 / sampling.step, chosen.keys_to);
   sampling.frames = static_cast<int>(std::ceil(steps - rest)) + 1;
   sampling.frames = std::max(sampling.frames, 1);
-  if (chosen.keys_from != 0) {
+  if (chosen.keys_from != 0 && held) {
     tell(diagnostics, Severity::note, "scene-start",
-         fmt::format("frame 0 is the file's first key, at {} s", readable(chosen.keys_from)));
+         fmt::format("frames before {} s hold the first key, as viewers show it",
+                     readable(chosen.keys_from)));
+  } else if (chosen.keys_from != 0) {
+    tell(diagnostics, animation.from_zero ? Severity::warning : Severity::note, "scene-start",
+         fmt::format("frame 0 is the file's first key, at {} s", readable(chosen.keys_from)),
+         animation.from_zero && chosen.keys_from <= kMaxHold
+             ? "viewers hold the first key until then; --rate N samples from time 0"
+             : "");
   }
   const double late = (sampling.frames - 1) - steps;
   if (late > 0.05) {

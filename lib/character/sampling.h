@@ -35,14 +35,16 @@ struct ChosenSampling {
 
 // Frames from the first key of the animation to the last, over all its channels, so that motion,
 // camera and weights of one animation stay in sync. If the last key is between two frames, one more
-// frame holds it.
+// frame holds it. With Animation::from_zero they begin at time 0, unless the keys are on frames of
+// no rate counted from there (and none is requested), or the first key is later than 60 s.
 //
 // The rate: as requested; or that of the file, if all keys are on its frames; or that of the keys,
 // if they are evenly spaced at 20 fps or more, snapped to a common rate; or a common rate whose
 // frames include all keys; or 60. With `source_rate` the keys must be evenly spaced or on the
 // frames of one rate, and those are taken as frames at `source_rate`.
 //
-// Notes: scene-rate, scene-start (the first key is not at time 0), scene-end (the last frame is
+// Notes: scene-rate, scene-start (the first key is not at time 0; a
+// warning if times shift against what viewers play), scene-end (the last frame is
 // later than the last key). Errors: scene-rate (source_rate with uneven keys), scene-too-long (more
 // than 10 million frames).
 Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,

@@ -131,6 +131,9 @@ struct Animation {
   // 1 and values in (0, pi).
   std::vector<Channel> lenses{};
   double rate = 0;  // frames per second as the file says, not checked; 0: unknown
+  // Viewers play from time 0, as glTF's do, and hold each channel's first value until its first
+  // key. If not, the first key is where the animation begins.
+  bool from_zero = false;
 };
 
 struct Scene {

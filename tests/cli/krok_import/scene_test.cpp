@@ -49,6 +49,23 @@ class SceneImportTest : public CliTest {
   }
 };
 
+// Viewers hold the first key until its time; the motion came back half a second early.
+TEST_F(SceneImportTest, AFirstKeyThatIsNotAtZeroStaysWhereItIs) {
+  GlbBuilder builder = rig();
+  const int late = builder.add(std::vector<float>{0.5f, 1, 1.5f}, "SCALAR");
+  builder.json["accessors"][late]["min"] = {0.5};
+  builder.json["accessors"][late]["max"] = {1.5};
+  for (Json& sampler : builder.json["animations"][0]["samplers"]) sampler["input"] = late;
+  put_glb("in.glb", builder);
+  const ToolRun run = import({"-o", path("a.anim"), "--save-character", path("a.character")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  ASSERT_EQ(
+      run_tool("krok-skin", {path("a.character"), path("a.anim"), "-o", path("b.glb")}).exit_code,
+      0);
+  const ToolRun diff = run_tool("krok-diff", {path("in.glb"), path("b.glb"), "--match", "order"});
+  EXPECT_EQ(diff.exit_code, 0) << diff.out << diff.err;
+}
+
 TEST_F(SceneImportTest, MotionAndModelOfAGlb) {
   put_glb("in.glb", rig());
   const ToolRun run = import({"-o", path("a.anim"), "--save-model", path("a.model")});

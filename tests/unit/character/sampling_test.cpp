@@ -139,6 +139,47 @@ TEST(Sampling, FewKeys) {
   EXPECT_EQ(one.sampling.start, 3);
 }
 
+// A clip of glTF whose first key is at 1/30 s came back a frame early, 108 mm off: viewers hold the
+// first key until its time.
+TEST(Sampling, FramesBeforeTheFirstKeyOfGltfAreKept) {
+  const auto late = [](double start, double rate = 30, const SamplingOptions& options = {}) {
+    nodes::Animation animation = keyed(even_times(31, rate, start));
+    animation.from_zero = true;
+    return chosen(animation, options).sampling;
+  };
+  struct Case {
+    double start, rate, result_rate, result_start;
+    int frames;
+  };
+  for (const Case& one : {Case{0, 30, 30, 0, 31}, Case{1 / 30.0, 30, 30, 0, 32},
+                          Case{0.5, 30, 30, 0, 46}, Case{1 / 24.0, 24, 24, 0, 32},
+                          // On frames from 0 at another rate only; at none; too late.
+                          Case{1 / 24.0, 30, 120, 0, 126}, Case{0.0123, 30, 30, 0.0123, 31},
+                          Case{70, 30, 30, 70, 31}}) {
+    const Sampling found = late(one.start, one.rate);
+    EXPECT_DOUBLE_EQ(found.rate, one.result_rate) << one.start;
+    EXPECT_NEAR(found.start, one.result_start, 1e-5) << one.start;
+    EXPECT_EQ(found.frames, one.frames) << one.start;
+  }
+  EXPECT_EQ(late(0.0123, 30, {.source_rate = {}, .rate = 60}).start, 0);
+  EXPECT_EQ(late(1 / 30.0, 30, {.source_rate = 60, .rate = {}}).frames, 32);
+}
+
+TEST(Sampling, AShiftAgainstViewersIsAWarning) {
+  const auto severity = [](double start) {
+    nodes::Animation animation = keyed(even_times(31, 30, start));
+    animation.from_zero = true;
+    Diagnostics diagnostics;
+    EXPECT_TRUE(choose_sampling(animation, {}, diagnostics).ok());
+    for (const Diagnostic& one : diagnostics) {
+      if (one.code == "scene-start") return one.severity;
+    }
+    return Severity::error;
+  };
+  EXPECT_EQ(severity(0.0123), Severity::warning);
+  EXPECT_EQ(severity(0.5), Severity::note);
+}
+
 TEST(Sampling, EndlessTimesAreAnError) {
   Diagnostics diagnostics;
   for (const float end : {1e9f, 1e30f, 3e38f}) {
