@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -20,8 +21,8 @@ namespace {
 constexpr std::size_t kLongWalk = 8;  // steps of one foot for which sums are worth their time
 constexpr double kLead = 0.4;         // seconds of weight shift before the first foot leaves
 constexpr double kTail = 0.4;         // seconds after the last strike
-constexpr double kFlatPart = 0.4;     // of the swing, when the stance foot is flat
 constexpr double kBeside = 0.5;       // of the swing: where the swing foot is beside the other
+constexpr double kBesideInRun = 0.5;  // of the stance
 constexpr double kLifted = 0.4;       // share of the blend in the middle of an only step
 constexpr double kShortestStep = 0.2, kLongestStep = 10;  // seconds
 // Distance of a step from the examples, metres, from which it is blended with standing, and from
@@ -38,6 +39,17 @@ constexpr double kRiseSpeed = 1.2;       // of the pelvis at a strike, of its me
 double speed_up(double s) {
   s = std::clamp(s, 0.0, 1.0);
   return s * s * s * (2 - s);
+}
+
+// The first number from 0 to 1 that is not before what is looked for.
+template <typename IsBefore>
+double bisected(const IsBefore& is_before) {
+  double low = 0, high = 1;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (is_before(middle) ? low : high) = middle;
+  }
+  return high;
 }
 
 struct EndState {
@@ -59,11 +71,6 @@ EndState end_state(const BodyStep& step, double time, double inwards, double spa
   return end;
 }
 
-std::size_t index_of_time(const parametric::Library& library, const char* name) {
-  return static_cast<std::size_t>(std::ranges::find(library.keytimes, name) -
-                                  library.keytimes.begin());
-}
-
 void match_signs(PoseVector& pose, const PoseVector& to) {
   for (int j = 0; j < pose.size() / kPoseValues; ++j) {
     if (rotation_of(pose, j).dot(rotation_of(to, j)) < 0) rotation_of(pose, j) *= -1;
@@ -78,9 +85,12 @@ Transform stance_frame(const Walker& walker, const GroundedPrint& print, const S
   auto scratch = step.motion.make_scratch();
   PoseVector pose;
   const std::vector<double>& times = step.motion.keytimes();
-  const double off = times[index_of_time(library.library(), "swing_off")];
   const double strike = times[index_of_time(library.library(), "swing_strike")];
-  plain.pose(off + kFlatPart * (strike - off), pose, scratch);
+  double when = kFlatInRun * step.blend_stance_off;
+  if (!step.runs()) {
+    when = std::lerp(times[index_of_time(library.library(), "swing_off")], strike, kFlatPart);
+  }
+  plain.pose(when, pose, scratch);
   const Leg& leg = walker.leg(print.side);
   const Transform foot = joint_to_world(*walker.skeleton, pose, leg.foot);
   const Vec3 forward = foot.orientation * (leg.sole.sole * Vec3::UnitZ());
@@ -191,6 +201,13 @@ void BodyStep::pose(double time, PoseVector& pose,
   }
 }
 
+double BodyMotion::off_of(std::size_t print) const {
+  if (print > 0 && print <= steps_.size() && std::isfinite(steps_[print - 1].stance_off)) {
+    return steps_[print - 1].stance_off;
+  }
+  return print < steps_.size() ? steps_[print].off : steps_.back().finish + 1;
+}
+
 Gap BodyMotion::gap_after(std::size_t step) const {
   const BodyStep& before = steps_[step];
   const BodyStep& after = steps_[step + 1];
@@ -299,16 +316,21 @@ Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
   step.finish = step.strike + tail * step.scale;
   if (lead > 0) {
     step.off = step.start + step.lead + 0.05 * moving * step.scale;
-  } else if (step.kind == last) {
-    // When the slowing blend reaches its toe-off: by bisection.
-    double low = 0, high = 1;
-    for (int i = 0; i < 40; ++i) {
-      const double middle = 0.5 * (low + high);
-      (step.rest * (1 - speed_up(1 - middle)) < off ? low : high) = middle;
-    }
-    step.off = step.start + high * moving * step.scale;
+  } else if (step.kind == last && !step.runs()) {
+    // When the slowing blend reaches its toe-off.
+    const double part = bisected([&](double u) { return step.rest * (1 - speed_up(1 - u)) < off; });
+    step.off = step.start + part * moving * step.scale;
   } else {
     step.off = step.start + off * step.scale;
+  }
+  step.stance_off = std::numeric_limits<double>::infinity();
+  if (step.kind == middle && step.runs()) {
+    step.stance_off = step.start + step.blend_stance_off * step.scale;
+  } else if (step.kind == first && step.runs()) {
+    const double part = bisected([&](double u) {
+      return std::lerp(step.rest, length, speed_up(u)) < step.blend_stance_off;
+    });
+    step.stance_off = step.start + (lead + part * moving) * step.scale;
   }
   return {};
 }
@@ -357,18 +379,23 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   BodyStep step(*std::move(motion), walker);
   step.start = steps_.empty() ? 0 : steps_.back().strike;
   const std::vector<double>& times = step.motion.keytimes();
-  const double toes_off = times[index_of_time(maker.library(), "swing_off")];
-  // At a start the ball leaves the ground as long before the toes as in a walk.
-  const double off =
-      libraries[at(planned.library)].kind() == StepKind::start
-          ? toes_off - std::min((1 - walker.ball_off) * walker.usual_off, toes_off / 2)
-          : walker.ball_off * toes_off;
+  const StepKind made_of = libraries[at(planned.library)].kind();
+  double off = 0;
   step.blend_strike = times[index_of_time(maker.library(), "swing_strike")];
-  step.rest = off + kBeside * (step.blend_strike - off);
+  if (made_of == StepKind::run) {
+    step.blend_stance_off = walker.run_off * times[index_of_time(maker.library(), "stance_off")];
+    step.rest = kBesideInRun * step.blend_stance_off;
+  } else {
+    const double toes_off = times[index_of_time(maker.library(), "swing_off")];
+    // At a start the ball leaves the ground as long before the toes as in a walk.
+    off = made_of == StepKind::start
+              ? toes_off - std::min((1 - walker.ball_off) * walker.usual_off, toes_off / 2)
+              : walker.ball_off * toes_off;
+    step.rest = off + kBeside * (step.blend_strike - off);
+  }
   step.stance = planned.stance;
   const bool is_first = index == 0, is_last = index + 1 == plan.steps.size();
-  const StepKind made_of = libraries[at(planned.library)].kind();
-  if (!is_last && (!is_first || made_of == StepKind::walk)) {
+  if (!is_last && (!is_first || libraries[at(planned.library)].is_middle())) {
     step.standing = smoother_step((planned.far - kNear) / (kFar - kNear));
     if (step.standing > 0) {
       step.stand = standing_on(walker, plan.grounded[stance - 1], print);

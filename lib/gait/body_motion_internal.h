@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <vector>
@@ -75,20 +76,29 @@ struct BodyStep {
   int stance = 0;  // print
   Transform stance_to_world;
   double start = 0, off = 0, strike = 0;  // seconds: of the step, the swing foot's off and strike
+  double stance_off = 0;                  // seconds, of the stance foot in a run; else infinite
   double finish = 0;                      // seconds, strike but for the last step
   double scale = 1;                       // seconds of the walk for a second of the blend
-  double rest = 0;          // seconds of the blend where it rests beside the stance foot
-  double blend_strike = 0;  // seconds of the blend
-  double lead = 0;          // seconds from the start to where the blend begins to move
-  PoseVector stand;         // in the world, before the first step or after the last
-  double standing = 0;      // share of standing in a step that no example is near
-  PoseVector stand_after;   // after an only step, and where standing > 0
+  double rest = 0;              // seconds of the blend where it rests beside the stance foot
+  double blend_strike = 0;      // seconds of the blend
+  double blend_stance_off = 0;  // the same, of a run; else 0
+  double lead = 0;              // seconds from the start to where the blend begins to move
+  PoseVector stand;             // in the world, before the first step or after the last
+  double standing = 0;          // share of standing in a step that no example is near
+  PoseVector stand_after;       // after an only step, and where standing > 0
   // What the ground rises more than the blend does, metres: from the print before to the stance
   // foot's, and on to the next one; and how fast the pelvis rises where the steps meet, m/s.
   double rise_before = 0, rise_after = 0, speed_before = 0, speed_after = 0;
   SlopeGait gait;           // for that rise
   Vec3 way = Vec3::Zero();  // level, from print to print, unit vector
   const Walker* walker = nullptr;
+
+  bool runs() const { return blend_stance_off > 0; }
+  // When the stance foot is flat.
+  double flat_time() const {
+    return std::isfinite(stance_off) ? std::lerp(start, stance_off, kFlatInRun)
+                                     : std::lerp(off, strike, kFlatPart);
+  }
 
   // Before joining, clamped to the step.
   void pose(double time, PoseVector& pose, parametric::BlendedMotion::Scratch& scratch) const;
@@ -115,6 +125,9 @@ class BodyMotion {
                                    const PlannedWalk& plan, const WalkOptions& options);
 
   const std::vector<BodyStep>& steps() const { return steps_; }
+  // Seconds, when the foot leaves that print: before the other foot strikes in a run, and as it
+  // does where a run begins; after the walk for the last two prints.
+  double off_of(std::size_t print) const;
   // The gap after a step that is not the last.
   Gap gap_after(std::size_t step) const;
 

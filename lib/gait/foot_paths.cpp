@@ -15,8 +15,7 @@ namespace krok::gait {
 namespace {
 
 constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
-constexpr double kMatching = 0.16;  // seconds
-constexpr double kAway = 0.09;  // metres from where the foot was or will be, to be cleared in full
+constexpr double kAway = 0.09;   // metres from where the foot was or will be, to be cleared in full
 constexpr double kRaisedFrom = 0.25, kRaisedInFull = 0.45;  // of the swing
 constexpr double kShortestRamp = 0.06;                      // seconds
 constexpr double kRamp = 0.35;  // of the time from strike to flat, and from flat to off
@@ -160,7 +159,7 @@ FootPose Swing::at(double time, const FootPose& blend) const {
   const double length = strike_ - off_, since = time - off_, left = strike_ - time;
   // Velocities are matched within a short time, because blends reach their prints after the strike
   // and leave them before toe-off.
-  const double width = std::min(kMatching, 0.5 * length);
+  const double width = std::min(matching_, 0.5 * length);
   const Fading start = fading(since / width), end = fading(left / width);
   const Offset offset =
       fading(since / length).value * start_[0] + fading(left / length).value * end_[0] +

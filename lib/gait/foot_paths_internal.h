@@ -67,7 +67,10 @@ class Stance {
 // The path of a foot from print to print, as an offset from the blend's.
 class Swing {
  public:
-  Swing(const Leg& leg, double off, double strike) : leg_(&leg), off_(off), strike_(strike) {}
+  // `matching`: seconds after the off, and before the strike, in which the foot takes on the
+  // velocity of the blend's.
+  Swing(const Leg& leg, double off, double strike, double matching)
+      : leg_(&leg), off_(off), strike_(strike), matching_(matching) {}
 
   // The foot in the blend and on its print, at toe-off and 1 and 2 `spacing` seconds before, or at
   // the strike and after.
@@ -109,7 +112,7 @@ class Swing {
                           std::span<const FootPose> blend, double clearance, double from) const;
 
   const Leg* leg_;
-  double off_, strike_;
+  double off_, strike_, matching_;
   std::array<Offset, 3> start_ = {}, end_ = {};   // value and two derivatives by time
   Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();  // the ankle at both ends
   Vec3 way_ = Vec3::Zero();                       // level, from print to print, unit vector

@@ -145,6 +145,8 @@ namespace {
 
 // Of the leg's length (thigh and shank).
 constexpr double kLongest = 1.3;
+// In flight: 2.44 m on average in the 100 m record of 2009 (41 steps), on legs of about 0.95 m.
+constexpr double kLongestRun = 2.6;
 constexpr double kHighest = 0.55;
 constexpr double kWall = 0.6;
 constexpr double kCrossing = 0.25;  // behind or before the stance foot
@@ -235,11 +237,12 @@ Status check_reach(const GroundedPrint& from, const GroundedPrint& stance, const
     return Error(code, fmt::format("print {}: {}", number + 1, what), hint);
   };
   const double far = std::hypot(shape.along, shape.across);
-  if (far > kLongest * leg) {
-    return refuse("walk-too-long",
-                  fmt::format("the step is {} long, this walker can do {}", metres(far),
-                              metres(kLongest * leg)),
-                  "put prints between, or use --adapt");
+  const double longest = (walker.runs ? kLongestRun : kLongest) * leg;
+  if (far > longest) {
+    return refuse(
+        "walk-too-long",
+        fmt::format("the step is {} long, this walker can do {}", metres(far), metres(longest)),
+        "put prints between, or use --adapt");
   }
   if (std::abs(shape.up) > kHighest * leg) {
     return refuse(

@@ -122,8 +122,11 @@ Status check_plan_options(const PlanOptions& options) {
   const auto wrong = [](const char* what) {
     return Error("plan-options", what, "check step length, width and turn");
   };
-  if (!(options.min_step > 0.01 && options.min_step <= options.step_length &&
-        options.step_length <= options.max_step && options.max_step < 10)) {
+  const auto is_step = [&](double length) {
+    return options.min_step <= length && length <= options.max_step;
+  };
+  if (!(options.min_step > 0.01 && is_step(options.step_length) && options.max_step < 10 &&
+        std::ranges::all_of(options.step_lengths, is_step))) {
     return wrong(
         "steps must be above 1 cm, the least at most as long as asked, and the most at least");
   }
@@ -187,6 +190,7 @@ class PrintPlanner {
   // Steps from the begin to places every spacing_: where the way is straight, one in step_length,
   // downhill a little more.
   void count_steps();
+  double step_length_at(double part) const;  // of the path
   double ground_near(double length) const;
   double length_of(std::size_t place) const {
     return std::min(static_cast<double>(place) * spacing_, path_.length());
@@ -255,10 +259,20 @@ void PrintPlanner::count_steps() {
     const double turn = std::abs(path_.at(static_cast<double>(i) * spacing_).heading -
                                  path_.at(static_cast<double>(i - 1) * spacing_).heading);
     const double grade = std::atan(slopes[i]);
-    const double straight = width / (options_.step_length * slope_gait(grade, grade).length);
+    const double usual = step_length_at(static_cast<double>(i) / double(steps_.size() - 1));
+    const double straight = width / (usual * slope_gait(grade, grade).length);
     straight_steps_ += straight;
     steps_[i] = steps_[i - 1] + std::max(straight, turn / options_.max_turn);
   }
+}
+
+double PrintPlanner::step_length_at(double part) const {
+  const std::vector<double>& lengths = options_.step_lengths;
+  if (lengths.empty()) return options_.step_length;
+  const double place = part * static_cast<double>(lengths.size() - 1);
+  const std::size_t before = std::min(static_cast<std::size_t>(place), lengths.size() - 1);
+  const std::size_t after = std::min(before + 1, lengths.size() - 1);
+  return std::lerp(lengths[before], lengths[after], place - static_cast<double>(before));
 }
 
 double PrintPlanner::ground_near(double length) const {

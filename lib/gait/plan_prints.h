@@ -13,7 +13,10 @@
 namespace krok::gait {
 
 struct PlanOptions {
-  double step_length = 0.65;        // metres along the path, where it is straight; > 0
+  double step_length = 0.65;  // metres along the path, where it is straight; > 0
+  // Instead of that: at places evenly spaced over the path, from its begin to its end, and linear
+  // in between. Empty: step_length everywhere.
+  std::vector<double> step_lengths;
   double min_step = 0.15;           // metres; > 0
   double max_step = 0.8;            // metres, at least step_length
   double step_width = 0.2;          // metres from heel to heel across the path

@@ -169,6 +169,9 @@ class Planner {
     const auto found = std::ranges::find(libraries_, kind, &StepLibrary::kind);
     return found == libraries_.end() ? StepKind::walk : kind;
   }
+  bool serves(const StepLibrary& library, StepKind kind) const {
+    return kind == StepKind::walk ? library.is_middle() : library.kind() == kind;
+  }
   Status make_weights(PlannedStep& step) const;
 
   std::span<const StepLibrary> libraries_;
@@ -176,6 +179,7 @@ class Planner {
   const Terrain& ground_;
   const WalkOptions& options_;
   int count_ = 0;               // of prints
+  bool walks_ = false;          // whether there is a library of walks
   std::vector<double> facing_;  // radians, [prints]
   PlannedWalk walk_;
 };
@@ -215,7 +219,10 @@ Status Planner::choose(const GroundedPrint& to, double duration, int number,
   double least = std::numeric_limits<double>::infinity();
   Apart far, more;
   for (std::size_t i = 0; i < libraries_.size(); ++i) {
-    if (libraries_[i].kind() != kind) continue;
+    if (!serves(libraries_[i], kind)) continue;
+    // People walk out of standing and into it.
+    const bool is_end = number == 2 || number + 1 == count_;
+    if (is_end && libraries_[i].kind() == StepKind::run && walks_) continue;
     const parametric::Synthesiser& steps = libraries_[i].steps(swing);
     const StepShape shape = shape_of(stance, to, libraries_[i].toe_out());
     const StepShape begin = shape_of(stance, from, libraries_[i].toe_out());
@@ -369,6 +376,7 @@ Status Planner::make_weights(PlannedStep& step) const {
 Result<PlannedWalk> Planner::plan(std::span<const Print> prints) {
   if (Status status = check_prints(prints); !status) return status.error();
   count_ = static_cast<int>(prints.size());
+  walks_ = main_library(libraries_).kind() == StepKind::walk;
   facing_ = facing_of(prints);
   for (std::size_t k = 0; k < prints.size(); ++k) {
     if (Status status = add_print(k, prints[k]); !status) return status.error();

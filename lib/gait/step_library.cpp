@@ -56,6 +56,9 @@ std::optional<StepKind> kind_of(const std::vector<std::string>& times) {
     return std::ranges::find(times, name) != times.end();
   };
   if (times.front() == "stand" && times.back() == "stand_end") return StepKind::stand;
+  if (times.front() == "stance_strike" && named("stance_off") && times.back() == "swing_strike") {
+    return StepKind::run;
+  }
   if (!named("swing_off") || !named("swing_strike")) return {};
   if (times.front() == "stand" && times.back() == "swing_strike") return StepKind::start;
   if (times.front() != "stance_strike") return {};
@@ -83,8 +86,11 @@ Status check_direction(const StepLibrary& steps) {
 }  // namespace
 
 const StepLibrary& main_library(std::span<const StepLibrary> libraries) {
-  const auto walks = std::ranges::find(libraries, StepKind::walk, &StepLibrary::kind);
-  return walks == libraries.end() ? libraries.front() : *walks;
+  for (const StepKind kind : {StepKind::walk, StepKind::run}) {
+    const auto found = std::ranges::find(libraries, kind, &StepLibrary::kind);
+    if (found != libraries.end()) return *found;
+  }
+  return libraries.front();
 }
 
 Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library library,
@@ -96,11 +102,13 @@ Result<StepLibrary> StepLibrary::create(std::string name, parametric::Library li
     });
   };
   const auto kind = kind_of(library.keytimes);
-  if (!kind || (*kind == StepKind::walk && !measures(Quantity::step_length))) {
-    return Error("walk-library",
-                 "this is no library of steps: walking needs the parameter step.length and the "
-                 "keytimes stance_strike, swing_off and swing_strike",
-                 "krok-fit makes one with \"steps\": \"auto\", and starts, stops and stands");
+  const bool is_middle = kind == StepKind::walk || kind == StepKind::run;
+  if (!kind || (is_middle && !measures(Quantity::step_length))) {
+    return Error(
+        "walk-library",
+        "this is no library of steps: walking needs the parameter step.length and the "
+        "keytimes stance_strike, swing_off and swing_strike, running stance_off for swing_off",
+        "krok-fit makes one with \"steps\": \"auto\", and runs, starts, stops and stands");
   }
   StepLibrary result;
   result.kind_ = *kind;

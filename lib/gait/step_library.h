@@ -15,9 +15,10 @@
 
 namespace krok::gait {
 
-// Which steps a library has, by its keytimes: the middle of a walk, the first step out of standing,
-// the last one into it, or standing itself.
-enum class StepKind : unsigned char { walk, start, stop, stand };
+// Which steps a library has, by its keytimes: the middle of a walk or of a run, the first step out
+// of standing, the last one into it, or standing itself. In a run the stance foot leaves the ground
+// before the swing foot strikes.
+enum class StepKind : unsigned char { walk, run, start, stop, stand };
 
 // The swing foot's print at the end of a step in the frame of the stance foot's: metres along the
 // stance foot's toes, to the swing side, up; radians to that side.
@@ -27,16 +28,17 @@ struct FoundStep {
 
 class StepLibrary {
  public:
-  // A library of walks has step.length among its parameters; steps of the other foot are the mirror
-  // image of those given.
-  // `name` is for reports. Codes: those of Synthesiser::create() and mirrored(); walk-library if
-  // the library has no step.length, keytimes that are not those of steps, or starts or stops
-  // forward and backward.
+  // A library of walks or runs has step.length among its parameters; steps of the other foot are
+  // the mirror image of those given. `name` is for reports. Codes: those of Synthesiser::create()
+  // and mirrored(); walk-library if the library has no step.length, keytimes that are not those of
+  // steps, or starts or stops forward and backward.
   static Result<StepLibrary> create(std::string name, parametric::Library library,
                                     const rbf::WeightFunction& weights, const RoleMap& roles);
 
   const std::string& name() const { return name_; }
   StepKind kind() const { return kind_; }
+  // Neither out of standing nor into it.
+  bool is_middle() const { return kind_ == StepKind::walk || kind_ == StepKind::run; }
   const RoleMap& roles() const { return roles_; }
   // As fitted, with the swing foot of its examples.
   const parametric::Library& library() const { return *libraries_[static_cast<std::size_t>(own_)]; }
@@ -64,8 +66,8 @@ class StepLibrary {
   std::array<std::unique_ptr<const parametric::Synthesiser>, 2> synthesisers_;
 };
 
-// The first library of walks, which has the skeleton, the rate and the feet; the first if there is
-// none.
+// The first library of walks, which has the skeleton, the rate and the feet; without walks the
+// first of runs; the first if there is none.
 const StepLibrary& main_library(std::span<const StepLibrary> libraries);
 
 }  // namespace krok::gait

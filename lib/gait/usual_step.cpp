@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/numbers.h"
 #include "gait/walker_internal.h"
 
 namespace krok::gait {
@@ -42,7 +43,65 @@ FoundStep mean_of_steps(const StepLibrary& steps) {
   return {sums[i].along / count, sums[i].across / count, 0, turn};
 }
 
+// Along the way, which lies between the directions of the toes.
+double length_along_way(const FoundStep& step, double out) {
+  return std::abs(step.along * std::cos(out) + step.across * std::sin(out));
+}
+
+struct Pace {
+  double length = 0, duration = 0;  // metres, seconds, of a step
+  double speed() const { return length / duration; }
+};
+
+// Steps over the range of the examples' lengths, a centimetre apart.
+std::vector<Pace> paces_of(const StepLibrary& steps) {
+  constexpr double kSpacing = 0.01, kNear = 0.02;  // metres
+  std::vector<Pace> examples;
+  for (std::size_t i = 0; i < steps.found_steps().size(); ++i) {
+    const std::vector<double>& times = steps.library().examples[i].keytimes;
+    examples.push_back(
+        {length_along_way(steps.found_steps()[i], steps.toe_out()), times.back() - times.front()});
+  }
+  const auto [least, most] = std::ranges::minmax(examples, {}, &Pace::length);
+  std::vector<Pace> paces;
+  const int count = static_cast<int>((most.length - least.length) / kSpacing);
+  for (int i = 0; i <= count; ++i) {
+    Pace pace{least.length + i * kSpacing, 0};
+    double weights = 0;
+    for (const Pace& example : examples) {
+      const double apart = (example.length - pace.length) / kNear;
+      const double weight = 1 / ((1 + apart * apart) * (1 + apart * apart));
+      pace.duration += weight * example.duration;
+      weights += weight;
+    }
+    pace.duration /= weights;
+    if (pace.length >= kMinStep) paces.push_back(pace);
+  }
+  return paces;
+}
+
 }  // namespace
+
+Result<double> step_length_at_speed(std::span<const StepLibrary> libraries, double speed) {
+  constexpr double kAllowed = 0.05;  // of the speed
+  const auto off = [&](const Pace& pace) { return std::abs(pace.speed() - speed); };
+  std::vector<Pace> all;
+  for (const StepLibrary& library : libraries) {
+    if (!library.is_middle()) continue;
+    const std::vector<Pace> paces = paces_of(library);
+    all.insert(all.end(), paces.begin(), paces.end());
+  }
+  const auto nearest = std::ranges::min_element(all, {}, off);
+  if (nearest != all.end() && off(*nearest) <= kAllowed * speed) return nearest->length;
+  std::string range;
+  if (!all.empty()) {
+    const auto [slowest, fastest] = std::ranges::minmax(all, {}, &Pace::speed);
+    range = fmt::format(": those of the libraries go at {} to {} m/s", readable(slowest.speed(), 3),
+                        readable(fastest.speed(), 3));
+  }
+  return Error("walk-speed", fmt::format("no step goes at {} m/s{}", readable(speed, 3), range),
+               "add a library of runs or of walks, or change the pace with --speed");
+}
 
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
   const StepLibrary& main = main_library(libraries);
@@ -63,7 +122,7 @@ Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries) {
   const double ahead = options.backward ? -1 : 1;
   double longest = 0, max_turn = 0;
   for (const StepLibrary& one : libraries) {
-    if (one.kind() != StepKind::walk) continue;
+    if (!one.is_middle()) continue;
     const parametric::Library& library = one.library();
     for (std::size_t d = 0; d < library.parameters.size(); ++d) {
       const auto quantity = library.parameters[d].quantity;

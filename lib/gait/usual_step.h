@@ -14,4 +14,8 @@ namespace krok::gait {
 // Codes: walk-legs; walk-library if the steps go neither forward nor backward.
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries);
 
+// Metres of the steps that go at `speed` (m/s, > 0) in the libraries of walks and runs: steps last
+// as long as those of examples about as long do. Code walk-speed if none is within 5 % of it.
+Result<double> step_length_at_speed(std::span<const StepLibrary> libraries, double speed);
+
 }  // namespace krok::gait

@@ -29,7 +29,7 @@ constexpr double kMaxAnkle = 45 * kRadiansPerDegree;
 constexpr std::size_t kStepsAtOnce = 64;
 
 Status check_options(std::span<const StepLibrary> libraries, const WalkOptions& options) {
-  if (libraries.empty() || main_library(libraries).kind() != StepKind::walk) {
+  if (libraries.empty() || !main_library(libraries).is_middle()) {
     return Error("walk-library", "walking needs a library of the steps between start and stop",
                  "krok-fit makes one with \"steps\": \"auto\"");
   }

@@ -33,7 +33,7 @@ struct WalkOptions {
   // speed, jerk, and how much steps vary (tests/walk/measure_style.py).
   double variation = 0.85;
   std::uint64_t seed = 1;  // which of several suitable examples
-  std::string style_of;    // of captures whose names contain this, in any case; empty: of all
+  std::string style_of{};  // of captures whose names contain this, in any case; empty: of all
 };
 
 // One step: the swing foot goes from the print before the stance foot's to the one after it.

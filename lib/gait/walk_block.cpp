@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/index.h"
 #include "math/quaternion.h"
@@ -18,12 +19,13 @@ constexpr double kLoweringReach = 0.2;  // seconds over which the pelvis is lowe
 // farther ones is below the rounding of floats, and they depend on their neighbours.
 constexpr std::size_t kLookedAt = 3, kAround = kLookedAt + 2;
 constexpr double kStaysFlat = 3;  // of the pitch at which a foot is flat
-constexpr double kMiddle = 0.4;   // of the single support: the foot is flat
 // The heel of the stance foot rises so long before the other foot's strike, as a share of single
 // support: at 30 to 35 % of the cycle (Perry and Burnfield, "Gait Analysis", 2010).
 constexpr double kHeelRise = 0.4;
-constexpr double kMoreRoll = 25 * kRadiansPerDegree;  // more than in the blend
-constexpr double kMaxPitch = 75 * kRadiansPerDegree;  // of a foot on its ball
+constexpr double kMatching = 0.16, kMatchingInRun = 0.08;  // seconds, see Swing
+constexpr double kHeelRiseInRun = 0.5;                     // of the stance
+constexpr double kMoreRoll = 25 * kRadiansPerDegree;       // more than in the blend
+constexpr double kMaxPitch = 75 * kRadiansPerDegree;       // of a foot on its ball
 constexpr double kMinShare = 0.45;  // of the roll, below which the pelvis gives way
 constexpr int kRollSteps = 16;
 constexpr double kHeelDown = 0.5;  // of the time to the middle: after a forefoot strike
@@ -149,14 +151,14 @@ void WalkBlock::begin_stance(std::size_t print) {
   const SampledStep& frames = sampled(over);
   const FootSide side = parts_.side_of(print);
   const bool is_first = print < 2, is_last = print + 1 == parts_.plan.grounded.size();
-  double middle = step.off + kMiddle * (step.strike - step.off);
+  double middle = step.flat_time();
   // The foot that leaves first stands flat before.
   if (print == 0) middle = 0;
   if (is_last) middle = step.finish;
   Stance stance(parts_.walker.leg(side), parts_.plan.grounded[print], nearest(over, middle, side));
   stance.strike = is_first ? 0 : is_last ? step.strike : step.start;
   stance.flat_from = stance.strike;
-  stance.flat_to = stance.off = steps.back().finish + 1;
+  stance.flat_to = stance.off = parts_.body.off_of(steps.size());
   std::vector<PitchAt> series;
   for (std::size_t i = 0; i < frames.blend.size() && !is_first; ++i) {
     const double time = parts_.time_of(frames.first + static_cast<int>(i));
@@ -178,12 +180,10 @@ void WalkBlock::finish_stance(std::size_t print) {
   if (print >= steps.size()) return;  // the walk ends on it
   Stance& stance = changed_stance(print);
   const FootSide side = parts_.side_of(print);
-  stance.off = steps[print].off;
+  stance.off = parts_.body.off_of(print);
   stance.flat_to = stance.off;
   std::vector<PitchAt> series;
-  const double middle = print == 0 ? 0
-                                   : steps[print - 1].off +
-                                         kMiddle * (steps[print - 1].strike - steps[print - 1].off);
+  const double middle = print == 0 ? 0 : steps[print - 1].flat_time();
   for (std::size_t s = print + 1; s-- > (print == 0 ? 0 : print - 1);) {
     const SampledStep& frames = sampled(s);
     for (std::size_t i = frames.blend.size(); i-- > 0;) {
@@ -206,8 +206,9 @@ void WalkBlock::roll_over_ball(std::size_t print) {
   const Leg& leg = parts_.leg_of(print);
   const std::size_t side = index_of(parts_.side_of(print));
   const BodyStep& over = steps[print - 1];
-  const double from =
-      std::max(stance.flat_from, over.strike - kHeelRise * (over.strike - over.off));
+  const double rises = stance.off < over.strike ? std::lerp(stance.off, over.start, kHeelRiseInRun)
+                                                : std::lerp(over.strike, over.off, kHeelRise);
+  const double from = std::max(stance.flat_from, rises);
   if (!(stance.off > from)) return;
   double roll = 0;
   for (std::size_t step = print - 1; step <= print; ++step) {
@@ -236,32 +237,38 @@ void WalkBlock::roll_over_ball(std::size_t print) {
   if (roll > 0) stance.roll_further(roll, from);
 }
 
+// The swing of the foot that strikes at the end of the step. In a run it begins in the step before.
 Swing WalkBlock::make_swing(std::size_t step) const {
-  const BodyStep& now = parts_.body.steps()[step];
+  const std::vector<BodyStep>& steps = parts_.body.steps();
+  const BodyStep& now = steps[step];
+  const double leaves = parts_.body.off_of(step);
+  const std::size_t first = step > 0 && leaves <= now.start ? step - 1 : step;
   const Stance& from = stance(step);
   const Stance& to = stance(step + 2);
   const FootSide side = parts_.side_of(step);
   const Quat signs = flat_foot(parts_.leg_of(step), parts_.plan.grounded[step]).orientation;
-  Swing swing(parts_.leg_of(step), now.off, now.strike);
+  Swing swing(parts_.leg_of(step), leaves, now.strike, first < step ? kMatchingInRun : kMatching);
   Swing::Ends off, strike;
-  const bool is_last = step + 1 == parts_.body.steps().size();
-  off.spacing = std::min(kSpacing, (now.off - now.start) / 3);
+  const bool is_last = step + 1 == steps.size();
+  off.spacing = std::min(kSpacing, (leaves - steps[first].start) / 3);
   strike.spacing = kSpacing;
   for (std::size_t i = 0; i < 3; ++i) {
-    const double time = now.off - off.spacing * static_cast<double>(i);
-    off.blend[i] = blend_foot(step, time, side, signs);
+    const double time = leaves - off.spacing * static_cast<double>(i);
+    off.blend[i] = blend_foot(first, time, side, signs);
     off.wanted[i] = from.at(time, off.blend[i]);
     const double later = now.strike + strike.spacing * static_cast<double>(i);
     strike.blend[i] = blend_foot(is_last ? step : step + 1, later, side, signs);
     strike.wanted[i] = to.at(later, strike.blend[i]);
   }
   swing.set_ends(off, strike);
-  const SampledStep& frames = sampled(step);
   std::vector<double> times;
   std::vector<FootPose> blend;
-  for (std::size_t i = 0; i < frames.blend.size(); ++i) {
-    times.push_back(parts_.time_of(frames.first + static_cast<int>(i)));
-    blend.push_back(in_signs_of(parts_.leg_of(step), signs, frames.blend[i][index_of(side)]));
+  for (std::size_t s = first; s <= step; ++s) {
+    const SampledStep& frames = sampled(s);
+    for (std::size_t i = 0; i < frames.blend.size(); ++i) {
+      times.push_back(parts_.time_of(frames.first + static_cast<int>(i)));
+      blend.push_back(in_signs_of(parts_.leg_of(step), signs, frames.blend[i][index_of(side)]));
+    }
   }
   const double height =
       std::max(parts_.plan.grounded[step].heel.y(), parts_.plan.grounded[step + 2].heel.y());
@@ -274,17 +281,25 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
   SampledStep& frames = sampled(step);
   const Swing swing = make_swing(step);
   const FootSide moving = parts_.side_of(step), standing = parts_.side_of(step + 1);
-  const Quat signs = flat_foot(parts_.leg_of(step), parts_.plan.grounded[step]).orientation;
+  const double leaves = parts_.body.off_of(step), next_leaves = parts_.body.off_of(step + 1);
+  std::optional<Swing> next;  // of the stance foot, in flight
+  if (next_leaves < now.strike) next = make_swing(step + 1);
+  const auto with_signs = [&](std::size_t print, const FootPose& foot) {
+    const Leg& leg = parts_.leg_of(print);
+    return in_signs_of(leg, flat_foot(leg, parts_.plan.grounded[print]).orientation, foot);
+  };
   std::vector<Transform> world(parts_.walker.skeleton->names.size());
   double clearance = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < frames.poses.size(); ++i) {
     const double time = parts_.time_of(frames.first + static_cast<int>(i));
     auto& target = frames.target.emplace_back();
-    target[index_of(standing)] = stance(step + 1).at(time, frames.blend[i][index_of(standing)]);
-    const FootPose blend =
-        in_signs_of(parts_.leg_of(step), signs, frames.blend[i][index_of(moving)]);
+    const FootPose& stands = frames.blend[i][index_of(standing)];
+    target[index_of(standing)] = next && time > next_leaves
+                                     ? next->at(time, with_signs(step + 1, stands))
+                                     : stance(step + 1).at(time, stands);
+    const FootPose blend = with_signs(step, frames.blend[i][index_of(moving)]);
     FootPose& foot = target[index_of(moving)];
-    if (time <= now.off) {
+    if (time <= leaves) {
       foot = stance(step).at(time, blend);
     } else if (time >= now.strike) {
       foot = stance(step + 2).at(time, blend);
@@ -321,9 +336,11 @@ void WalkBlock::emit(std::size_t step, Clip& clip, MadeStep& made) {
     made.extension = std::max(made.extension, legs.extension);
     made.missed = std::max(made.missed, legs.missed);
     const double time = parts_.time_of(frames.first + i);
-    made.off_support = std::max(made.off_support, off_support(parts_.walker, world));
+    if (!parts_.body.steps()[step].runs()) {
+      made.off_support = std::max(made.off_support, off_support(parts_.walker, world));
+    }
     for (const std::size_t print : {step, step + 1}) {
-      if (print == step && time > parts_.body.steps()[step].off) continue;
+      if (time > parts_.body.off_of(print)) continue;
       const Leg& leg = parts_.leg_of(print);
       made.ankle = std::max(made.ankle, leg.standing_ankle - ankle_angle(leg, world));
     }

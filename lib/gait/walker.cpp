@@ -39,16 +39,26 @@ PoseVector mean_pose(const parametric::PackedExamples& packed, double generic) {
   return pose;
 }
 
-double middle_of_swing(const parametric::PackedExamples& packed,
-                       const parametric::Library& library) {
-  const auto off = std::ranges::find(library.keytimes, "swing_off") - library.keytimes.begin();
-  return 0.6 * packed.generic[static_cast<std::size_t>(off)] + 0.4 * packed.generic.back();
+double middle_of_stance(const parametric::PackedExamples& packed,
+                        const parametric::Library& library) {
+  const auto off = [&](const char* name) { return index_of_time(library, name); };
+  const std::size_t runs = off("stance_off");
+  if (runs < packed.generic.size()) {
+    return std::lerp(packed.generic.front(), packed.generic[runs], kFlatInRun);
+  }
+  return std::lerp(packed.generic[off("swing_off")], packed.generic.back(), kFlatPart);
+}
+
+std::size_t index_of_time(const parametric::Library& library, const char* name) {
+  return static_cast<std::size_t>(std::ranges::find(library.keytimes, name) -
+                                  library.keytimes.begin());
 }
 
 namespace {
 
 constexpr int kMeanSamples = 32;        // of a step, for means over it
 constexpr double kRaised = 0.004;       // metres
+constexpr double kRaisedInRun = 0.012;  // the toes push on
 constexpr double kEarliestOff = 0.3;    // of the time to the off
 constexpr double kStandingLeg = 0.994;  // of the length: as straight as solve_legs() leaves it
 constexpr double kToeShare = 0.35;  // of the sole, from the ball to the tip, where no end site is
@@ -82,7 +92,7 @@ double toe_length(const Skeleton& skeleton, int foot, const FootGeometry& sole) 
 void learn_flat_foot(const StepLibrary& steps, FootSide side, Walker& walker) {
   const parametric::Synthesiser& stance = steps.steps(other(side));
   const PoseVector pose =
-      mean_pose(stance.packed(), middle_of_swing(stance.packed(), stance.library()));
+      mean_pose(stance.packed(), middle_of_stance(stance.packed(), stance.library()));
   std::vector<Transform> world(walker.skeleton->names.size());
   walker.to_world(pose, world);
   Leg& leg = walker.legs[index_of(side)];
@@ -116,11 +126,10 @@ void learn_knee(const StepLibrary& steps, FootSide side, Walker& walker) {
   if (sum.norm() > 1e-9) leg.knee_axis = sum.normalized();
 }
 
-// Generic time of the swing foot's off, seconds.
+// Generic time of the swing foot's off, seconds; in a run it is off before the step.
 double off_of_swing(const parametric::Synthesiser& step) {
-  const auto off =
-      std::ranges::find(step.library().keytimes, "swing_off") - step.library().keytimes.begin();
-  return step.packed().generic[static_cast<std::size_t>(off)];
+  const std::size_t off = index_of_time(step.library(), "swing_off");
+  return off < step.packed().generic.size() ? step.packed().generic[off] : 0;
 }
 
 // Joints that stay within a centimetre of their place in the reference pose in all examples. They
@@ -164,6 +173,24 @@ double find_ball_off(const StepLibrary& steps, const Walker& walker) {
     const double height = (world[at(leg.foot)] * leg.sole.pivot).y();
     if (i == 0) first = height;
     if (height - first > kRaised) return std::max(part, kEarliestOff);
+  }
+  return 1;
+}
+
+// The same of the stance foot of runs, after it was flat.
+double find_run_off(const StepLibrary& runs, const Walker& walker) {
+  const parametric::Synthesiser& step = runs.steps(runs.library().swing);
+  const parametric::PackedExamples& packed = step.packed();
+  const Leg& leg = walker.leg(runs.library().stance());
+  const double off = packed.generic[index_of_time(step.library(), "stance_off")];
+  std::vector<Transform> world(walker.skeleton->names.size());
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kMeanSamples; ++i) {
+    const double part = std::lerp(kFlatInRun, 1, static_cast<double>(i) / kMeanSamples);
+    walker.to_world(mean_pose(packed, off * part), world);
+    const double height = (world[at(leg.foot)] * leg.sole.pivot).y();
+    lowest = std::min(lowest, height);
+    if (height - lowest > kRaisedInRun) return part;
   }
   return 1;
 }
@@ -294,6 +321,9 @@ Result<Walker> make_walker(std::span<const StepLibrary> libraries) {
   walker.bones = fixed_joints(steps);
   walker.ball_off = find_ball_off(steps, walker);
   walker.usual_off = off_of_swing(steps.steps(FootSide::left));
+  const auto runs = std::ranges::find(libraries, StepKind::run, &StepLibrary::kind);
+  walker.runs = runs != libraries.end();
+  if (walker.runs) walker.run_off = find_run_off(*runs, walker);
   walker.stand = standing_pose(steps, walker);
   for (const StepKind kind : {StepKind::stand, StepKind::start, StepKind::stop}) {
     const auto found = std::ranges::find(libraries, kind, &StepLibrary::kind);

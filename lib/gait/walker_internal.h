@@ -41,9 +41,16 @@ Transform joint_to_world(const Skeleton& skeleton, const PoseVector& pose, int j
 
 PoseVector mean_pose(const parametric::PackedExamples& packed, double generic);
 
+// When the stance foot is flat: in a walk, of the time from the swing foot's off to its strike; in
+// a run, of that from the stance foot's strike to its off.
+inline constexpr double kFlatPart = 0.4, kFlatInRun = 0.45;
+
 // The generic time at which the stance foot is flat.
-double middle_of_swing(const parametric::PackedExamples& packed,
-                       const parametric::Library& library);
+double middle_of_stance(const parametric::PackedExamples& packed,
+                        const parametric::Library& library);
+
+// The number of the keytimes where there is none of that name.
+std::size_t index_of_time(const parametric::Library& library, const char* name);
 
 // The body that walks: what is the same in all its steps.
 
@@ -93,6 +100,8 @@ struct Walker {
   // foot's toe-off, from captures: the toes stay on the ground longer.
   double ball_off = 1;
   double usual_off = 0.1;  // seconds from that strike to toe-off, in the mean step
+  bool runs = false;       // whether there is a library of runs
+  double run_off = 1;      // when the ball leaves the ground in a run, of the time to stance_off
 
   const Leg& leg(FootSide side) const { return legs[index_of(side)]; }
   // joint_to_world of all joints.

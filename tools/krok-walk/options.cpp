@@ -9,6 +9,8 @@ namespace krok::cli::walk {
 
 namespace {
 
+constexpr std::size_t kMaxPaces = 32;
+
 void declare_way(CommandOptions& command, Options& o) {
   command.group("Where to");
   command
@@ -56,6 +58,13 @@ void declare_steps(CommandOptions& command, Options& o) {
       .add("--step-length", o.step_length, length({0.05, 2}),
            "Length of steps planned on straight paths (default: as in the library)")
       .not_with("--prints");
+  command
+      .add("--pace SPEED[,SPEED...]", o.pace,
+           numbers(std::vector(kMaxPaces, number({0.1, 12}, "m/s")), 1),
+           "Speed along the path in m/s, or several that follow one another from its start to its "
+           "end: 1.4m/s,3m/s,1.4m/s; steps are as long as those of the libraries at that speed, "
+           "walked or run")
+      .not_with({"--prints", "--step-length"});
   command
       .add("--step-width", o.step_width, length({0, 1}),
            "Distance of planned footprints across the path (default: as in the library)")
@@ -132,6 +141,8 @@ ToolSpec make_spec() {
       {"krok-walk walking.steps --goal 0m,5m --ground stairs:count=8 -o walk.anim --save-page "
        "walk.html",
        "up stairs, with a page to watch it"},
+      {"krok-walk walking.steps running.steps --goal 0m,30m --pace 1.4m/s,3m/s,1.4m/s -o run.anim",
+       "from a walk to a run and back, with steps from a library of each"},
       {"krok-walk level.steps stairs.steps --prints prints.csv --ground "
        "stairs:rise=17cm,run=29cm -o walk.anim",
        "on given footprints up stairs, with steps from two libraries"}};

@@ -27,6 +27,7 @@ struct Options {
   std::string save_prints;
   std::string view;                               // a page to write, or empty
   std::optional<double> step_length, step_width;  // metres
+  std::vector<double> pace;                       // m/s, over the way
   FootSide first = FootSide::left;
   double speed = 1, rate = 0;  // 0: the library's
   bool adapt = false, extrapolate = false, strict = false;

@@ -169,6 +169,13 @@ Result<std::vector<gait::Print>> choose_prints(const Options& options,
     plan.max_step = std::max(plan.max_step, plan.step_length);
     plan.min_step = std::min(plan.min_step, plan.step_length);
   }
+  for (const double speed : options.pace) {
+    const auto length = gait::step_length_at_speed(libraries, speed / options.speed);
+    if (!length) return length.error();
+    plan.step_lengths.push_back(*length);
+    plan.max_step = std::max(plan.max_step, *length);
+    plan.min_step = std::min(plan.min_step, *length);
+  }
   const auto planned = gait::plan_prints(*path, ground, plan);
   if (!planned) return Error(planned.error()).in_file(options.path);
   context.report.result["way"] = {{"length", path->length()},
