@@ -14,9 +14,9 @@ namespace {
 
 // Of the tolerance, what bits of one joint's keys may take; joints of a chain add up.
 constexpr double kBitsShare = 0.15;
-constexpr int kMinBits = 6, kMaxBits = 23;
+constexpr int kFewestBits = 6, kMostBits = 23;
 // Of joints without vertices, for what viewers attach to them: metres.
-constexpr double kMinReach = 0.05;
+constexpr double kLeastReach = 0.05;
 
 // For each joint the largest share of a turn about it that a vertex takes: weight times distance.
 // Joints without vertices still have to be in place, for what viewers attach to them.
@@ -52,7 +52,7 @@ PaletteSource palettes_of(const Model& model, const JointTracks& tracks) {
 
 // For each joint the largest distance of a vertex that moves with it, or with a joint below it.
 std::vector<double> reaches_of(const Model& model) {
-  std::vector<double> reaches(model.skeleton.names.size(), kMinReach);
+  std::vector<double> reaches(model.skeleton.names.size(), kLeastReach);
   const auto places = static_cast<std::size_t>(model.influences_per_vertex);
   for (std::size_t i = 0; i < model.influence_weights.size(); ++i) {
     const double weight = static_cast<double>(model.influence_weights[i]);
@@ -75,9 +75,9 @@ void choose_bits(std::span<const double> reaches, double error, bool filtered,
     JointTrack& track = tracks.joints[j];
     // Half a step of 2^(1 - bits) in each of three components of a half angle.
     const double bits = 1 + std::log2(std::sqrt(3.0) * reaches[j] / error);
-    const int needed = std::max(kMinBits, static_cast<int>(std::ceil(bits)));
+    const int needed = std::max(kFewestBits, static_cast<int>(std::ceil(bits)));
     if (filtered) {
-      track.rotation_bits = needed <= kMaxBits ? needed : JointTrack::kExact;
+      track.rotation_bits = needed <= kMostBits ? needed : JointTrack::kExact;
       track.translation_exponent = step;
     } else {
       track.rotation_bits =

@@ -147,7 +147,8 @@ void unfilter(std::span<std::byte> bytes) {
   for (std::size_t i = 0; i + 3 < bytes.size() / sizeof(Unsigned); i += 4) {
     Unsigned* const c = values + i;
     const int range = static_cast<int>(std::bit_ceil(static_cast<unsigned>(c[3]) + 1)) - 1;
-    const int y = c[0], co = static_cast<Signed>(c[1]), cg = static_cast<Signed>(c[2]);
+    const int y = c[0], co = static_cast<int>(static_cast<Signed>(c[1]));
+    const int cg = static_cast<int>(static_cast<Signed>(c[2]));
     const int alpha = ((c[3] << 1) & range) | (c[3] & 1);
     const std::array<int, 4> colour = {y + co - cg, y + cg, y - co - cg, alpha};
     for (std::size_t k = 0; k < 4; ++k) {

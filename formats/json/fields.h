@@ -362,9 +362,9 @@ class Object : public Table {
 
   // Of all fields. The message for a field that is not used: of {0} the object, {1} the key and {2}
   // the word that excludes it.
-  Object& unused(std::string message, std::string hint = {}) {
-    unused_ = std::move(message);
-    unused_hint_ = std::move(hint);
+  Object& unused(const std::string& message, const std::string& hint = {}) {
+    unused_ = message;
+    unused_hint_ = hint;
     return *this;
   }
   Object& lines(std::size_t indent) { return indent_ = indent, *this; }

@@ -126,7 +126,7 @@ Result<std::array<FootShape, 2>> find_foot_shapes(std::span<const ClipContacts> 
 namespace {
 
 constexpr double kShortestWay = 0.2;  // metres, of two steps
-constexpr std::size_t kMinPrints = 3;
+constexpr std::size_t kFewestPrints = 3;
 
 }  // namespace
 
@@ -146,7 +146,7 @@ std::array<double, 2> toe_out_of(std::span<const std::vector<WalkPrint>> walks) 
   }
   std::array<double, 2> result{};
   for (std::size_t s = 0; s < 2; ++s) {
-    if (angles[s].size() < kMinPrints) return {};
+    if (angles[s].size() < kFewestPrints) return {};
     const auto middle = angles[s].begin() + static_cast<std::ptrdiff_t>(angles[s].size() / 2);
     std::ranges::nth_element(angles[s], middle);
     result[s] = *middle;
