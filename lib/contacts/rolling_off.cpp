@@ -14,7 +14,8 @@ constexpr double kGravity = 9.81;  // metres per second squared
 // Froude numbers, speed squared over gravity times leg length: above kRun people run; kFastest is
 // the limit for a leg that vaults.
 constexpr double kRun = 0.5, kFastest = 1;
-constexpr double kFlat = 0.003;       // leg lengths, rise of the pelvis over a step
+constexpr double kFlat = 0.003;  // leg lengths, rise of the pelvis over a step
+constexpr std::ptrdiff_t kStepsBefore = 2, kStepsAfter = 3;
 constexpr double kFlatBefore = 0.35;  // cycles, from flat foot to toe-off
 constexpr double kPitched = 0.06;     // leg lengths, heel above toes
 // In a run the foot lands and leaves while its slowest point is at this fraction of its max speed,
@@ -53,14 +54,23 @@ double WalkingFeet::rise_over(const Foot& foot, double seed) const {
   return 0;
 }
 
-WalkingFeet::Carriage WalkingFeet::carriage() const {
-  int more = 0;
+void WalkingFeet::find_carriage() {
   for (const Foot& foot : feet_) {
     for (const double seed : foot.seeds.back) {
       const double rise = rise_over(foot, seed);
-      if (std::abs(rise) > kFlat * leg_) more += rise > 0 ? 1 : -1;
+      if (std::abs(rise) > kFlat * leg_) rises_.push_back({seed, rise > 0 ? 1 : -1});
     }
   }
+  std::ranges::stable_sort(rises_, {}, &Rise::time);
+}
+
+WalkingFeet::Carriage WalkingFeet::carriage(double time) const {
+  // A walk may become a run: the steps around count.
+  const auto next = std::ranges::lower_bound(rises_, time, {}, &Rise::time);
+  const auto before = std::min<std::ptrdiff_t>(kStepsBefore, next - rises_.begin());
+  const auto after = std::min<std::ptrdiff_t>(kStepsAfter, rises_.end() - next);
+  int more = 0;
+  for (auto rise = next - before; rise != next + after; ++rise) more += rise->up;
   return more > 0 ? Carriage::vaults : more < 0 ? Carriage::bounces : Carriage::flat;
 }
 
@@ -75,8 +85,9 @@ bool WalkingFeet::is_pitched(const Foot& foot, double seed) const {
 
 bool WalkingFeet::runs(double time) const {
   const double speed = speeds_[frame_at(time)];
-  const double fastest = carriage_ == Carriage::vaults ? kFastest : kRun;
-  return carriage_ == Carriage::bounces || speed * speed > fastest * kGravity * leg_;
+  const Carriage here = carriage(time);
+  const double fastest = here == Carriage::vaults ? kFastest : kRun;
+  return here == Carriage::bounces || speed * speed > fastest * kGravity * leg_;
 }
 
 void WalkingFeet::to_landings(Foot& foot) const {

@@ -94,7 +94,7 @@ WalkingFeet::WalkingFeet(const Clip& clip, const RoleMap& roles, const FoundCont
   }
   take_directions();
   for (const FootSide side : {FootSide::left, FootSide::right}) prepare(side);
-  carriage_ = carriage();
+  find_carriage();
   for (Foot& foot : feet_) to_landings(foot);
 }
 

@@ -61,7 +61,8 @@ class WalkingFeet {
   double rise_over(const Foot& foot, double seed) const;
   // The motion of the pelvis over the standing foot in most steps.
   enum class Carriage : unsigned char { flat, vaults, bounces };
-  Carriage carriage() const;
+  void find_carriage();
+  Carriage carriage(double time) const;
   // Whether the foot half a cycle after its back seed is about as high as 0.3 cycles before it.
   bool stays_level(const Foot& foot, double seed) const;
   // Whether the heel at a back seed is raised relative to the toes, compared with mid-stance.
@@ -99,7 +100,11 @@ class WalkingFeet {
   bool jittery_ = false;
   std::vector<Vec3> pelvis_, directions_;
   std::vector<double> speeds_;  // of travel, metres per second
-  Carriage carriage_ = Carriage::flat;
+  struct Rise {
+    double time;  // seconds, of a step
+    int up;       // 1 where the pelvis rises over it, -1 where it sinks
+  };
+  std::vector<Rise> rises_;
   std::vector<int>
       forward_;  // [frames] 1: the pelvis travels to where the character faces, -1: backwards
   std::vector<std::vector<Vec3>> raw_, tracks_;

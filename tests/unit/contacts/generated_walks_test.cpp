@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "events.h"
+#include "motion/ground_frame.h"
 #include "samples/generator/rig.h"
 
 namespace krok {
@@ -306,6 +307,47 @@ TEST(GeneratedWalks, ContactsAreWhereTheTruthHasThem) {
     EXPECT_GT(truths, 5) << kind.name;
     EXPECT_EQ(met, truths) << kind.name;
   }
+}
+
+// The pelvis sinks over the standing foot from the second third on, as in a run. If this fails, the
+// offs of a walk are found elsewhere because a run follows, or those of a run because it was a
+// walk.
+TEST(GeneratedWalks, AWalkThatBecomesARunKeepsItsEvents) {
+  WalkOptions options = walk(0.7);
+  options.steps = 30;
+  options.rate = 60;
+  const auto made = samples::make_walk(options);
+  ASSERT_TRUE(made.ok());
+  const auto hips = static_cast<std::size_t>(carrying_joint(find_roles(made->clip.skeleton)));
+  const auto bouncing_from = [&](double part) {
+    Clip clip = made->clip;
+    float mean = 0;
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      mean += clip.frame_positions(f)[hips].y() / static_cast<float>(clip.frame_count());
+    }
+    for (int f = static_cast<int>(part * clip.frame_count()); f < clip.frame_count(); ++f) {
+      float& height = clip.frame_positions(f)[hips].y();
+      height = 2 * mean - height;
+    }
+    return clip;
+  };
+  const double third = made->clip.duration() / 3;
+  const auto walked = test::keytimes_of(made->clip), run = test::keytimes_of(bouncing_from(0));
+  const auto both = test::keytimes_of(bouncing_from(1.0 / 3));
+  ASSERT_EQ(both.size(), walked.size());
+  ASSERT_EQ(both.size(), run.size());
+  double differ = 0;
+  for (std::size_t i = 0; i < both.size(); ++i) {
+    const double time = both[i].time;
+    // The strike at the begin of the clip is estimated from all others.
+    if (i > 0 && time < third - 1.5) {
+      EXPECT_NEAR(time, walked[i].time, 0.002) << i;
+      differ = std::max(differ, std::abs(walked[i].time - run[i].time));
+    } else if (time > third + 1.5) {
+      EXPECT_NEAR(time, run[i].time, 0.002) << i;
+    }
+  }
+  EXPECT_GT(differ, 0.01);  // else this shows nothing
 }
 
 }  // namespace
