@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "contacts/series_internal.h"
+#include "core/index.h"
 #include "filter/butterworth.h"
 
 namespace krok::contacts {
@@ -75,47 +76,67 @@ Eigen::Matrix<double, 4, 3> solved(Eigen::Matrix4d a, Eigen::Matrix<double, 4, 3
 }
 
 // Two pieces that meet at a moment, fitted to the positions of some frames. `reach` is half of
-// those frames, for numbers near 1.
+// those frames, for numbers near 1. Sums over frames are kept up to each frame, so that a moment
+// costs no more where there are many frames.
 class Pieces {
  public:
   Pieces(const std::vector<Vec3>& track, int first, int last, bool arrives, double stiffness)
-      : track_(track),
-        first_(first),
+      : first_(first),
         last_(last),
+        centre_(0.5 * (first + last)),
         reach_(0.5 * (last - first)),
         sign_(arrives ? 1 : -1),
-        stiffness_(stiffness) {
-    for (int f = first; f <= last; ++f)
-      middle_ += track[static_cast<std::size_t>(f)] / (last - first + 1);
+        stiffness_(stiffness),
+        upto_(static_cast<std::size_t>(last - first + 2)) {
+    Vec3 middle = Vec3::Zero();
+    for (int f = first; f <= last; ++f) {
+      middle += track[static_cast<std::size_t>(f)] / (last - first + 1);
+    }
+    for (int f = first; f <= last; ++f) {
+      const std::size_t index = static_cast<std::size_t>(f - first);
+      const Vec3 off = track[static_cast<std::size_t>(f)] - middle;
+      const double t = (f - centre_) / reach_;
+      Sums& next = upto_[index + 1];
+      next = upto_[index];
+      double power = 1;
+      for (int k = 0; k < kPowers; ++k, power *= t) {
+        next.powers[k] += power;
+        if (k < kOffPowers) next.offs.row(k) += power * off.transpose();
+      }
+      squares_ += off.squaredNorm();
+    }
   }
 
   // The sum of squares that the best pieces leave that meet at `moment`. The moving side begins
   // without velocity of its own or, if that fits far better, with one at once.
   double misfit(double moment) const {
-    Eigen::Matrix<double, 5, 5> moments = Eigen::Matrix<double, 5, 5>::Zero();
-    Eigen::Matrix<double, 5, 3> sums = Eigen::Matrix<double, 5, 3>::Zero();
-    double squares = 0;
-    for (int f = first_; f <= last_; ++f) {
-      const double u = (f - moment) * sign_ / reach_;
-      const Vec3 off = track_[static_cast<std::size_t>(f)] - middle_;
-      moments(0, 0) += 1;
-      moments(1, 0) += u;
-      moments(1, 1) += u * u;
-      for (int axis = 0; axis < 3; ++axis) sums(0, axis) += off[axis];
-      for (int axis = 0; axis < 3; ++axis) sums(1, axis) += u * off[axis];
-      squares += off.squaredNorm();
-      if (!(u < 0)) continue;  // the other columns are 0
-      const double row[5] = {1, u, u * u, u * u * u, u};
-      for (int i = 0; i < 5; ++i) {
-        for (int j = std::max(i, 2); j < 5; ++j) moments(j, i) += row[i] * row[j];
-      }
-      for (int i = 2; i < 5; ++i) {
-        for (int axis = 0; axis < 3; ++axis) sums(i, axis) += row[i] * off[axis];
-      }
+    // u = (f - moment) * sign / reach is < 0 on the moving side, whose columns u^2, u^3 and u are 0
+    // on the other side.
+    const int split = static_cast<int>(sign_ > 0 ? std::ceil(moment) : std::floor(moment) + 1);
+    const std::size_t place =
+        static_cast<std::size_t>(std::clamp(split - first_, 0, last_ + 1 - first_));
+    const Sums& before = upto_[place];
+    const Sums& total = upto_.back();
+    Sums moving = before;
+    if (sign_ < 0) {
+      moving.powers = total.powers - before.powers;
+      moving.offs = total.offs - before.offs;
     }
+    const Sums all = shifted(total, moment, 2), part = shifted(moving, moment, kPowers - 1);
+    constexpr std::array<int, 5> kExponents = {0, 1, 2, 3, 1};
+    Eigen::Matrix<double, 5, 5> moments;
+    Eigen::Matrix<double, 5, 3> sums;
+    for (int i = 0; i < 5; ++i) {
+      for (int j = std::max(i, 2); j < 5; ++j) {
+        moments(j, i) = part.powers[kExponents[at(i)] + kExponents[at(j)]];
+      }
+      sums.row(i) = i < 2 ? all.offs.row(i) : part.offs.row(kExponents[at(i)]);
+    }
+    moments(0, 0) = all.powers[0];
+    moments(1, 0) = all.powers[1];
     // One row more, which holds the drift down: a point that stays drifts only where its place on
     // the foot is not quite right, and jitter must not be taken for that.
-    moments(1, 1) += 4 * stiffness_ * stiffness_;
+    moments(1, 1) = all.powers[2] + 4 * stiffness_ * stiffness_;
     const Eigen::Matrix<double, 5, 5> full = moments.selfadjointView<Eigen::Lower>();
     double least = 0;
     for (const bool sudden : {false, true}) {
@@ -124,17 +145,44 @@ class Pieces {
       const Eigen::Matrix<double, 4, 3> right = sums(used, Eigen::all);
       const Eigen::Matrix<double, 4, 3> fit = solved(normal, right);
       // Written so that errors of the fit count by their squares.
-      const double left = squares + fit.cwiseProduct(normal * fit - 2 * right).sum();
+      const double left = squares_ + fit.cwiseProduct(normal * fit - 2 * right).sum();
       least = sudden ? std::min(least, kSudden * left) : left;
     }
     return least;
   }
 
  private:
-  const std::vector<Vec3>& track_;
+  static constexpr int kPowers = 7, kOffPowers = 4;
+  // Of t^k, and of t^k times the place, over some frames.
+  struct Sums {
+    Eigen::Array<double, kPowers, 1> powers = Eigen::Array<double, kPowers, 1>::Zero();
+    Eigen::Matrix<double, kOffPowers, 3> offs = Eigen::Matrix<double, kOffPowers, 3>::Zero();
+  };
+
+  // The sums of u^k up to u^`most` from those of t^k, where t = (f - centre) / reach: Horner's
+  // scheme for the shift of a polynomial.
+  Sums shifted(Sums sums, double moment, int most) const {
+    const double by = (centre_ - moment) / reach_;
+    for (int k = 1; k <= most; ++k) {
+      for (int i = most; i >= k; --i) sums.powers[i] += by * sums.powers[i - 1];
+    }
+    const int offs = std::min(most, kOffPowers - 1);
+    for (int k = 1; k <= offs; ++k) {
+      for (int i = offs; i >= k; --i) sums.offs.row(i) += by * sums.offs.row(i - 1);
+    }
+    if (sign_ < 0) {
+      for (int i = 1; i <= most; i += 2) {
+        sums.powers[i] = -sums.powers[i];
+        if (i < kOffPowers) sums.offs.row(i) = -sums.offs.row(i);
+      }
+    }
+    return sums;
+  }
+
   int first_, last_;
-  double reach_, sign_, stiffness_;
-  Vec3 middle_ = Vec3::Zero();
+  double centre_, reach_, sign_, stiffness_;
+  std::vector<Sums> upto_;  // [frames + 1], of the frames before
+  double squares_ = 0;
 };
 
 }  // namespace

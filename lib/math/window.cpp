@@ -1,8 +1,10 @@
 #include "math/window.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -11,7 +13,8 @@ namespace krok {
 namespace {
 
 constexpr int kRounds = 100;
-constexpr double kConverged = 1e-9, kTogether = 1e-6;  // metres
+constexpr double kConverged = 1e-9, kTogether = 1e-6, kNear = 0.01;  // metres
+constexpr double kMaxNewton = 20;                                    // of the other step
 
 }  // namespace
 
@@ -62,17 +65,27 @@ Vec3 median_point(std::span<const Vec3> points) {
   if (points.empty()) return center;
   for (const Vec3& point : points) center += point;
   center /= static_cast<double>(points.size());
+  double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds; ++round) {
     Vec3 sum = Vec3::Zero();
     double weights = 0;
+    Mat3 across = Mat3::Zero();
     for (const Vec3& point : points) {
-      const double weight = 1 / std::sqrt((point - center).squaredNorm() + kTogether * kTogether);
-      sum += weight * (point - center);
+      const Vec3 off = point - center;
+      const double weight = 1 / std::sqrt(off.squaredNorm() + kTogether * kTogether);
+      sum += weight * off;
       weights += weight;
+      across += weight * weight * weight * off * off.transpose();
     }
-    const Vec3 step = sum / weights;
+    Vec3 step = sum / weights;  // Weiszfeld's
+    // Newton's near the end, while it converges.
+    const Vec3 newton = (weights * Mat3::Identity() - across).inverse() * sum;
+    if (step.norm() < kNear && newton.norm() < std::min(last, kMaxNewton * step.norm())) {
+      step = newton;
+    }
     center += step;
-    if (step.norm() < kConverged) break;
+    last = step.norm();
+    if (last < kConverged) break;
   }
   return center;
 }

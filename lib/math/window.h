@@ -26,7 +26,8 @@ double upper_median(std::vector<double> values);
 // The geometric median: the point with the least sum of distances to `points`; outliers move it no
 // more than they move a median. Zero without points. By the iteration of Weiszfeld ("Sur le point
 // pour lequel la somme des distances de n points donnés est minimum", Tohoku Math. J. 43, 1937)
-// from the mean, to a nanometre or 100 rounds: points within a micrometre count as one.
+// from the mean and near its end that of Newton, to a nanometre or 100 rounds: points within a
+// micrometre count as one.
 Vec3 median_point(std::span<const Vec3> points);
 
 // The geometric median of the points' projections on the ground, at the median of their heights

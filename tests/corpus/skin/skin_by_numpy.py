@@ -97,7 +97,6 @@ def sampled(times, values, seconds):
 def palette(gltf, seconds):
     nodes = [dict(node) for node in gltf.json["nodes"]]
     animation = gltf.json["animations"][0]
-    seconds += min(gltf.array(sampler["input"])[0, 0] for sampler in animation["samplers"])
     for channel in animation["channels"]:
         sampler = animation["samplers"][channel["sampler"]]
         assert sampler.get("interpolation", "LINEAR") == "LINEAR"

@@ -1,6 +1,6 @@
 // Holds a mesh that Krok skinned against three.js's own skinning of the rig that it came from.
 //
-// Usage: node skin_by_three.mjs RIG SECONDS POSE   (SECONDS after the animation's first key)
+// Usage: node skin_by_three.mjs RIG SECONDS POSE
 // Prints the largest distance of two vertices in metres.
 
 import {ThreeScene} from '../../golden/three_scene.mjs';
@@ -15,7 +15,7 @@ for (const {name, values} of rig.action.getClip().tracks) {
     for (let k = i; k < i + 4; k++) values[k] /= length;
   }
 }
-rig.seek(Number(seconds) + Math.min(...rig.action.getClip().tracks.map((track) => track.times[0])));
+rig.seek(Number(seconds));
 pose.seek(0);
 const wanted = rig.vertices(), found = pose.vertices();
 if (wanted.length !== found.length) {
