@@ -53,27 +53,40 @@ namespace {
 // smoothly.
 constexpr double kSudden = 30;
 
-// The solution of a positive semidefinite system, 0 for what it does not tell. By L D L^T; Eigen's
-// own takes several times as long for so small a one.
-Eigen::Matrix<double, 4, 3> solved(Eigen::Matrix4d a, Eigen::Matrix<double, 4, 3> b) {
-  const double least = 1e-14 * a.trace();
-  for (int i = 0; i < 4; ++i) {
-    const double inverse = a(i, i) > least ? 1 / a(i, i) : 0;
-    for (int j = i + 1; j < 4; ++j) {
-      const double part = a(j, i) * inverse;
-      for (int k = j; k < 4; ++k) a(k, j) -= part * a(k, i);
-      for (int axis = 0; axis < 3; ++axis) b(j, axis) -= part * b(i, axis);
+// Solutions of positive semidefinite systems, 0 for what they leave open: of unknowns 0, 1, 2 and
+// one more. By L D L^T, of which the first three columns are shared; Eigen's own takes several
+// times as long for so small a one.
+class Systems {
+ public:
+  Systems(Eigen::Matrix<double, 5, 5> a, Eigen::Matrix<double, 5, 3> b)
+      : a_(std::move(a)), b_(std::move(b)), least_(1e-14 * a_.trace()) {
+    for (int i = 0; i < 3; ++i) {
+      const double inverse = a_(i, i) > least_ ? 1 / a_(i, i) : 0;
+      for (int j = i + 1; j < 5; ++j) {
+        const double part = a_(j, i) * inverse;
+        for (int k = j; k < 5; ++k) a_(k, j) -= part * a_(k, i);
+        b_.row(j) -= part * b_.row(i);
+      }
+      for (int j = i + 1; j < 5; ++j) a_(j, i) *= inverse;
+      b_.row(i) *= inverse;
     }
-    for (int j = i + 1; j < 4; ++j) a(j, i) *= inverse;
-    for (int axis = 0; axis < 3; ++axis) b(i, axis) *= inverse;
   }
-  for (int i = 3; i >= 0; --i) {
-    for (int j = i + 1; j < 4; ++j) {
-      for (int axis = 0; axis < 3; ++axis) b(i, axis) -= a(j, i) * b(j, axis);
+
+  Eigen::Matrix<double, 4, 3> with(int last) const {
+    Eigen::Matrix<double, 4, 3> x;
+    x.row(3) = b_.row(last) * (a_(last, last) > least_ ? 1 / a_(last, last) : 0);
+    for (int i = 2; i >= 0; --i) {
+      x.row(i) = b_.row(i) - a_(last, i) * x.row(3);
+      for (int j = i + 1; j < 3; ++j) x.row(i) -= a_(j, i) * x.row(j);
     }
+    return x;
   }
-  return b;
-}
+
+ private:
+  Eigen::Matrix<double, 5, 5> a_;  // the lower half
+  Eigen::Matrix<double, 5, 3> b_;
+  double least_;
+};
 
 // Two pieces that meet at a moment, fitted to the positions of some frames. `reach` is half of
 // those frames, for numbers near 1. Sums over frames are kept up to each frame, so that a moment
@@ -138,12 +151,13 @@ class Pieces {
     // the foot is not quite right, and jitter must not be taken for that.
     moments(1, 1) = all.powers[2] + 4 * stiffness_ * stiffness_;
     const Eigen::Matrix<double, 5, 5> full = moments.selfadjointView<Eigen::Lower>();
+    const Systems systems(full, sums);
     double least = 0;
     for (const bool sudden : {false, true}) {
       const std::array<int, 4> used = {0, 1, 2, sudden ? 4 : 3};
       const Eigen::Matrix4d normal = full(used, used);
       const Eigen::Matrix<double, 4, 3> right = sums(used, Eigen::all);
-      const Eigen::Matrix<double, 4, 3> fit = solved(normal, right);
+      const Eigen::Matrix<double, 4, 3> fit = systems.with(used[3]);
       // Written so that errors of the fit count by their squares.
       const double left = squares_ + fit.cwiseProduct(normal * fit - 2 * right).sum();
       least = sudden ? std::min(least, kSudden * left) : left;
