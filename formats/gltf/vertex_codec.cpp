@@ -140,15 +140,17 @@ class SecondCodec {
 };
 
 // YCoCg of reversible integers with the bits of alpha's range; see the appendix.
-template <typename Unsigned, typename Signed>
+template <typename Unsigned>
 void unfilter(std::span<std::byte> bytes) {
   constexpr float kMax = static_cast<float>(static_cast<Unsigned>(~Unsigned{0}));
+  // Two's complement.
+  constexpr int kRange = 1 << (8 * sizeof(Unsigned));
+  const auto with_sign = [](int value) { return value < kRange / 2 ? value : value - kRange; };
   auto* const values = reinterpret_cast<Unsigned*>(bytes.data());
   for (std::size_t i = 0; i + 3 < bytes.size() / sizeof(Unsigned); i += 4) {
     Unsigned* const c = values + i;
     const int range = static_cast<int>(std::bit_ceil(static_cast<unsigned>(c[3]) + 1)) - 1;
-    const int y = c[0], co = static_cast<int>(static_cast<Signed>(c[1]));
-    const int cg = static_cast<int>(static_cast<Signed>(c[2]));
+    const int y = c[0], co = with_sign(c[1]), cg = with_sign(c[2]);
     const int alpha = ((c[3] << 1) & range) | (c[3] & 1);
     const std::array<int, 4> colour = {y + co - cg, y + cg, y - co - cg, alpha};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -172,9 +174,9 @@ bool unpack_second_codec(std::span<const std::byte> packed, std::size_t stride,
 
 void unfilter_colours(std::span<std::byte> colours, std::size_t stride) {
   if (stride == 4) {
-    unfilter<std::uint8_t, std::int8_t>(colours);
+    unfilter<std::uint8_t>(colours);
   } else {
-    unfilter<std::uint16_t, std::int16_t>(colours);
+    unfilter<std::uint16_t>(colours);
   }
 }
 
