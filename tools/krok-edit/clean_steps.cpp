@@ -2,7 +2,7 @@
 
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "filter/spikes.h"
+#include "filter/noise_filter.h"
 #include "motion/displacement.h"
 #include "motion/ground_frame.h"
 #include "tools/krok-edit/steps.h"
@@ -50,16 +50,12 @@ Diagnostic spike_note(const filter::Spike& spike, const Edit& edit, const std::s
   return note;
 }
 
-Status remove_spikes(const Options& options, ToolContext& context,
-                     std::span<const std::uint8_t> joints, Edit& edit) {
-  if (!options.spikes) return {};
-  filter::SpikeOptions finding;
-  finding.threshold = options.spike_threshold;
-  auto removal = filter::remove_spikes(edit.clip, finding, joints, thread_count(context.jobs));
-  if (!removal) return removal.error();
+// Reports spikes, and adds them to `metrics`. A line on how many there are.
+std::string report_spikes(const std::vector<filter::Spike>& spikes, const Options& options,
+                          ToolContext& context, const Edit& edit, Json& metrics) {
   Json list = Json::array();
   int frames = 0;
-  for (const filter::Spike& spike : removal->spikes) {
+  for (const filter::Spike& spike : spikes) {
     context.diagnose(spike_note(spike, edit, options.input));
     Json entry;
     entry["joint"] = edit.clip.skeleton.names[static_cast<std::size_t>(spike.joint)];
@@ -71,18 +67,44 @@ Status remove_spikes(const Options& options, ToolContext& context,
     list.push_back(std::move(entry));
     frames += spike.last_frame - spike.first_frame + 1;
   }
-  std::swap(edit.clip, removal->clip);
-  std::string line =
-      removal->spikes.empty()
-          ? std::string("no spikes found")
-          : fmt::format("{} removed, {} replaced",
-                        counted(static_cast<long long>(removal->spikes.size()), "spike"),
-                        counted(frames, "joint's frame", "joints' frames"));
+  metrics["spikes"] = std::move(list);
+  if (spikes.empty()) return "no spikes found";
+  return fmt::format("{} removed, {} replaced",
+                     counted(static_cast<long long>(spikes.size()), "spike"),
+                     counted(frames, "joint's frame", "joints' frames"));
+}
+
+Status remove_spikes(const Options& options, ToolContext& context,
+                     std::span<const std::uint8_t> joints, Edit& edit) {
+  if (!options.spikes) return {};
+  filter::SpikeOptions finding;
+  finding.threshold = options.spike_threshold;
+  auto removal = filter::remove_spikes(edit.clip, finding, joints, thread_count(context.jobs));
+  if (!removal) return removal.error();
   Json metrics;
   metrics["threshold"] = finding.threshold;
-  metrics["spikes"] = std::move(list);
+  std::string line = report_spikes(removal->spikes, options, context, edit, metrics);
+  std::swap(edit.clip, removal->clip);
   if (!removal->spikes.empty()) metrics["feet_moved"] = foot_change(removal->clip, edit, line);
   edit.note("spikes", std::move(metrics), std::move(line));
+  return {};
+}
+
+Status filter_noise(const Options& options, ToolContext& context,
+                    std::span<const std::uint8_t> joints, Edit& edit) {
+  if (options.filter != Filter::by_noise) return {};
+  auto removal = filter::remove_noise(edit.clip, joints, thread_count(context.jobs));
+  if (!removal) return removal.error();
+  Json metrics;
+  metrics["kind"] = "auto";
+  metrics["noise_angle"] = to_degrees(removal->angle);
+  metrics["noise_distance"] = removal->distance;
+  const std::string spikes = report_spikes(removal->spikes, options, context, edit, metrics);
+  std::swap(edit.clip, removal->clip);
+  std::string line = fmt::format("filtered: noise of {} and {}, {}", in_degrees(removal->angle),
+                                 in_millimetres(removal->distance), spikes);
+  metrics["feet_moved"] = foot_change(removal->clip, edit, line);
+  edit.note("filter", std::move(metrics), std::move(line));
   return {};
 }
 
@@ -132,6 +154,7 @@ Status clean(const Options& options, ToolContext& context, Edit& edit) {
   if (!joints) return joints.error();
   if (Status status = remove_spikes(options, context, *joints, edit); !status) return status;
   if (Status status = filter_jitter(options, context, *joints, edit); !status) return status;
+  if (Status status = filter_noise(options, context, *joints, edit); !status) return status;
   return plant(options, context, edit);
 }
 

@@ -39,9 +39,12 @@ void declare_cleaning(CommandOptions& command, Options& o) {
            "Spike threshold, as a multiple of the usual deviation from neighbouring frames", "6")
       .only_with("--spikes");
   command.add("--filter KIND", o.filter,
-              choice<Filter>({{"butterworth", Filter::butterworth}, {"savgol", Filter::savgol}}),
-              "Remove jitter without time shift: butterworth (zero-phase low-pass) or savgol "
-              "(Savitzky-Golay, preserves peaks better)");
+              choice<Filter>({{"auto", Filter::by_noise},
+                              {"butterworth", Filter::butterworth},
+                              {"savgol", Filter::savgol}}),
+              "Remove jitter without time shift: auto (noise is estimated for each joint; spikes "
+              "are replaced, too), butterworth (zero-phase low-pass) or savgol (Savitzky-Golay, "
+              "preserves peaks better)");
   command
       .add("--cutoff", o.cutoff, frequency(), "butterworth: cutoff frequency (half power)", "6Hz")
       .only_with("--filter butterworth");
@@ -53,7 +56,7 @@ void declare_cleaning(CommandOptions& command, Options& o) {
       .add("--filter-order", o.order, whole(0, 1000000),
            "butterworth: order of both passes together, 2, 4, 6 or 8 [4]; savgol: polynomial "
            "degree [3]")
-      .only_with("--filter");
+      .only_with(std::vector<std::string>{"--filter butterworth", "--filter savgol"});
   command
       .add_option("--joints PATTERN", o.joints.patterns,
                   "Clean only joints with this name; * matches any characters; may be repeated")
@@ -220,7 +223,7 @@ Status check(const Options& o) {
 }  // namespace
 
 std::optional<filter::Smoothing> Options::smoothing() const {
-  if (filter == Filter::none) return std::nullopt;
+  if (filter == Filter::none || filter == Filter::by_noise) return std::nullopt;
   if (filter == Filter::savgol) return krok::filter::SavitzkyGolay{window, order.value_or(3)};
   return krok::filter::Butterworth{cutoff, order.value_or(4)};
 }
@@ -232,6 +235,8 @@ ToolSpec make_spec() {
   spec.details = "Steps run in the order listed here, regardless of the order of the options.";
   spec.inputs = "IN.anim|IN.bvh|IN.amc";
   spec.examples = {
+      {"krok-edit take.anim -o clean.anim --filter auto",
+       "replaces spikes and removes as much jitter as the motion is found to have"},
       {"krok-edit take.anim -o clean.anim --spikes --filter butterworth --cutoff 8Hz",
        "replaces spikes and removes jitter without time shift"},
       {"krok-edit take.anim -o walk.anim --from 1.5s --to 187f --loop --treadmill",

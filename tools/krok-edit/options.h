@@ -25,7 +25,7 @@ struct EventTime {
 // Whose strikes a cycle is between.
 enum class CycleFoot : unsigned char { none, either, left, right };
 
-enum class Filter : unsigned char { none, butterworth, savgol };
+enum class Filter : unsigned char { none, butterworth, savgol, by_noise };
 
 // A time of the motion, or a keytime.
 struct CutTime {
@@ -76,6 +76,7 @@ struct Options {
   double turn = 0;
   Vec3 move = Vec3::Zero();
 
+  // None for Filter::none and by_noise.
   std::optional<krok::filter::Smoothing> smoothing() const;
 };
 

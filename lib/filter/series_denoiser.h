@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "filter/whittaker.h"
+
+// Removes white noise of known deviation from many series at once.
+
+namespace krok::filter {
+
+// Whittaker smoothers for a range of lambdas, to choose from for each group of series.
+class WhittakerLadder {
+ public:
+  explicit WhittakerLadder(int size);
+
+  // The smoother of least expected error for these columns together, by Mallows' Cp, where noise
+  // has this standard deviation in each value.
+  const Whittaker& choose(const Eigen::Ref<const Eigen::MatrixXd>& series, double noise) const;
+
+ private:
+  std::vector<Whittaker> smoothers_;
+};
+
+// The white noise in evenly sampled columns that are smooth but for it: standard deviation, from
+// the median of fourth differences, so that fast frames and outliers have little effect. 0 for
+// fewer than five rows.
+double noise_deviation(const Eigen::Ref<const Eigen::MatrixXd>& series);
+
+// Columns are series (three a group: the axes of one joint), rows are frames; noise of deviation 1
+// in each value, independent of the others. Two estimates are joined:
+// - what the columns have in common over short times: singular spectrum analysis of all columns
+//   with lags over 0.1 s, in windows of up to 6 s; singular values are shrunk by Gavish and Donoho
+//   (IEEE Transactions on Information Theory 63, 2017). Limbs move together, so a quick change that
+//   no column shows above its noise may be plain in all of them.
+// - Whittaker smoothing of each group, its strength by Mallows' Cp.
+// Same bytes for any `jobs`.
+Eigen::MatrixXd without_noise(const Eigen::MatrixXd& series, double rate, int jobs);
+
+}  // namespace krok::filter
