@@ -163,7 +163,8 @@ class AxesFinder {
     if (joint != other && at_trunk && correlation.leaves_twist()) {
       return by_quarter_turns(joint, other, correlation, fitted);
     }
-    return fitted;
+    const bool is_paired = joint != other && has_parents && correlation.leaves_twist();
+    return is_paired ? by_half_turn(joint, other, correlation, fitted) : fitted;
   }
 
   // For a joint with a single bone next to the trunk. Reference poses whose left chains run along
@@ -177,6 +178,16 @@ class AxesFinder {
     }
     turned_[at(joint)] = best.coeffs() == fitted.coeffs() ? 0 : 1;
     return best;
+  }
+
+  // The same for other joints of limbs with a single bone, such as feet, of a half turn alone:
+  // forearms turn by far, but not by that much.
+  Quat by_half_turn(int joint, int other, const Correlation& correlation, const Quat& fitted) {
+    if (pose_.empty() || change(joint, other, fitted) < kPi - kHalfTurnWithin) return fitted;
+    const Quat turn = fitted * Quat(Eigen::AngleAxisd(kPi, correlation.own()));
+    if (change(joint, other, turn) > kHalfTurnWithin) return fitted;
+    turned_[at(joint)] = 1;
+    return turn;
   }
 
   // `turn` where it turns the joint clearly less in its parent than `usual` does.
@@ -233,6 +244,7 @@ class AxesFinder {
   static constexpr double kFits = 0.01;    // radians
   static constexpr double kSameWay = 0.9;  // cosine
   static constexpr double kBent = 0.3;     // radians, between joints of a spine
+  static constexpr double kHalfTurnWithin = 40 * kRadiansPerDegree;
   static constexpr double kClearlyLess = 60 * kRadiansPerDegree;
 
   const Skeleton& skeleton_;
