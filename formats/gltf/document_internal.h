@@ -41,6 +41,8 @@ class Document {
   // bytes: until set_targets() the accessor has no data. Not in compressed files, which are as
   // small without. (part_vertices.cpp)
   int add_displacements(std::vector<Vec3f> values, bool bounds);
+  // The same of floats or normalized whole numbers (given as such); -1 if not sparse.
+  int add_sparse(std::vector<Vec3f> values, bool bounds, int component);
   int add_integers(std::span<const std::uint32_t> values, int type, std::uint32_t largest, Use use);
 
   // Vertex values of a fixed number of bytes each, the last of them padding if they are fewer.

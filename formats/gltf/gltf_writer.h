@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/file.h"
 #include "core/result.h"
@@ -81,8 +83,9 @@ Status write_rig(const Model& model, std::span<const NamedTracks> clips,
 
 // Makes one of the vertices of which the file would hold the same, and reorders them, and triangles
 // within parts, so that compression finds neighbours near each other. `morphs` may have no targets.
-void order_for_compression(Model& model, MorphSet& morphs,
-                           const std::optional<Quantization>& quantization);
+// Returns the new place of each vertex.
+std::vector<std::uint32_t> order_for_compression(Model& model, MorphSet& morphs,
+                                                 const std::optional<Quantization>& quantization);
 
 // A mesh without a skeleton: triangles, texture coordinates and parts of `model`, vertices of
 // `shape`, which must be the model's own shape if there are morph targets.

@@ -151,14 +151,22 @@ void Document::for_each_own_primitive(
 }
 
 int Document::add_displacements(std::vector<Vec3f> values, bool bounds) {
+  const int sparse = add_sparse(values, bounds, TINYGLTF_COMPONENT_TYPE_FLOAT);
+  if (sparse >= 0) return sparse;
+  return bounds ? add_positions(values) : add_vectors(values);
+}
+
+int Document::add_sparse(std::vector<Vec3f> values, bool bounds, int component) {
   const auto moved = std::ranges::count_if(values, [](const Vec3f& one) { return !one.isZero(0); });
-  constexpr std::ptrdiff_t kSparse = sizeof(Vec3f) + sizeof(std::uint32_t), kDense = sizeof(Vec3f);
-  if ((options_.compressed && options_.binary) ||
-      2 * moved * kSparse > std::ssize(values) * kDense) {
-    return bounds ? add_positions(values) : add_vectors(values);
+  const int bytes = 3 * tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component));
+  constexpr int kIndex = sizeof(std::uint32_t);
+  const std::ptrdiff_t sparse = bytes + kIndex, dense = (bytes + 3) / 4 * 4;
+  if ((options_.compressed && options_.binary) || 2 * moved * sparse > std::ssize(values) * dense) {
+    return -1;
   }
   tinygltf::Accessor accessor;
-  accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+  accessor.componentType = component;
+  accessor.normalized = component != TINYGLTF_COMPONENT_TYPE_FLOAT;
   accessor.type = TINYGLTF_TYPE_VEC3;
   if (bounds) accessor.minValues.resize(3);
   const int index = static_cast<int>(gltf.accessors.size());
@@ -192,7 +200,20 @@ void Document::fill_displacements(std::span<const Vec3f> values, tinygltf::Acces
   };
   const auto [index_view, component] =
       take_view(add_integers(places, TINYGLTF_TYPE_SCALAR, places.back(), Use::data));
-  const auto value_view = take_view(add_vectors(moved, Use::data)).first;
+  const auto whole = [&]<typename Whole>(Whole, int type) {
+    std::vector<Whole> numbers;
+    for (const Vec3f& one : moved) {
+      for (const float value : one) numbers.push_back(static_cast<Whole>(value));
+    }
+    return add_accessor(std::as_bytes(std::span(numbers)), type, sizeof(Whole), TINYGLTF_TYPE_VEC3,
+                        Use::data);
+  };
+  const int type = accessor.componentType;
+  const auto value_view =
+      take_view(type == TINYGLTF_COMPONENT_TYPE_SHORT  ? whole(std::int16_t{}, type)
+                : type == TINYGLTF_COMPONENT_TYPE_BYTE ? whole(std::int8_t{}, type)
+                                                       : add_vectors(moved, Use::data))
+          .first;
   accessor.sparse.isSparse = true;
   accessor.sparse.count = static_cast<int>(moved.size());
   accessor.sparse.indices = {0, index_view, component};

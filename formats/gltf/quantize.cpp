@@ -343,16 +343,33 @@ std::map<std::string, int> add_quantized_target(Document& document, const Model&
                                                 const PositionGrid& grid) {
   std::map<std::string, int> attributes;
   const TargetSteps steps = target_steps(model.positions, morphs.target_positions(target), grid);
-  attributes["POSITION"] =
-      steps.exact.empty() ? add_steps(document, steps.whole) : document.add_positions(steps.exact);
+  int& position = attributes["POSITION"];
+  if (!steps.exact.empty()) {
+    position = document.add_displacements(steps.exact, true);
+  } else {
+    std::vector<Vec3f> whole;
+    for (const auto& step : steps.whole) whole.emplace_back(step[0], step[1], step[2]);
+    position = document.add_sparse(std::move(whole), true, TINYGLTF_COMPONENT_TYPE_SHORT);
+    if (position < 0) position = add_steps(document, steps.whole);
+  }
   if (morphs.normals.empty() || model.normals.empty()) return attributes;
   const auto normals = morphs.target_normals(target);
   std::vector<Vec3f> turns(normals.size());
   for (std::size_t v = 0; v < normals.size(); ++v) turns[v] = normals[v] - model.normals[v];
   const bool small = std::ranges::all_of(
       turns, [](const Vec3f& turn) { return turn.cwiseAbs().maxCoeff() <= 1.0f; });
-  attributes["NORMAL"] = small ? add_bytes(document, bytes_of_vectors(turns), TINYGLTF_TYPE_VEC3)
-                               : document.add_vectors(turns);
+  int& attribute = attributes["NORMAL"];
+  attribute = -1;
+  if (small) {
+    const auto bytes = bytes_of_vectors(turns);
+    for (std::size_t v = 0; v < turns.size(); ++v) {
+      for (int c = 0; c < 3; ++c) turns[v][c] = bytes[4 * v + static_cast<std::size_t>(c)];
+    }
+    attribute = document.add_sparse(std::move(turns), false, TINYGLTF_COMPONENT_TYPE_BYTE);
+    if (attribute < 0) attribute = add_bytes(document, bytes, TINYGLTF_TYPE_VEC3);
+  } else {
+    attribute = document.add_displacements(std::move(turns), false);
+  }
   return attributes;
 }
 

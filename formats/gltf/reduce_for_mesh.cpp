@@ -14,9 +14,11 @@ namespace {
 
 // Of the tolerance, what bits of one joint's keys may take; joints of a chain add up.
 constexpr double kBitsShare = 0.15;
-constexpr int kFewestBits = 6, kMostBits = 23;
+// What a loader computes from the file may be off by, beside rounded() and quantized().
+constexpr double kDecodingShare = 0.002;
+constexpr int kMinBits = 6, kMaxBits = 23;
 // Of joints without vertices, for what viewers attach to them: metres.
-constexpr double kLeastReach = 0.05;
+constexpr double kMinReach = 0.05;
 
 // For each joint the largest share of a turn about it that a vertex takes: weight times distance.
 // Joints without vertices still have to be in place, for what viewers attach to them.
@@ -52,7 +54,7 @@ PaletteSource palettes_of(const Model& model, const JointTracks& tracks) {
 
 // For each joint the largest distance of a vertex that moves with it, or with a joint below it.
 std::vector<double> reaches_of(const Model& model) {
-  std::vector<double> reaches(model.skeleton.names.size(), kLeastReach);
+  std::vector<double> reaches(model.skeleton.names.size(), kMinReach);
   const auto places = static_cast<std::size_t>(model.influences_per_vertex);
   for (std::size_t i = 0; i < model.influence_weights.size(); ++i) {
     const double weight = static_cast<double>(model.influence_weights[i]);
@@ -75,9 +77,9 @@ void choose_bits(std::span<const double> reaches, double error, bool filtered,
     JointTrack& track = tracks.joints[j];
     // Half a step of 2^(1 - bits) in each of three components of a half angle.
     const double bits = 1 + std::log2(std::sqrt(3.0) * reaches[j] / error);
-    const int needed = std::max(kFewestBits, static_cast<int>(std::ceil(bits)));
+    const int needed = std::max(kMinBits, static_cast<int>(std::ceil(bits)));
     if (filtered) {
-      track.rotation_bits = needed <= kMostBits ? needed : JointTrack::kExact;
+      track.rotation_bits = needed <= kMaxBits ? needed : JointTrack::kExact;
       track.translation_exponent = step;
     } else {
       track.rotation_bits =
@@ -108,13 +110,20 @@ std::size_t key_count(const JointTracks& tracks) {
 
 MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const TrackedMesh& b,
                      const JointTracks& b_tracks, int jobs) {
-  const int frames = static_cast<int>(a_tracks.times.size());
-  return krok::mesh_error({a.model, palettes_of(a.model, a_tracks), shape_of(a)},
-                          {b.model, palettes_of(b.model, b_tracks), shape_of(b)},
-                          std::max(1, 2 * frames - 1), jobs);
+  return mesh_error(a, a_tracks, shown({b.model, palettes_of(b.model, b_tracks), shape_of(b)}),
+                    jobs);
 }
 
-Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& shown,
+MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const ShownMesh& b,
+                     int jobs) {
+  std::size_t frames = a_tracks.times.size();
+  if (frames == 0 && a.weights != nullptr) frames = at(a.weights->frame_count());
+  return krok::mesh_error(shown({a.model, palettes_of(a.model, a_tracks), shape_of(a)}), b,
+                          a.model.vertex_count(), std::max(1, 2 * static_cast<int>(frames) - 1),
+                          jobs);
+}
+
+Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& kept,
                                       const MeshReduceOptions& options, int jobs,
                                       JointTracks& tracks) {
   const JointTracks full = tracks;
@@ -128,8 +137,8 @@ Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMes
         model.model.skeleton, {.tolerance = tolerance, .shell_distances = shells}, jobs, fewer);
     if (!reduction) return std::move(reduction).error();
     if (options.short_keys) choose_bits(reaches, kBitsShare * tolerance, options.filtered, fewer);
-    const MeshError error = mesh_error(model, full, shown, rounded(fewer, options.filtered), jobs);
-    const bool fits = error.largest <= options.tolerance;
+    const MeshError error = mesh_error(model, full, kept, rounded(fewer, options.filtered), jobs);
+    const bool fits = error.largest <= (1 - kDecodingShare) * options.tolerance;
     if (fits && (!found || reduction->keys_after < best.keys_after)) {
       best = {error, reduction->keys_before, reduction->keys_after};
       tracks = std::move(fewer);
@@ -148,7 +157,7 @@ Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMes
   }
   if (found) return best;
   tracks = full;
-  return MeshReduction{mesh_error(model, full, shown, tracks, jobs), key_count(full),
+  return MeshReduction{mesh_error(model, full, kept, tracks, jobs), key_count(full),
                        key_count(full)};
 }
 

@@ -28,13 +28,13 @@ struct MeshReduceOptions {
   bool filtered = false;    // see rounded()
 };
 
-// Removes keys of tracks of all frames, and bits of those that stay, while no vertex of `shown`,
+// Removes keys of tracks of all frames, and bits of those that stay, while no vertex of `kept`,
 // what is left of `model`, is further than the tolerance from that of `model` with all keys.
 // choose_keys() bounds the error of a sphere around each joint, with the radius of its vertices
 // here, which is more than what a vertex between several joints moves by, or less for vertices far
-// off. So its tolerance is searched for. All keys are kept where `shown` alone is further off.
+// off. So its tolerance is searched for. All keys are kept where `kept` alone is further off.
 // Codes: reduce-tolerance, reduce-stretch (joints that change scale).
-Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& shown,
+Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& kept,
                                       const MeshReduceOptions& options, int jobs,
                                       JointTracks& tracks);
 
@@ -42,5 +42,7 @@ Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMes
 // frames, at the moments of MeshReduction.
 MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const TrackedMesh& b,
                      const JointTracks& b_tracks, int jobs);
+MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const ShownMesh& b,
+                     int jobs);
 
 }  // namespace krok::gltf

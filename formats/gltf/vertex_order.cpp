@@ -73,7 +73,8 @@ std::vector<std::uint32_t> first_parts(const Model& model) {
 }
 
 // Vertices of different parts stay apart, so that parts have vertices of their own.
-void weld(Model& model, MorphSet& morphs, const std::optional<Quantization>& quantization) {
+std::vector<std::uint32_t> weld(Model& model, MorphSet& morphs,
+                                const std::optional<Quantization>& quantization) {
   const VertexRows rows = vertex_rows(model, morphs, quantization);
   const std::vector<std::uint32_t> parts = first_parts(model);
   const std::string_view bytes(reinterpret_cast<const char*>(rows.bytes.data()), rows.bytes.size());
@@ -87,13 +88,14 @@ void weld(Model& model, MorphSet& morphs, const std::optional<Quantization>& qua
     remap[v] = place->second;
   }
   move_vertices(model, morphs, remap, count);
+  return remap;
 }
 
 }  // namespace
 
-void order_for_compression(Model& model, MorphSet& morphs,
-                           const std::optional<Quantization>& quantization) {
-  weld(model, morphs, quantization);
+std::vector<std::uint32_t> order_for_compression(Model& model, MorphSet& morphs,
+                                                 const std::optional<Quantization>& quantization) {
+  std::vector<std::uint32_t> places = weld(model, morphs, quantization);
   const std::size_t vertices = model.positions.size();
   std::vector<unsigned> indices;
   for (const auto& triangle : model.triangles) {
@@ -112,6 +114,8 @@ void order_for_compression(Model& model, MorphSet& morphs,
     if (place == ~0u) place = static_cast<unsigned>(used++);
   }
   move_vertices(model, morphs, remap, vertices);
+  for (std::uint32_t& place : places) place = remap[place];
+  return places;
 }
 
 }  // namespace krok::gltf

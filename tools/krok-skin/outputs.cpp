@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "core/numbers.h"
 #include "formats/gltf/baked_writer.h"
@@ -195,19 +197,39 @@ Status write_motion(const Subject& subject, ToolContext& context) {
 }
 
 Result<bool> write_rig(const Options& chosen, const Subject& subject, ToolContext& context) {
-  const auto rig = small_rig(chosen, subject, kMeshName, context);
+  auto rig = small_rig(chosen, subject, kMeshName, context);
   if (!rig) return rig.error();
-  Status status = write_output(context, context.output, [&](OutputFile& file) {
+  bool within = true;
+  const Status all = write_output(context, context.output, [&](OutputFile& file) -> Status {
     gltf::WriteOptions options = write_options(subject, context);
     options.eyes = subject.eyes;
     if (rig->morphs.target_count() > 0) options.morphs = &rig->morphs;
     if (subject.changes_shape()) options.weights = &subject.weights;
     options.quantized = rig->quantization;
     options.compressed = chosen.compress;
-    return gltf::write_rig(rig->model, rig->clips.named(), options, file);
+    const auto write = [&](OutputFile& to) {
+      return gltf::write_rig(rig->model, rig->clips.named(), options, to);
+    };
+    if (!rig->facts.is_object()) return write(file);
+    // A stream cannot be read again.
+    std::optional<OutputFile> readable;
+    if (!file.can_overwrite()) {
+      auto made = OutputFile::create(std::filesystem::temp_directory_path() / "krok-skin.glb");
+      if (!made) return made.error();
+      readable = std::move(*made);
+    }
+    OutputFile& measured = readable ? *readable : file;
+    if (Status status = write(measured); !status) return status;
+    if (Status status = measured.seal(); !status) return status;
+    const auto kept = report_loss(measured.written_at(), chosen, subject, *rig, context);
+    if (!kept) return kept.error();
+    within = *kept;
+    if (!readable) return {};
+    const auto again = InputFile::open(measured.written_at());
+    return again ? file.write(again->bytes()) : Status(again.error());
   });
-  if (!status) return status.error();
-  return !rig->misses_tolerance;
+  if (!all) return all.error();
+  return within;
 }
 
 Result<std::string> write_frames(const Subject& subject, const SkinBinding& binding,

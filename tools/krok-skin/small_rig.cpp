@@ -9,6 +9,7 @@
 #include "core/numbers.h"
 #include "formats/gltf/quantize.h"
 #include "formats/gltf/reduce_for_mesh.h"
+#include "formats/gltf/written_error.h"
 #include "scene/influences.h"
 
 namespace krok::cli::skin {
@@ -243,61 +244,26 @@ class BitsLost {
   int jobs_;
 };
 
-// Applies --reduce and --quantize, and reports the error of both.
-Status lose_bits(const Options& options, SmallRig& rig, ToolContext& context) {
-  const BitsLost lost(rig, context.jobs);
+// Applies --reduce and --quantize.
+Status lose_bits(const Options& options, SmallRig& rig, int jobs) {
+  const BitsLost lost(rig, jobs);
   const double tolerance = options.reduce.value_or(0);
   const bool filtered = options.compress && options.quantize;
   if (options.quantize) rig.quantization = lost.quantization_for(tolerance, filtered);
-  const Shown shown = lost.shown(rig.quantization);
-  Json facts;
-  std::string words;
+  rig.facts = Json::object();
+  rig.all_keys = rig.clips.tracks;
   if (tolerance > 0) {
-    const auto reduction = lost.reduce(
-        shown, {.tolerance = tolerance, .short_keys = options.quantize, .filtered = filtered},
-        rig.clips.tracks);
+    const auto reduction =
+        lost.reduce(lost.shown(rig.quantization),
+                    {.tolerance = tolerance, .short_keys = options.quantize, .filtered = filtered},
+                    rig.clips.tracks);
     if (!reduction) return reduction.error();
-    facts["keys"] = reduction->keys;
-    facts["keys_before"] = reduction->keys_before;
-    words = fmt::format("{} of {}, ", grouped(static_cast<long long>(reduction->keys)),
-                        counted(static_cast<long long>(reduction->keys_before), "key"));
+    rig.facts["keys"] = reduction->keys;
+    rig.facts["keys_before"] = reduction->keys_before;
   } else {
     for (gltf::JointTracks& tracks : rig.clips.tracks) {
       for (gltf::JointTrack& track : tracks.joints) track.rotation_bits = 16;
     }
-  }
-  std::vector<gltf::JointTracks> stored;
-  for (const gltf::JointTracks& tracks : rig.clips.tracks) {
-    stored.push_back(gltf::rounded(tracks, filtered));
-  }
-  const auto [error, clip] = lost.largest(shown, stored);
-  facts["largest_error"] = error.largest;
-  facts["vertex"] = error.vertex;
-  facts["frame"] = 0.5 * error.moment;
-  std::string where;
-  if (stored.size() > 1) {
-    facts["clip"] = rig.clips.names[clip];
-    where = rig.clips.names[clip] + ", ";
-  }
-  if (rig.quantization) {
-    facts["quantization_bound"] = gltf::quantization_bound(rig.model, *rig.quantization);
-    facts["weight_bits"] = rig.quantization->weight_bits;
-    facts["normal_error"] = gltf::normal_error(rig.model, *rig.quantization);
-  }
-  rig.misses_tolerance = tolerance > 0 && error.largest > tolerance;
-  if (tolerance > 0) facts["within_tolerance"] = !rig.misses_tolerance;
-  context.report.result["rig"] = std::move(facts);
-  context.log(fmt::format("{}max error on the mesh {} (vertex {}, {}frame {})", words,
-                          millimetres(error.largest), error.vertex, where,
-                          readable(0.5 * error.moment)));
-  if (rig.misses_tolerance) {
-    context.warn(
-        "skin-tolerance",
-        fmt::format("--reduce {} asks for less error than the {} that remain with all keys",
-                    millimetres(tolerance), millimetres(error.largest)),
-        rig.quantization ? "leave out --quantize, which has 65535 steps for the mesh's "
-                           "longest side, or allow more"
-                         : "allow more: floats are not more exact");
   }
   return {};
 }
@@ -335,10 +301,57 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
     drop_unused_sets(subject.materials, rig.model, context);
   }
   if (options.reduce || options.quantize) {
-    if (Status status = lose_bits(options, rig, context); !status) return status.error();
+    if (Status status = lose_bits(options, rig, context.jobs); !status) return status.error();
   }
-  if (options.compress) gltf::order_for_compression(rig.model, rig.morphs, rig.quantization);
+  if (options.compress) {
+    rig.places = gltf::order_for_compression(rig.model, rig.morphs, rig.quantization);
+  }
   return rig;
+}
+
+Result<bool> report_loss(const std::string& path, const Options& options, const Subject& subject,
+                         SmallRig& rig, ToolContext& context) {
+  std::vector<gltf::NamedTracks> all_keys = rig.clips.named();
+  for (std::size_t i = 0; i < all_keys.size(); ++i) all_keys[i].tracks = &rig.all_keys[i];
+  const auto found = gltf::written_error(path, {subject.model, subject.morphs, all_keys},
+                                         {rig.model, rig.places}, context.jobs);
+  if (!found) return found.error();
+  const MeshError& error = found->error;
+  Json& facts = rig.facts;
+  std::string words, where;
+  if (facts.contains("keys")) {
+    words = fmt::format("{} of {}, ", grouped(facts["keys"].get<long long>()),
+                        counted(facts["keys_before"].get<long long>(), "key"));
+  }
+  facts["largest_error"] = error.largest;
+  facts["vertex"] = error.vertex;
+  facts["frame"] = 0.5 * error.moment;
+  if (all_keys.size() > 1) {
+    facts["clip"] = all_keys[found->clip].name;
+    where = all_keys[found->clip].name + ", ";
+  }
+  if (rig.quantization) {
+    facts["quantization_bound"] = gltf::quantization_bound(subject.model, *rig.quantization);
+    facts["weight_bits"] = rig.quantization->weight_bits;
+    facts["normal_error"] = gltf::normal_error(subject.model, *rig.quantization);
+  }
+  const double tolerance = options.reduce.value_or(0);
+  const bool misses = tolerance > 0 && error.largest > tolerance;
+  if (tolerance > 0) facts["within_tolerance"] = !misses;
+  context.report.result["rig"] = std::move(facts);
+  context.log(fmt::format("{}max error on the mesh {} (vertex {}, {}frame {})", words,
+                          millimetres(error.largest), error.vertex, where,
+                          readable(0.5 * error.moment)));
+  if (misses) {
+    context.warn(
+        "skin-tolerance",
+        fmt::format("--reduce {} asks for less error than the {} that remain with all keys",
+                    millimetres(tolerance), millimetres(error.largest)),
+        rig.quantization ? "leave out --quantize, which has 65535 steps for the mesh's "
+                           "longest side, or allow more"
+                         : "allow more: floats are not more exact");
+  }
+  return !misses;
 }
 
 }  // namespace krok::cli::skin

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,12 +37,19 @@ struct SmallRig {
   MorphSet morphs;
   Clips clips;
   std::optional<gltf::Quantization> quantization = {};
-  bool misses_tolerance = false;  // of --reduce, whatever is kept
+  std::vector<std::uint32_t> places = {};        // of vertices, if reordered
+  std::vector<gltf::JointTracks> all_keys = {};  // as `clips` before --reduce, --quantize
+  Json facts = {};                               // about --reduce and --quantize, if given
 };
 
-// Reports the error of what is lost. Warns where the file needs a second set of influences. Codes:
+// Warns where the file needs a second set of influences. Codes:
 // those of joint_tracks() and reduce_for_mesh().
 Result<SmallRig> small_rig(const Options& options, const Subject& subject,
                            const std::string& still_name, ToolContext& context);
+
+// Measures what the file that is written at `path` lost of the subject, and reports it. False if
+// that is more than --reduce allows. Codes: those of written_error().
+Result<bool> report_loss(const std::string& path, const Options& options, const Subject& subject,
+                         SmallRig& rig, ToolContext& context);
 
 }  // namespace krok::cli::skin

@@ -100,7 +100,7 @@ TEST_F(SkinMorphs, TheErrorOfSmallFilesIsThatOfTheMovedShapes) {
     const auto seen = nlohmann::json::parse(
         tool("krok-diff", {"full.glb", "small.glb", "--match", "order", "--json"}, 1).out);
     const double largest = seen["result"]["measures"][0]["largest"];
-    EXPECT_NEAR(largest, rig["largest_error"].get<double>(), 0.05 * largest) << reduce;
+    EXPECT_NEAR(largest, rig["largest_error"].get<double>(), 0.01 * largest) << reduce;
   }
 }
 
