@@ -242,6 +242,12 @@ Gap BodyMotion::gap_after(std::size_t step) const {
   const double strange = smoother_step((apart - kUsualGap) / kUsualGap);
   gap.root_share = (1 - strange) * gap.share;
   gap.after += strange * (after.strike - after.start - gap.after);
+  // Runners' hips are nearer to the foot that strikes: both steps make room for the difference.
+  if (before.runs() != after.runs() && gap.share == 0.5) {
+    gap.before = before.strike - before.start;
+    gap.after = after.strike - after.start;
+    gap.root_share = gap.share;
+  }
   return gap;
 }
 

@@ -8,6 +8,7 @@
 #include "core/index.h"
 #include "gait/plan_prints.h"
 #include "gait/usual_step.h"
+#include "motion/ground_frame.h"
 #include "parametric/thin_out.h"
 #include "walkers.h"
 
@@ -126,6 +127,16 @@ TEST(Runs, AWalkBecomesARunAndAWalkAgain) {
     if (gaits.empty() || !gaits.ends_with(step.library)) gaits += " " + step.library;
   }
   EXPECT_EQ(gaits, " walks runs walks");
+  // The hips neither lurch nor stop where the gait changes.
+  const auto hips = at(carrying_joint(find_roles(made->clip.skeleton)));
+  const std::vector<StepReport>& steps = made->details.steps;
+  const int from = static_cast<int>(steps[1].end * made->clip.rate);
+  const int to = static_cast<int>(steps[steps.size() - 2].start * made->clip.rate);
+  for (int f = from; f < to; ++f) {
+    const Vec3f way = made->clip.frame_positions(f + 1)[hips] - made->clip.frame_positions(f)[hips];
+    EXPECT_GT(way.z() * made->clip.rate, 0.6) << f;
+    EXPECT_LT(way.z() * made->clip.rate, 2.8) << f;
+  }
 }
 
 TEST(Runs, StepsOfASpeedLastAsLongAsThatTakes) {
