@@ -268,6 +268,7 @@ std::string_view describe_content(std::span<const std::byte> content) {
 
 std::string advice(Kind found, Kind wanted) {
   if (found == wanted) return {};
+  if (wanted == Kind::steps) return "krok-fit makes it from a description of example clips (.json)";
   if (is_of(found, Group::capture) || is_of(found, Group::scene))
     return "import it with krok-import";
   if (is_of(found, Group::gltf)) {

@@ -73,9 +73,11 @@ Result<Model> bind_to(Model model, const Skeleton& skeleton) {
     if (used[j] != 0 && to_motion[j] < 0) missing.push_back(model.skeleton.names[j]);
   }
   if (!missing.empty()) {
-    return missing_joints(missing, fmt::format("the motion's joints are {}, ...; the model and the "
-                                               "motion must come from the same skeleton",
-                                               skeleton.empty() ? "none" : skeleton.names[0]));
+    return missing_joints(missing,
+                          fmt::format("the motion's joints are {}, ...; the model and the "
+                                      "motion must come from the same skeleton; krok-retarget "
+                                      "--onto brings a motion onto the model's",
+                                      skeleton.empty() ? "none" : skeleton.names[0]));
   }
 
   Skeleton bound = skeleton;

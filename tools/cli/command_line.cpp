@@ -359,6 +359,12 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     if (auto unknown = unknown_option(arguments)) return *std::move(unknown);
     if (const auto left = app_.remaining(); !left.empty()) {
       const bool file = form_ == Form::single && takes_many_;
+      for (const CLI::Option* option : app_.get_options()) {
+        if (!option->get_required() || !option->empty() || option->get_positional()) continue;
+        return Error("usage", fmt::format("{} is missing", option->get_name()),
+                     fmt::format("{} is an argument too many; perhaps it is the value of {}",
+                                 shown_list(left), option->get_name()));
+      }
       return Error(
           "usage",
           fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),
@@ -411,8 +417,7 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     if (app_.get_option_no_throw(name) != nullptr) continue;
     for (const RenamedOption& option : kRenamedOptions) {
       if (option.tool != tool_ || option.before != name) continue;
-      return usage(fmt::format("unknown option '{}'", name),
-                   fmt::format("its name is {} now", option.now));
+      return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", option.now));
     }
     const std::string near = is_long ? nearest_name(name, names) : std::string();
     return Error("usage", fmt::format("unknown option '{}'", shown(name)),

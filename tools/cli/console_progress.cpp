@@ -22,6 +22,8 @@ using Clock = std::chrono::steady_clock;
 
 // Failures are ignored: there is nowhere to report them.
 void put(const std::string& text) {
+  (void)std::fflush(
+      stdout);  // else results and messages in one terminal or file are mixed in a line
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 

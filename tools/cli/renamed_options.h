@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-// Options by the names that they had before version 0.2. They are refused with the new name as
-// hint; in a script, one idea then has one name in all tools.
+// Options by the names that they had before version 0.2, or that one expects from other tools. They
+// are refused with the name as hint; in a script, one idea then has one name in all tools.
 
 namespace krok::cli {
 
@@ -14,9 +14,12 @@ struct RenamedOption {
 inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-blend", "--align", "--match-root"},
     {"krok-blend", "--keys", "--contacts"},
+    {"krok-diff", "--html", "--summary OUT.html"},
     {"krok-diff", "--joints", "--joint-tolerance"},
+    {"krok-diff", "--junit", "--summary OUT.xml"},
     {"krok-diff", "--sides", "--view"},
     {"krok-diff", "--size", "--actor-size"},
+    {"krok-edit", "--fps", "--rate"},
     {"krok-edit", "--ground", "--on-ground"},
     {"krok-edit", "--order", "--filter-order"},
     {"krok-edit", "--resample", "--rate"},
@@ -32,8 +35,10 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-import", "--model", "--save-model"},
     {"krok-import", "--morphs", "--save-morphs"},
     {"krok-import", "--resample", "--rate"},
+    {"krok-keys", "--csv", "--table"},
     {"krok-keys", "--keys", "--contacts"},
     {"krok-keys", "--set", "--keytime"},
+    {"krok-lint", "--csv", "--table"},
     {"krok-mix", "--keys", "--contacts"},
     {"krok-morph", "--by-order", "--match order"},
     {"krok-plot", "--keys", "--contacts"},

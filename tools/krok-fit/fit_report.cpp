@@ -399,10 +399,10 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   say_smoothing(input, fitted, context);
   warn_of_stall(input, fitted, context);
   say_polish(input, fitted, context);
-  context.log(fmt::format("  {} inserted in {} ({:.2g} s): {}; weights {} to {}",
+  context.log(fmt::format("  {} inserted in {} ({} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),
                           counted(static_cast<long long>(fitted.refined.rounds.size()), "round"),
-                          fitted.seconds, what_stopped(fitted.refined),
+                          readable(fitted.seconds, 3), what_stopped(fitted.refined),
                           readable(after.least_weight, 3), readable(after.largest_weight, 3)));
 }
 

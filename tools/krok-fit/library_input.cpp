@@ -110,8 +110,24 @@ class Reader {
   }
 
   Status read_description() {
+    const char* const hint =
+        "give a description (.json) of the clips, see formats/library/SPEC.md: "
+        "{\"schema\": \"krok.library/1\", \"steps\": \"auto\", \"parameters\": [...], "
+        "\"examples\": [{\"clip\": \"takes/*.bvh\"}]}";
     const auto file = context_.open_input(path_);
-    if (!file) return file.error();
+    if (!file) {
+      Error error = file.error();
+      if (error.code == "file-directory") error.hint = hint;
+      return error;
+    }
+    if (const auto kind = registry::kind_of_content(file->bytes());
+        kind != registry::Kind::unknown && !file->text().starts_with('{')) {
+      return Error("fit-description",
+                   fmt::format("is {}, not a library description",
+                               registry::describe_content(file->bytes())),
+                   hint)
+          .in_file(path_);
+    }
     auto description = library::read(file->text(), path_);
     if (!description) return description.error();
     input_.description = *std::move(description);
