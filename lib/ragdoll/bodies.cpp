@@ -6,6 +6,8 @@
 #include "core/index.h"
 #include "ik/anatomical_limits.h"
 #include "math/quaternion.h"
+#include "motion/ground_frame.h"
+#include "ragdoll/bone_bodies.h"
 
 namespace krok::ragdoll {
 
@@ -13,6 +15,8 @@ namespace {
 
 constexpr double kInside = 0.9;  // share of the vertices that a shape reaches
 constexpr std::size_t kMinPoints = 12;
+constexpr double kAdult = 75;    // kg
+constexpr double kWater = 1000;  // kg/m^3
 
 double quantile(std::vector<double> values, double share) {
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -327,6 +331,14 @@ void share_mass(const Skeleton& skeleton, const RoleMap& roles, double mass,
   for (std::size_t b = 0; b < bodies.size(); ++b) bodies[b].mass = mass * sums[b] / total;
 }
 
+// With `mass` as all of it, or at the density of water.
+void share_mass_by_volume(std::optional<double> mass, std::vector<Body>& bodies) {
+  double whole = 0;
+  for (const Body& body : bodies) whole += volume(body.shape);
+  const double density = mass ? *mass / whole : kWater;
+  for (Body& body : bodies) body.mass = density * volume(body.shape);
+}
+
 }  // namespace
 
 double volume(const Shape& shape) {
@@ -361,25 +373,30 @@ Result<std::vector<Body>> make_bodies(const Skeleton& motion, const RoleMap& rol
     return Error("ragdoll-model", "the model has another skeleton than the motion: " + difference,
                  "give the model that the motion animates; krok-retarget brings motions to others");
   }
-  if (!roles.humanoid) {
-    std::string missing;
-    for (const Role role : missing_roles(roles)) {
-      missing += (missing.empty() ? "" : ", ") + std::string(role_name(role));
-    }
-    return Error("ragdoll-roles", "bodies need a humanoid; no joint is " + missing,
-                 "krok-info -v lists the joints and their roles; --map assigns roles");
-  }
-  if (!(options.mass > 0) || !std::isfinite(options.mass)) {
+  if (options.mass && (!(*options.mass > 0) || !std::isfinite(*options.mass))) {
     return Error("ragdoll-size", "the mass is not above 0");
   }
-  BodyMaker maker(skeleton, roles);
-  if (!maker.frame_found()) {
-    return Error("ragdoll-size", "the reference pose has no extent: hips, knees and neck coincide");
+  std::vector<Body> bodies;
+  if (roles.humanoid) {
+    BodyMaker maker(skeleton, roles);
+    if (!maker.frame_found()) {
+      return Error("ragdoll-size",
+                   "the reference pose has no extent: hips, knees and neck coincide");
+    }
+    maker.make();
+    bodies = maker.take();
+  } else {
+    bodies = bone_bodies(skeleton, carrying_joint(roles));
+    if (bodies.empty()) {
+      return Error("ragdoll-size", "the reference pose has no extent: all joints coincide");
+    }
   }
-  maker.make();
-  std::vector<Body> bodies = maker.take();
   if (options.model != nullptr) fit_shapes(*options.model, bodies);
-  share_mass(skeleton, roles, options.mass, bodies);
+  if (roles.humanoid) {
+    share_mass(skeleton, roles, options.mass.value_or(kAdult), bodies);
+  } else {
+    share_mass_by_volume(options.mass, bodies);
+  }
   for (const Body& body : bodies) {
     if (!(volume(body.shape) > 0) || !body.to_joint.position.allFinite()) {
       Error error("ragdoll-size", "the part '" + body.name + "' has no extent");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,20 +39,24 @@ struct Body {
 };
 
 struct BodyOptions {
-  double mass = 75;  // of all bodies
+  // Of all bodies. Without: 75 kg, of others than humanoids their volume at 1000 kg/m^3.
+  std::optional<double> mass;
   // Fits shapes to its vertices. Its skeleton has the same joints; its reference pose is used.
   const Model* model = nullptr;
 };
 
-// Bodies of a humanoid: pelvis, one or two for the trunk, head (with the neck), upper and lower
+// Bodies. Of a humanoid: pelvis, one or two for the trunk, head (with the neck), upper and lower
 // arms, hands, thighs, shanks and feet. Other joints (collar bones, spine joints between, fingers,
 // toes, helpers) have none and follow the joint above. Sizes are shares of the stature and the
 // bones' lengths (Drillis and Contini 1966), or with a model those of its vertices, each of which
 // belongs to the body of the joint with its largest weight: capsules and boxes reach as far as 90 %
 // of them. Masses are de Leva's shares (1996, ik::body_masses). Parents come before their children.
 //
-// Codes: ragdoll-roles if the joints are not those of a humanoid; ragdoll-model if the model has
-// other joints; ragdoll-size if a part has no extent, or the mass is not above 0.
+// Skeletons that are no humanoids get a capsule for each bone below the carrying joint, with masses
+// by volume (bone_bodies()); with a model their radii are those of its vertices.
+//
+// Codes: ragdoll-model if the model has other joints; ragdoll-size if a part has no extent, or the
+// mass is not above 0.
 Result<std::vector<Body>> make_bodies(const Skeleton& motion, const RoleMap& roles,
                                       const BodyOptions& options = {});
 

@@ -5,10 +5,13 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
+#include "ragdoll/bone_bodies.h"
 
 namespace krok::ragdoll {
 
 namespace {
+
+constexpr double kAdultExtent = 1.7;  // metres, which the options are for
 
 bool is_hinge(Role role) {
   return role == Role::left_lower_leg || role == Role::right_lower_leg ||
@@ -170,16 +173,19 @@ std::vector<Joint> make_joints(const Skeleton& skeleton, const RoleMap& roles,
     carried[b] += bodies[b].mass;
     if (bodies[b].parent >= 0) carried[at(bodies[b].parent)] += carried[b];
   }
+  // What weights do to joints grows with the lengths of their levers, how long they take with the
+  // roots of these.
+  const double size = roles.humanoid ? 1 : extent(skeleton) / kAdultExtent;
   const JointMaker maker(skeleton, roles, bodies, limits, pose);
   std::vector<Joint> joints;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     if (bodies[b].parent < 0) continue;
     Joint joint = maker.make(static_cast<int>(b));
     joint.soft = options.soft;
-    joint.stiffness = options.stiffness * carried[b];
-    joint.damping = options.damping * carried[b];
-    joint.friction = options.friction * carried[b];
-    joint.dry_friction = options.dry_friction * carried[b];
+    joint.stiffness = options.stiffness * carried[b] * size;
+    joint.damping = options.damping * carried[b] * std::pow(size, 1.5);
+    joint.friction = options.friction * carried[b] * std::pow(size, 1.5);
+    joint.dry_friction = options.dry_friction * carried[b] * size;
     joints.push_back(joint);
   }
   return joints;

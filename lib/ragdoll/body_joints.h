@@ -11,6 +11,7 @@
 namespace krok::ragdoll {
 
 struct BodyJointOptions {
+  // For humanoids; of other skeletons scaled by their extent (torques in proportion to it).
   // Soft limits push back with these, for a joint that carries one kilogram; heavier ones have more
   // in proportion. Beyond their range knees of adults resist with some N m for each degree (Riener
   // and Edrich 1999), which are 4 for a shank and foot of 4.3 kg.

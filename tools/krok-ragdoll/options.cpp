@@ -74,12 +74,14 @@ void declare_body(CommandOptions& command, Options& o) {
            "Also save the bodies and joints: to be edited and given to --bodies, or as meshes "
            "(.glb)")
       .not_with("--pushes");
-  command.add("--mass MASS", o.mass, number({1, 1000}, "kg"), "Mass of the body", "75kg")
+  command
+      .add("--mass MASS", o.mass, number({0.001, 100000}, "kg"),
+           "Mass of the whole body [75kg; of what is no humanoid its volume at 1000 kg/m3]")
       .not_with("--bodies");
   command
       .add_option("--limits IN.json|auto|none", o.limits,
                   "Ranges of motion: a file (formats/limits/SPEC.md), auto for published ranges of "
-                  "adults, or none")
+                  "adults (of what is no humanoid 50 degrees to all sides), or none")
       .default_str("auto")
       .not_with("--bodies");
   command.add_flag("--soft", o.soft, "Limits push back as springs instead of stopping")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,7 @@ struct Options {
   std::string bodies, save_bodies;
   ClipTime at;
   std::optional<double> duration;  // seconds
-  double mass = 0;                 // kg
+  std::optional<double> mass;      // kg
   std::vector<PushAt> pushes;
   std::string push_table;
   std::vector<std::string> rises;

@@ -11,6 +11,7 @@
 #include "formats/limits/limits_format.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/anatomical_limits.h"
+#include "ragdoll/bone_bodies.h"
 #include "retarget/stance.h"
 #include "tools/cli/file_name.h"
 #include "tools/krok-ragdoll/follow.h"
@@ -107,6 +108,9 @@ Status SubjectReader::read_bodies() {
     return std::move(bodies).error().in_file(of_model ? options_.model : options_.input);
   }
   subject_.bodies = std::move(*bodies);
+  if (options_.limits == "auto" && !subject_.roles.humanoid) {
+    subject_.limits = krok::ragdoll::cone_limits(neutral_, subject_.bodies);
+  }
   if (model) check_cover(*model);
   return set_modes();
 }
@@ -122,6 +126,12 @@ void SubjectReader::check_cover(const Model& model) {
 }
 
 Status SubjectReader::set_modes() {
+  if (options_.follow.powered.value_or(0) > 0 && !subject_.roles.humanoid) {
+    return Error("ragdoll-roles",
+                 "--powered is for humanoids: motors are as strong as the joints of adults",
+                 "krok-info -v lists the joints and their roles; --map assigns roles")
+        .in_file(options_.input);
+  }
   Status status = ragdoll::set_modes(options_.follow, !options_.rises.empty(),
                                      subject_.clip.skeleton, subject_.roles, subject_.bodies);
   if (status || status.error().code == "usage") return status;

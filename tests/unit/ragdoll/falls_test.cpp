@@ -218,11 +218,11 @@ TEST(RagdollBodies, AreTheSameForALyingReferencePose) {
   }
 }
 
-TEST(RagdollBodies, RefuseWhatIsNoHumanoidAndTimesOutsideTheMotion) {
+TEST(RagdollBodies, RefuseWhatHasNoExtentAndTimesOutsideTheMotion) {
   Skeleton two;
   two.add("a", -1, {});
-  two.add("b", 0, {Vec3(0, 1, 0), Quat::Identity()});
-  EXPECT_EQ(make_bodies(two, find_roles(two)).error().code, "ragdoll-roles");
+  two.add("b", 0, {});
+  EXPECT_EQ(make_bodies(two, find_roles(two)).error().code, "ragdoll-size");
   const Walker walker = make_walker();
   EXPECT_EQ(make_bodies(walker.clip.skeleton, walker.roles, {.mass = 0}).error().code,
             "ragdoll-size");
