@@ -142,7 +142,6 @@ SeamCurve rotation_curve(const SeamGap& gap, int width) {
   return {half, vector_rate(half, change), -half, vector_rate(-half, -change), width};
 }
 
-constexpr double kDrift = 10 * kRadiansPerDegree;
 constexpr double kLevel = 0.05;     // of the character's extent
 constexpr double kNoTravel = 1e-3;  // metres
 
@@ -179,6 +178,13 @@ class Looper {
     measure_usual();
     result_.before = seam();
     close();
+    // Where frames near the seam jumped, the usual jump is smaller now.
+    constexpr int kRounds = 10;
+    for (int round = 1; round < kRounds; ++round) {
+      measure_usual();
+      if (!jumps_unusually()) break;
+      close();
+    }
     result_.after = seam();
     result_.clip = Clip{clip_.skeleton, clip_.rate, {}, {}, clip_.provenance};
     set_local_motion(motion_, result_.clip);
@@ -257,7 +263,7 @@ class Looper {
   void straighten() {
     const double drift = wrapped(place(last()).heading - place(0).heading);
     const bool take_out = options_.turn == LoopTurn::straighten ||
-                          (options_.turn == LoopTurn::automatic && std::abs(drift) <= kDrift);
+                          (options_.turn == LoopTurn::automatic && std::abs(drift) <= kLoopDrift);
     if (!take_out || drift == 0) return;
     result_.straightened = drift;
     std::vector<GroundFrame> places;
@@ -330,7 +336,24 @@ class Looper {
     return *place;
   }
 
+  // Whether closing the seam once more would move joints by more than about 0.01 mm or 0.001
+  // degrees.
+  bool jumps_unusually() const {
+    constexpr double kTurn = 1e-5, kShift = 1e-5;
+    constexpr double kPeak = 0.06;  // of the curve of a jump, of its width
+    const double reach = kPeak * result_.blended_frames;
+    for (int j = 0; j < motion_.joints; ++j) {
+      const SeamSides about = sides(j);
+      if (reach * (rotation_gap(about).jump() - usual_turn_[at(j)]) > kTurn) return true;
+      if (moving_[at(j)] == 0) continue;
+      if (reach * (position_gap(about).jump() - usual_shift_[at(j)]) > kShift) return true;
+    }
+    return false;
+  }
+
   void measure_usual() {
+    usual_turn_.clear();
+    usual_shift_.clear();
     for (int j = 0; j < motion_.joints; ++j) {
       usual_turn_.push_back(usual_jump(j, rotation_gap));
       usual_shift_.push_back(moving_[at(j)] != 0 ? usual_jump(j, position_gap) : 0);

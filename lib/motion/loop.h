@@ -20,9 +20,12 @@ enum class LoopEnd {
   open        // the pose before the first; a closing frame is added
 };
 
+// Up to this turn over one cycle, in radians, counts as drift.
+inline constexpr double kLoopDrift = 10 * kRadiansPerDegree;
+
 // How the turn over one cycle is treated.
 enum class LoopTurn {
-  automatic,  // up to 10 degrees count as drift and are removed; larger turns are kept
+  automatic,  // up to kLoopDrift is drift and is removed; larger turns are kept
   keep,       // the loop follows a circle
   straighten  // the path is straightened: the turn is removed evenly over time
 };
@@ -72,11 +75,12 @@ struct Looped {
 // joints that move in their parents, a curve that is half of what is missing at the seam, in value
 // and in velocity, and fades to nothing with two derivatives within the blend (a quintic Hermite
 // curve). Of a jump in velocity only what is more than the joint's usual is missing, so that a
-// motion that repeats already stays as it is. Poses then agree across the seam, and velocities as
-// well as elsewhere; bones keep their lengths; frames further away stay as they are, except for
-// what straightening does. Poses are those of the hips and the joints below, whatever the root
-// above them does (HipsRoot). `carrier` is what carrying_joint() gives. Codes: motion-loop for
-// clips of fewer than four frames, motion-blend for a blend that is negative or not finite.
+// motion that repeats already stays as it is. The loop of a loop is the loop, within 0.1 mm for a
+// person's size. Poses then agree across the seam, and velocities as well as elsewhere; bones keep
+// their lengths; frames further away stay as they are, except for what straightening does. Poses
+// are those of the hips and the joints below, whatever the root above them does (HipsRoot).
+// `carrier` is what carrying_joint() gives. Codes: motion-loop for clips of fewer than four frames,
+// motion-blend for a blend that is negative or not finite.
 Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options);
 
 // The clip played `rounds` times as described above, as one motion of rounds * (n - 1) + 1 frames.

@@ -110,6 +110,25 @@ TEST(Promises, AMotionThatRepeatsIsItsLoop) {
   }
 }
 
+// motion/loop.h: "The loop of a loop is the loop".
+TEST(Promises, ALoopIsItsOwnLoop) {
+  for (const auto& [name, clip] : test::promised_motions()) {
+    if (clip.frame_count() < 8) continue;
+    const int carrier = carrier_of(clip);
+    // Half and a whole of it, as a user cuts them: ends that do not match, and windows that meet.
+    for (const int last : {clip.frame_count() / 2, clip.frame_count() - 1}) {
+      const auto once = loop(cut(clip, 0, last), carrier, {});
+      ASSERT_TRUE(once.ok()) << name;
+      const auto twice = loop(once->clip, carrier, {});
+      ASSERT_TRUE(twice.ok()) << name;
+      EXPECT_EQ(twice->added_frames, 0) << name;
+      // 0.1 mm for a person's size.
+      EXPECT_LT(metres_apart(twice->clip, once->clip), 1e-4 * std::max(1.0, extent(clip) / 1.75))
+          << name << " to frame " << last;
+    }
+  }
+}
+
 // motion/join.h: "0: a hard cut; the first's last frame replaces the second's first".
 TEST(Promises, CutAndAppendedIsTheMotion) {
   for (const auto& [name, clip] : test::promised_motions()) {
