@@ -105,6 +105,10 @@ figcaption{font-size:.87rem;color:var(--soft);overflow-wrap:anywhere}
 .key{display:block;height:.6rem;margin:.3rem 0 0}.ends{display:flex;justify-content:space-between}
 pre{white-space:pre-wrap;font:.87rem/1.45 ui-monospace,monospace;margin:.6rem 0}
 summary{cursor:pointer;width:max-content}.chart{max-width:100%;height:auto}
+@media(min-width:60rem){.shot img{height:24rem}}
+@media(max-width:40rem){body{margin:1rem auto}th,td{padding:.25rem .4rem}
+td:first-child{min-width:6rem}td:last-child:not(.n){overflow-wrap:anywhere}figure{min-width:0;flex:1 1 8rem}
+.shot img{width:100%;height:auto}summary{padding:.7rem 0;min-height:44px;box-sizing:border-box}}
 dialog{border:0;padding:1rem;max-width:96vw;background:var(--paper);color:var(--ink)}
 dialog::backdrop{background:rgba(0,0,0,.7)}
 dialog img{display:block;max-width:92vw;height:min(80vh,60rem);object-fit:contain;cursor:pointer}

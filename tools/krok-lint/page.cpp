@@ -25,10 +25,14 @@ using krok::lint::Rule;
 constexpr std::size_t kMaxStrips = 100;
 constexpr int kRowHeight = 170;  // pixels
 constexpr const char* kStyle =
+    ":root{color-scheme:light dark;--line:#ccd;--bad:#a01c1c;--doubtful:#7a5200}"
+    "@media(prefers-color-scheme:dark){:root{--line:#39424d;--bad:#ff9a8a;--doubtful:#e5b567}"
+    "body{color:#dce1e7;background:#15181c}}"
     "body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem}"
     "table{border-collapse:collapse;margin:.5rem 0}"
-    "td,th{text-align:left;padding:.2rem .8rem;border-bottom:1px solid #ccd}"
-    ".error{color:#a01c1c;font-weight:600}.warning{color:#7a5200}img{max-width:100%}"
+    "td,th{text-align:left;padding:.2rem .8rem;border-bottom:1px solid var(--line)}"
+    "td:first-child{white-space:nowrap}@media(max-width:40rem){td,th{padding:.2rem .4rem}}"
+    ".error{color:var(--bad);font-weight:600}.warning{color:var(--doubtful)}img{max-width:100%}"
     "h2{font-size:1.05rem;margin:1.6rem 0 "
     ".2rem;overflow-wrap:anywhere}code{overflow-wrap:anywhere}";
 
@@ -113,7 +117,7 @@ Result<std::string> page_of(LintedFiles files, ToolContext& context) {
   return fmt::format(
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\"><title>Faults of motions</title>"
-      "<style>{}</style><h1>{} of {} motions have faults</h1>\n{}</html>\n",
+      "<style>{}</style><main><h1>{} of {} motions have faults</h1>\n{}</main></html>\n",
       kStyle, faulty, files.size(), body);
 }
 

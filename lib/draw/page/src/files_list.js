@@ -1,7 +1,8 @@
 // The list of files: a box shows or hides one, a click on the name shows it alone. Long lists have a
 // filter, and only the rows in view are made.
 
-const ROW = 40; // pixels
+// Pixels, as in style.css.
+const ROW = matchMedia('(pointer: coarse)').matches ? 48 : 40;
 const FILTERED = 8; // files from which on there is a filter
 const BEYOND = 4; // rows made above and below those in view
 
