@@ -1,5 +1,11 @@
 // If these fail, `krok VERB` does something else than `krok-VERB`, or progress gets into what
 // scripts read.
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -39,6 +45,47 @@ TEST_F(Krok, HelpOfAVerbIsThatOfItsTool) {
   EXPECT_NE(of_fit, "");
   EXPECT_EQ(run_tool("krok", {"help", "fit"}).out, of_fit);
   EXPECT_EQ(run_tool("krok", {"fit", "--help"}).out, of_fit);
+}
+
+// Would fail if help were cut off or broken within words in a narrow terminal.
+TEST_F(Krok, HelpIsAsWideAsTheTerminal) {
+  const auto words_of = [](const std::string& text) {
+    std::istringstream stream(text);
+    return std::vector<std::string>(std::istream_iterator<std::string>(stream), {});
+  };
+  const std::string usual = run_tool("krok-edit", {"--help"}).out;
+  for (const unsigned short columns : {50, 80, 300}) {
+    winsize size{};
+    size.ws_row = 40;
+    size.ws_col = columns;
+    int terminal = -1;
+    const pid_t child = forkpty(&terminal, nullptr, nullptr, &size);
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      const std::string program = test::tools_folder() + "/krok-edit";
+      execl(program.c_str(), program.c_str(), "--help", nullptr);
+      _exit(127);
+    }
+    std::string text;
+    char buffer[4096];
+    for (ssize_t n = 0; (n = ::read(terminal, buffer, sizeof buffer)) > 0;) {
+      text.append(buffer, static_cast<std::size_t>(n));
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    close(terminal);
+    EXPECT_EQ(status, 0);
+    std::erase(text, '\r');
+    std::size_t longest = 0;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) {
+      // What cannot be broken, such as an example's command, may be longer.
+      if (line.find(' ', line.find_first_not_of(' ')) == std::string::npos) continue;
+      longest = std::max(longest, line.size());
+    }
+    EXPECT_LE(longest, std::min<std::size_t>(columns, 100));
+    EXPECT_EQ(words_of(text), words_of(usual)) << columns;
+  }
 }
 
 // `krok --help` says of each verb what its tool says of itself.

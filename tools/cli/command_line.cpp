@@ -1,6 +1,8 @@
 #include "tools/cli/command_line.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -56,9 +58,20 @@ std::string footer(const ToolSpec& spec) {
   return text;
 }
 
+// The columns of the terminal that standard output is, within limits.
+std::size_t help_width() {
+  constexpr std::size_t kMinWidth = 30, kMaxWidth = 100;
+  winsize size{};
+  const bool known = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
+  if (!known || size.ws_col == 0) return kMaxWidth;
+  return std::clamp<std::size_t>(size.ws_col, kMinWidth, kMaxWidth);
+}
+
 // CLI11 neither wraps long lines nor limits empty lines between groups to one.
 std::string tidy_help(const std::string& help) {
-  constexpr std::size_t kWidth = 100;
+  constexpr std::size_t kNarrow = 72;  // below it, descriptions are under their options
+  constexpr std::size_t kNarrowIndent = 6;
+  const std::size_t width = help_width();
   std::string tidy;
   bool empty_before = true;
   for (std::size_t at = 0; at < help.size();) {
@@ -70,10 +83,19 @@ std::string tidy_help(const std::string& help) {
     // Option descriptions wrap to their column, all other lines to their own indentation.
     const bool option = line.size() > kHelpColumn && line[0] == ' ' &&
                         line.find_first_not_of(' ') == 2 && line[kHelpColumn - 1] == ' ';
-    const std::size_t indent = option ? kHelpColumn : std::min(line.find_first_not_of(' '), kWidth);
-    while (line.size() > kWidth) {
-      std::size_t space = line.rfind(' ', kWidth);
-      if (space == std::string::npos || space <= indent) space = line.find(' ', kWidth);
+    std::size_t indent = option ? kHelpColumn : std::min(line.find_first_not_of(' '), width);
+    // A line of nothing but a description follows a name that is longer than its column.
+    const bool description = line.size() > kHelpColumn && indent == kHelpColumn;
+    if (width < kNarrow && description) {
+      const std::string name = line.substr(0, kHelpColumn);
+      const std::size_t end_of_name = name.find_last_not_of(' ');
+      if (end_of_name != std::string::npos) tidy += name.substr(0, end_of_name + 1) + "\n";
+      indent = kNarrowIndent;
+      line = std::string(indent, ' ') + line.substr(kHelpColumn);
+    }
+    while (line.size() > width) {
+      std::size_t space = line.rfind(' ', width);
+      if (space == std::string::npos || space <= indent) space = line.find(' ', width);
       if (space == std::string::npos) break;
       tidy += line.substr(0, space) + "\n";
       line = std::string(indent, ' ') + line.substr(space + 1);
