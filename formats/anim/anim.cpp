@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "core/parallel.h"
@@ -129,19 +130,6 @@ Result<Stretches> read_stretches(const ContainerReader& container, const Info& i
   return stretches;
 }
 
-// Adds the location to an error of check(Clip).
-Error with_place(Error error, const Clip& clip, const ContainerReader& container) {
-  if (error.frame >= 0) {
-    const auto frames = container.find("FRAMES");
-    const auto joint = clip.skeleton.find(error.joint);
-    const auto record = error.frame * clip.joint_count() + joint;
-    const auto size = static_cast<std::int64_t>(transform_size(orientation_encoding(container)));
-    error.where.byte_offset = static_cast<std::int64_t>(frames->offset) + record * size;
-    return error;
-  }
-  return at_section(std::move(error), container, "INFO");
-}
-
 }  // namespace
 
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
@@ -184,10 +172,44 @@ Status write(const FrameSource& source, const std::function<Provenance()>& prove
   return container.finish();
 }
 
-Result<Clip> read(std::span<const std::byte> file, Stretches* stretches) {
-  const auto container = ContainerReader::open(file, kFormat);
+namespace {
+
+// An open file. Copies share the container.
+struct Parts {
+  std::shared_ptr<const ContainerReader> container;
+  Info info;
+  std::span<const std::byte> frames;
+  OrientationEncoding encoding;
+  Opened opened;
+};
+
+// Decodes and checks the frames [first, first + count).
+Status read_frames(const Parts& parts, const Skeleton& skeleton, int first,
+                   std::span<Vec3f> positions, std::span<Quatf> orientations) {
+  const std::size_t size = transform_size(parts.encoding);
+  const std::size_t joints = skeleton.names.size();
+  const std::size_t begin = static_cast<std::size_t>(first) * joints;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    Quat orientation;
+    read_transform(&parts.frames[(begin + i) * size], parts.encoding, positions[i], orientation);
+    orientations[i] = orientation.cast<float>();
+  }
+  Status status = check_values(skeleton, first, positions, orientations);
+  if (status) return status;
+  Error error = std::move(status).error();
+  const auto record = error.frame * static_cast<std::int64_t>(joints) + skeleton.find(error.joint);
+  const auto section = parts.container->find("FRAMES");
+  error.where.byte_offset =
+      static_cast<std::int64_t>(section->offset) + record * static_cast<std::int64_t>(size);
+  return error;
+}
+
+Result<Parts> open_parts(std::span<const std::byte> file) {
+  auto container = ContainerReader::open(file, kFormat);
   if (!container) return container.error();
-  const auto info_section = container->section("INFO", 1, sizeof(Info));
+  Parts parts;
+  parts.container = std::make_shared<const ContainerReader>(*std::move(container));
+  const auto info_section = parts.container->section("INFO", 1, sizeof(Info));
   if (!info_section) return info_section.error();
   const auto info = ByteReader(info_section->bytes).read<Info>();
   if (info.joint_count < 1 || info.joint_count > kMaxFileJoints ||
@@ -199,45 +221,69 @@ Result<Clip> read(std::span<const std::byte> file, Stretches* stretches) {
                           info.joint_count, info.frame_count, kMaxFileJoints,
                           std::numeric_limits<int>::max()),
               "create the file again"),
-        *container, "INFO");
+        *parts.container, "INFO");
   }
-  const bool is_stretched = (container->flags() & kFlagStretched) != 0;
+  parts.info = info;
+  parts.opened.stretched = (parts.container->flags() & kFlagStretched) != 0;
+  parts.encoding = orientation_encoding(*parts.container);
+  const auto frames = parts.container->section("FRAMES", info.frame_count * info.joint_count,
+                                               transform_size(parts.encoding));
+  if (!frames) return frames.error();
+  parts.frames = frames->bytes;
+  FrameSource& source = parts.opened.frames;
+  source.rate = info.rate;
+  source.frame_count = static_cast<int>(info.frame_count);
+  auto skeleton = read_skeleton(*parts.container, info.joint_count);
+  if (!skeleton) return skeleton.error();
+  source.skeleton = *std::move(skeleton);
+  auto provenance = read_provenance(*parts.container);
+  if (!provenance) return provenance.error();
+  parts.opened.provenance = *std::move(provenance);
+  Clip head;
+  head.skeleton = source.skeleton;
+  head.rate = source.rate;
+  if (Status status = check(head); !status) {
+    return at_section(std::move(status).error(), *parts.container, "INFO");
+  }
+  return parts;
+}
+
+}  // namespace
+
+Result<Opened> open(std::span<const std::byte> file) {
+  auto parts = open_parts(file);
+  if (!parts) return parts.error();
+  Opened opened = parts->opened;
+  opened.frames.read = [parts = *std::move(parts)](int first, int, std::span<Vec3f> positions,
+                                                   std::span<Quatf> orientations) {
+    return read_frames(parts, parts.opened.frames.skeleton, first, positions, orientations);
+  };
+  return opened;
+}
+
+Result<Clip> read(std::span<const std::byte> file, Stretches* stretches) {
+  auto parts = open_parts(file);
+  if (!parts) return parts.error();
+  const bool is_stretched = parts->opened.stretched;
   if (is_stretched && stretches == nullptr) {
     return Error("anim-stretch", "its joints change scale, which is not supported here");
   }
-  const OrientationEncoding encoding = orientation_encoding(*container);
-  const std::size_t size = transform_size(encoding);
-  const std::uint64_t count = info.frame_count * info.joint_count;
-  const auto frames = container->section("FRAMES", count, size);
-  if (!frames) return frames.error();
-
+  FrameSource& source = parts->opened.frames;
   Clip clip;
-  clip.rate = info.rate;
-  auto skeleton = read_skeleton(*container, info.joint_count);
-  if (!skeleton) return skeleton.error();
-  clip.skeleton = *std::move(skeleton);
-  auto provenance = read_provenance(*container);
-  if (!provenance) return provenance.error();
-  clip.provenance = *std::move(provenance);
-
-  clip.positions.resize(count);
-  clip.orientations.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Quat orientation;
-    read_transform(&frames->bytes[i * size], encoding, clip.positions[i], orientation);
-    clip.orientations[i] = orientation.cast<float>();
-  }
-  if (Status status = check(clip); !status) {
-    return with_place(std::move(status).error(), clip, *container);
-  }
+  clip.rate = source.rate;
+  clip.skeleton = std::move(source.skeleton);
+  clip.provenance = std::move(parts->opened.provenance);
+  clip.resize(source.frame_count);
+  Status status = read_frames(*parts, clip.skeleton, 0, clip.positions, clip.orientations);
+  if (!status) return status.error();
   if (stretches == nullptr) return clip;
   stretches->clear();
   if (!is_stretched) return clip;
-  auto read = read_stretches(*container, info);
+  auto read = read_stretches(*parts->container, parts->info);
   if (!read) return read.error();
   *stretches = *std::move(read);
-  if (Status status = check(*stretches, clip); !status) {
-    return at_section(std::move(status).error(), *container, "STRETCH");
+  if (Status checked = check(*stretches, clip); !checked) {
+    return at_section(std::move(checked).error(), *parts->container, "STRETCH");
   }
   return clip;
 }

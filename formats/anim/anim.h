@@ -25,6 +25,17 @@ namespace krok::anim {
 // check(Stretches), with byte offsets.
 Result<Clip> read(std::span<const std::byte> file, Stretches* stretches = nullptr);
 
+// A motion whose frames are decoded from the file's bytes on demand.
+struct Opened {
+  FrameSource frames;  // the bytes must outlive it
+  Provenance provenance;
+  bool stretched = false;  // joints change scale: only read() has by how much
+};
+
+// Opens a file without its frames, so that a long one need not fit in memory twice. Frames are
+// checked as they are read. Codes: those of read().
+Result<Opened> open(std::span<const std::byte> file);
+
 struct WriteOptions {
   OrientationEncoding orientation = OrientationEncoding::xyz;
   std::span<const Stretch> stretches{};  // [frames x joints], or none

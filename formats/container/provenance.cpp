@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "formats/container/sections.h"
 
 #include "core/json_internal.h"
@@ -52,6 +54,35 @@ struct JsonTexts {
     return all;
   }
 
+  double number(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    return found == object.end() ? 0 : finite(*found, key);
+  }
+
+  // {"velocity": [x, y, z], "turn_rate": angle}
+  std::optional<RootMotion> root_motion(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end()) return std::nullopt;
+    if (!found->is_object()) {
+      note(fmt::format("\"{}\" is not an object", key));
+      return std::nullopt;
+    }
+    RootMotion motion;
+    motion.turn_rate = number(*found, "turn_rate");
+    const Json& velocity = list(*found, "velocity");
+    if (velocity.size() != 3) note("\"velocity\" is not three numbers");
+    for (std::size_t i = 0; i < 3 && velocity.size() == 3; ++i) {
+      motion.velocity[static_cast<Eigen::Index>(i)] = finite(velocity[i], "velocity");
+    }
+    return motion;
+  }
+
+  double finite(const Json& value, const char* key) {
+    if (value.is_number() && std::isfinite(value.get<double>())) return value.get<double>();
+    note(fmt::format("\"{}\" has a value that is not a finite number", key));
+    return 0;
+  }
+
   void note(std::string what) {
     if (trouble.empty()) trouble = std::move(what);
   }
@@ -77,6 +108,11 @@ Result<std::string> provenance_to_text(const Provenance& provenance) {
   json["options"] = pairs_to_json(provenance.options);
   json["conversions"] = provenance.conversions;
   json["warnings"] = provenance.warnings;
+  if (const auto& removed = provenance.removed_root_motion) {
+    const Vec3& velocity = removed->velocity;
+    json["removed_root_motion"] = {{"velocity", {velocity.x(), velocity.y(), velocity.z()}},
+                                   {"turn_rate", removed->turn_rate}};
+  }
   // File names may have bytes that are not UTF-8; they become U+FFFD.
   std::string text = json_text(json);
   if (text.size() > kMaxProvenanceBytes) {
@@ -106,6 +142,7 @@ Result<Provenance> provenance_from_text(std::string_view text) {
   provenance.options = reader.pairs(json, "options", "name", "value");
   provenance.conversions = reader.texts(json, "conversions");
   provenance.warnings = reader.texts(json, "warnings");
+  provenance.removed_root_motion = reader.root_motion(json, "removed_root_motion");
   if (!reader.trouble.empty()) return fail(fmt::format("is invalid: {}", reader.trouble));
   return provenance;
 }

@@ -4,10 +4,9 @@
 #include <cassert>
 #include <cmath>
 
-#include "formats/gltf/json_text_internal.h"
-
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/json_text_internal.h"
+#include "math/types.h"
 
 namespace krok::gltf {
 
@@ -42,8 +41,17 @@ tinygltf::Value provenance_value(const Provenance& provenance) {
 }
 
 // extras of an animation. Keys may be fewer than frames, and none at all of their frames' rate.
-tinygltf::Value rate_value(double rate) {
-  return tinygltf::Value(tinygltf::Value::Object{{kRate, tinygltf::Value(rate)}});
+// What an engine adds to a motion in place: metres and degrees per second.
+tinygltf::Value animation_extras(const JointTracks& tracks) {
+  tinygltf::Value::Object extras{{kRate, tinygltf::Value(tracks.rate)}};
+  if (const auto& removed = tracks.removed_root_motion) {
+    tinygltf::Value::Array velocity;
+    for (const double part : removed->velocity) velocity.emplace_back(part);
+    extras["velocity"] = tinygltf::Value(std::move(velocity));
+    extras["speed"] = tinygltf::Value(removed->velocity.norm());
+    extras["turnRate"] = tinygltf::Value(removed->turn_rate / kRadiansPerDegree);
+  }
+  return tinygltf::Value(std::move(extras));
 }
 
 template <typename Vector>
@@ -303,7 +311,7 @@ void Document::add_animation(const JointTracks& tracks, const std::string& name)
   assert(tracks.joints.size() == inner.size());
   tinygltf::Animation animation;
   animation.name = name;
-  if (tracks.rate > 0) animation.extras = rate_value(tracks.rate);
+  if (tracks.rate > 0) animation.extras = animation_extras(tracks);
   // The times of some frames, or of all; tracks of any clip with the same share an accessor.
   const auto times = [&](const std::vector<int>& frames) {
     std::vector<float> chosen;

@@ -216,7 +216,9 @@ JointTracks rest_tracks(const Skeleton& rest) {
 }
 
 Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double tolerance) {
-  return joint_tracks(rest, frames_of(clip), 1, tolerance);
+  auto tracks = joint_tracks(rest, frames_of(clip), 1, tolerance);
+  if (tracks) tracks->removed_root_motion = clip.provenance.removed_root_motion;
+  return tracks;
 }
 
 Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/result.h"
@@ -37,9 +38,10 @@ struct JointTrack {
 };
 
 struct JointTracks {
-  std::vector<float> times;        // [frames], seconds, strictly increasing from 0
-  double rate = 0;                 // of the frames
-  std::vector<JointTrack> joints;  // [joints]
+  std::vector<float> times;                       // [frames], seconds, strictly increasing from 0
+  double rate = 0;                                // of the frames
+  std::optional<RootMotion> removed_root_motion = {};  // of a motion in place, see Provenance
+  std::vector<JointTrack> joints;                 // [joints]
 
   bool are_stretched() const;  // whether a joint has scales
 };

@@ -275,6 +275,7 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip,
   JointTracks tracks = rest_tracks(rest);
   tracks.times = std::move(*times);
   tracks.rate = clip.rate;
+  tracks.removed_root_motion = clip.provenance.removed_root_motion;
   largest_error = StretchedTracks(rest, clip, stretches, tracks).build();
   return tracks;
 }

@@ -30,8 +30,8 @@ CaptureReading reading_for(const Inputs& inputs) {
 }
 
 MotionSummary summary_of(const FrameSource& frames, std::vector<std::string> conversions) {
-  return {frames.skeleton, frames.rate, frames.frame_count, frames.duration(),
-          std::move(conversions)};
+  return {frames.skeleton,        frames.rate, frames.frame_count, frames.duration(),
+          std::move(conversions), {}};
 }
 
 Result<Clip> read_scene_motion(const Format& format, const InputFile& file, Inputs& inputs,
@@ -114,12 +114,18 @@ Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
   const auto file = inputs.open_long_input(path);
   if (!file) return file.error();
   const ChecksumAtEnd checksum(*file, inputs);
-  MotionSummary summary;
-  const Format& format = format_of(*file);
+  return stream_motion(*file, inputs, use, options);
+}
+
+Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
+                                    const std::function<Status(const FrameSource& frames)>& use,
+                                    const MotionOptions& options) {
+  const Format& format = format_of(file);
   if (format.open_capture != nullptr && !format.companion) {
+    MotionSummary summary;
     std::shared_ptr<Capture> capture;
     const Status status =
-        use_capture(*file, inputs, reading_for(inputs), false, [&](const OpenedCapture& opened) {
+        use_capture(file, inputs, reading_for(inputs), false, [&](const OpenedCapture& opened) {
           capture = opened.capture;
           summary = summary_of(opened.frames, capture->clip.provenance.conversions);
           return use(opened.frames);
@@ -129,12 +135,28 @@ Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
     return summary;
   }
   // A .anim file's own conversions are those of how it was made.
-  const auto clip = open_motion(*file, inputs, options);
+  if (format.kind == registry::Kind::anim) {
+    const auto opened = anim::open(file.bytes());
+    if (!opened) return Error(opened.error()).in_file(file.path());
+    if (!opened->stretched) {
+      if (options.stretches != nullptr) options.stretches->clear();
+      if (Status status = use(opened->frames); !status) {
+        return std::move(status.error()).in_file(file.path());
+      }
+      MotionSummary summary = summary_of(opened->frames, {});
+      summary.removed_root_motion = opened->provenance.removed_root_motion;
+      return summary;
+    }
+  }
+  const auto clip = open_motion(file, inputs, options);
   if (!clip) return clip.error();
   const FrameSource frames = frames_of(*clip);
   if (Status status = use(frames); !status) return status.error();
-  return summary_of(frames, format.read_scene != nullptr ? clip->provenance.conversions
-                                                         : std::vector<std::string>());
+  MotionSummary summary =
+      summary_of(frames, format.read_scene != nullptr ? clip->provenance.conversions
+                                                      : std::vector<std::string>());
+  summary.removed_root_motion = clip->provenance.removed_root_motion;
+  return summary;
 }
 
 }  // namespace krok::io

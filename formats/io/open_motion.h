@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,8 +40,9 @@ struct MotionSummary {
   Skeleton skeleton;
   double rate = 30.0;  // frames per second
   int frame_count = 0;
-  double duration = 0;                   // seconds
-  std::vector<std::string> conversions;  // those of reading a capture
+  double duration = 0;                            // seconds
+  std::vector<std::string> conversions;           // those of reading a capture
+  std::optional<RootMotion> removed_root_motion = {};  // of a motion in place, see Provenance
 };
 
 // Passes the frames of a motion to `use`, without holding a long capture in memory. `use` is called
@@ -48,6 +50,10 @@ struct MotionSummary {
 // and has to discard what it did before. The error of `use` is passed on. Stretches that the
 // options ask for are there when `use` is called.
 Result<MotionSummary> stream_motion(const std::string& path, Inputs& inputs,
+                                    const std::function<Status(const FrameSource& frames)>& use,
+                                    const MotionOptions& options = {});
+// The same of a file that is open already.
+Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
                                     const std::function<Status(const FrameSource& frames)>& use,
                                     const MotionOptions& options = {});
 

@@ -7,6 +7,7 @@
 #include "compare/frame_match.h"
 #include "compare/skeleton_match.h"
 #include "core/numbers.h"
+#include "core/parallel.h"
 #include "math/quaternion.h"
 
 namespace krok::compare {
@@ -49,36 +50,94 @@ void note_shifted_reference(const Skeleton& first, const Skeleton& second, const
       readable(1000 * way.x(), 4), readable(1000 * way.y(), 4), readable(1000 * way.z(), 4)));
 }
 
-void compare_frames(const Clip& first, const Clip& second, const Pairs& joints,
-                    const FrameMatch& frames, ClipDifference& result) {
+// Consecutive frames of one motion.
+struct Frames {
+  int first = 0;
+  std::vector<Vec3f> positions;
+  std::vector<Quatf> orientations;
+
+  Status read(const FrameSource& source, int from, int to) {
+    const auto count = static_cast<std::size_t>(to - from + 1);
+    const auto joints = static_cast<std::size_t>(source.joint_count());
+    first = from;
+    positions.resize(count * joints);
+    orientations.resize(count * joints);
+    return source.read(from, to - from + 1, positions, orientations);
+  }
+  // As Clip::get_pose() has it.
+  Transform at(const FrameSource& source, int frame, int joint) const {
+    const auto i =
+        static_cast<std::size_t>(frame - first) * static_cast<std::size_t>(source.joint_count()) +
+        static_cast<std::size_t>(joint);
+    return {positions[i].cast<double>(), normalized_or_identity(orientations[i].cast<double>())};
+  }
+};
+
+Status compare_frames(const FrameSource& first, const FrameSource& second, const Pairs& joints,
+                      const FrameMatch& matched, int jobs, ClipDifference& result) {
   for (const auto& pair : joints) {
     result.joints.push_back({pair.first, result.positions, result.orientations});
   }
-  std::vector<Transform> a(static_cast<std::size_t>(first.joint_count()));
-  std::vector<Transform> b(static_cast<std::size_t>(second.joint_count()));
-  for (const auto& [frame_a, frame_b] : frames.frames) {
-    first.get_pose(frame_a, a);
-    second.get_pose(frame_b, b);
-    for (std::size_t k = 0; k < joints.size(); ++k) {
-      const Transform& one = a[static_cast<std::size_t>(joints[k].first)];
-      const Transform& other = b[static_cast<std::size_t>(joints[k].second)];
-      const ValueLocation place{
-          .joint = joints[k].first, .frame = frame_a, .time = frame_a / first.rate};
-      const double distance = (one.position - other.position).norm();
-      const double angle = angle_between(one.orientation, other.orientation);
-      result.positions.add(distance, place);
-      result.orientations.add(angle, place);
-      result.joints[k].positions.add(distance, place);
-      result.joints[k].orientations.add(angle, place);
+  const auto& frames = matched.frames;
+  if (frames.empty()) return {};
+  // Fewer where frames are skipped.
+  constexpr std::size_t kPairsAtOnce = 128;
+  const auto longer = static_cast<std::size_t>(std::max(first.frame_count, second.frame_count));
+  const std::size_t at_once =
+      std::clamp<std::size_t>(kPairsAtOnce * frames.size() / longer, 1, kPairsAtOnce);
+  struct Block {
+    Frames first, second;
+    std::vector<std::pair<double, double>> differences;  // of positions, of orientations
+  };
+  std::vector<Block> blocks(slots_for(jobs));
+  const auto pairs_of = [&](std::size_t item) {
+    return std::span(frames).subspan(item * at_once,
+                                     std::min(at_once, frames.size() - item * at_once));
+  };
+  const auto make = [&](std::size_t item, std::size_t slot) -> Status {
+    Block& block = blocks[slot];
+    const auto pairs = pairs_of(item);
+    const auto& [a, b] = pairs.front();
+    const auto& [last_a, last_b] = pairs.back();
+    if (Status status = block.first.read(first, a, last_a); !status) return status;
+    if (Status status = block.second.read(second, b, last_b); !status) return status;
+    block.differences.clear();
+    for (const auto& [frame_a, frame_b] : pairs) {
+      for (const auto& [joint_a, joint_b] : joints) {
+        const Transform one = block.first.at(first, frame_a, joint_a);
+        const Transform other = block.second.at(second, frame_b, joint_b);
+        block.differences.emplace_back((one.position - other.position).norm(),
+                                       angle_between(one.orientation, other.orientation));
+      }
     }
-  }
+    return {};
+  };
+  const auto take = [&](std::size_t item, std::size_t slot) {
+    const auto pairs = pairs_of(item);
+    auto differs = blocks[slot].differences.begin();
+    for (const auto& [frame_a, frame_b] : pairs) {
+      for (std::size_t k = 0; k < joints.size(); ++k) {
+        const auto [distance, angle] = *differs++;
+        const ValueLocation place{
+            .joint = joints[k].first, .frame = frame_a, .time = frame_a / first.rate};
+        result.positions.add(distance, place);
+        result.orientations.add(angle, place);
+        result.joints[k].positions.add(distance, place);
+        result.joints[k].orientations.add(angle, place);
+      }
+    }
+    if (first.release) first.release(pairs.back().first + 1);
+    if (second.release) second.release(pairs.back().second + 1);
+    return Status();
+  };
+  return make_in_order((frames.size() + at_once - 1) / at_once, jobs, make, take);
 }
 
-void compare_stretches(const Clip& first, const Clip& second, std::span<const Stretch> a,
-                       std::span<const Stretch> b, const Pairs& joints, const FrameMatch& frames,
-                       ClipDifference& result) {
+void compare_stretches(const FrameSource& first, const FrameSource& second,
+                       std::span<const Stretch> a, std::span<const Stretch> b, const Pairs& joints,
+                       const FrameMatch& frames, ClipDifference& result) {
   if (a.empty() && b.empty()) return;
-  const auto of = [](const Clip& clip, std::span<const Stretch> all, int frame, int joint) {
+  const auto of = [](const FrameSource& clip, std::span<const Stretch> all, int frame, int joint) {
     if (all.empty()) return Stretch();
     return all[static_cast<std::size_t>(frame) * static_cast<std::size_t>(clip.joint_count()) +
                static_cast<std::size_t>(joint)];
@@ -105,6 +164,14 @@ Result<ClipDifference> difference(const Clip& first, const Clip& second, const T
     return of_which(ok.error(), "the second clip");
   }
 
+  return difference(frames_of(first), frames_of(second), tolerance, matching, first_stretches,
+                    second_stretches);
+}
+
+Result<ClipDifference> difference(const FrameSource& first, const FrameSource& second,
+                                  const Tolerance& tolerance, Matching matching,
+                                  std::span<const Stretch> first_stretches,
+                                  std::span<const Stretch> second_stretches, int jobs) {
   ClipDifference result;
   result.reference_positions = result.positions = Measure(tolerance.of_joint_positions());
   result.reference_orientations = result.orientations = Measure(tolerance.of_joint_orientations());
@@ -120,12 +187,13 @@ Result<ClipDifference> difference(const Clip& first, const Clip& second, const T
   compare_references(first.skeleton, second.skeleton, joints, result);
   note_shifted_reference(first.skeleton, second.skeleton, joints, tolerance, result);
 
-  FrameMatch frames = match_frames(first.frame_count(), first.rate, second.frame_count(),
-                                   second.rate, tolerance.time);
+  FrameMatch frames =
+      match_frames(first.frame_count, first.rate, second.frame_count, second.rate, tolerance.time);
   result.structure.insert(result.structure.end(), frames.differences.begin(),
                           frames.differences.end());
   result.compared_frames = static_cast<int>(frames.frames.size());
-  compare_frames(first, second, joints, frames, result);
+  Status compared = compare_frames(first, second, joints, frames, jobs, result);
+  if (!compared) return compared.error();
   result.stretches = Measure(tolerance.ratio);
   compare_stretches(first, second, first_stretches, second_stretches, joints, frames, result);
   return result;

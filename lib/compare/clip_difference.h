@@ -8,6 +8,7 @@
 #include "compare/measure.h"
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/stretch.h"
 
 namespace krok::compare {
@@ -48,5 +49,13 @@ Result<ClipDifference> difference(const Clip& first, const Clip& second, const T
                                   Matching matching = Matching::automatic,
                                   std::span<const Stretch> first_stretches = {},
                                   std::span<const Stretch> second_stretches = {});
+
+// The same for frames that are made on demand, on `jobs` threads, which do not affect the result;
+// memory does not grow with their number. The errors of the sources are passed on.
+Result<ClipDifference> difference(const FrameSource& first, const FrameSource& second,
+                                  const Tolerance& tolerance,
+                                  Matching matching = Matching::automatic,
+                                  std::span<const Stretch> first_stretches = {},
+                                  std::span<const Stretch> second_stretches = {}, int jobs = 1);
 
 }  // namespace krok::compare

@@ -1,5 +1,8 @@
 #include "motion/travel.h"
 
+#include <cmath>
+
+#include "math/euler.h"
 #include "motion/ground_frame.h"
 
 namespace krok {
@@ -45,6 +48,28 @@ Clip in_place(const Clip& clip, int carrier, Travel removed) {
     for (std::size_t j = 0; j < positions.size(); ++j) {
       if (within[j]) positions[j] = (positions[j].cast<double>() - travel).cast<float>();
     }
+  }
+  return result;
+}
+
+Clip carried_along(const Clip& clip, int carrier, const RootMotion& added) {
+  Clip result = clip;
+  result.provenance.removed_root_motion.reset();
+  if (clip.frame_count() == 0) return result;
+  const GroundFrame start = ground_frame(clip, carrier, 0);
+  const Vec3 pivot(start.x, 0, start.z);
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  for (int f = 1; f < clip.frame_count(); ++f) {
+    const double time = f / clip.rate;
+    const double angle = added.turn_rate * time;
+    const Quat turn = axis_rotation(Axis::y, angle);
+    // The integral of the turning velocity: the chord, at the mean heading.
+    const double chord = std::abs(angle) < 1e-6 ? 1 : std::sin(angle / 2) / (angle / 2);
+    const Vec3 way = chord * time * (axis_rotation(Axis::y, angle / 2) * added.velocity);
+    const Transform move{pivot + way - turn * pivot, turn};
+    clip.get_pose(f, pose);
+    for (Transform& joint : pose) joint = move * joint;
+    result.set_pose(f, pose);
   }
   return result;
 }

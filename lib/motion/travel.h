@@ -15,4 +15,9 @@ enum class Travel {
 // character, are unchanged. So are clips of fewer than two frames.
 Clip in_place(const Clip& clip, int carrier, Travel removed);
 
+// The opposite: the motion with `added` from its first frame on, whole poses moved and turned about
+// the carrier's place in the first frame. Where in_place() removed the trend of a straight path, at
+// its mean velocity, this gives the motion before. Provenance no longer has a removed root motion.
+Clip carried_along(const Clip& clip, int carrier, const RootMotion& added);
+
 }  // namespace krok

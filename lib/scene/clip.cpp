@@ -8,6 +8,7 @@
 #include "math/quaternion.h"
 #include "scene/farthest.h"
 #include "scene/frame_moment.h"
+#include "scene/frame_source.h"
 
 namespace krok {
 
@@ -56,17 +57,23 @@ Status check(const Clip& clip) {
                              clip.positions.size(), clip.orientations.size(), clip.joint_count()));
   }
   if (Status status = check_frame_rate(clip.rate, "clip-rate"); !status) return status;
-  for (std::size_t i = 0; i < clip.positions.size(); ++i) {
-    if (is_near(clip.positions[i]) && clip.orientations[i].coeffs().allFinite() &&
-        std::abs(clip.orientations[i].norm() - 1.0f) <= 1e-3f) {
+  return check_values(clip.skeleton, 0, clip.positions, clip.orientations);
+}
+
+Status check_values(const Skeleton& skeleton, int first_frame, std::span<const Vec3f> positions,
+                    std::span<const Quatf> orientations) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (is_near(positions[i]) && orientations[i].coeffs().allFinite() &&
+        std::abs(orientations[i].norm() - 1.0f) <= 1e-3f) {
       continue;
     }
-    const std::size_t joints = clip.skeleton.names.size();
+    const std::size_t joints = skeleton.names.size();
+    const auto frame = first_frame + static_cast<std::int64_t>(i / joints);
     Error error("clip-value",
                 fmt::format("joint {} in frame {} is not finite, over 1e9 m away or not a rotation",
-                            clip.skeleton.names[i % joints], i / joints));
-    error.joint = clip.skeleton.names[i % joints];
-    error.frame = static_cast<std::int64_t>(i / joints);
+                            skeleton.names[i % joints], frame));
+    error.joint = skeleton.names[i % joints];
+    error.frame = frame;
     return error;
   }
   return {};

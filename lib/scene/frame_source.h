@@ -34,7 +34,14 @@ struct FrameSource {
 // Loads all frames on `jobs` threads (as in parallel_for), without provenance.
 Result<Clip> load(const FrameSource& source, int jobs);
 
+// Reads all frames and drops them: whether each can be read.
+Status read_through(const FrameSource& source, int jobs);
+
 // A source of the frames of `clip`, which must outlive it.
 FrameSource frames_of(const Clip& clip);
+
+// The part of check(Clip) about values, of whole frames from `first_frame` on. Code clip-value.
+Status check_values(const Skeleton& skeleton, int first_frame, std::span<const Vec3f> positions,
+                    std::span<const Quatf> orientations);
 
 }  // namespace krok

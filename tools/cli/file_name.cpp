@@ -44,4 +44,13 @@ std::string clip_name_of(const std::string& path) {
   return path == "-" || stem.empty() ? "motion" : to_utf8(stem);
 }
 
+NamedPath named_path(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  std::error_code unknown;
+  const bool named = equals != std::string::npos && equals > 0 && text.find('/') > equals &&
+                     !std::filesystem::exists(text, unknown);
+  if (!named) return {{}, text};
+  return {to_utf8(text.substr(0, equals)), text.substr(equals + 1)};
+}
+
 }  // namespace krok::cli

@@ -19,4 +19,12 @@ std::string name_of_input(const std::string& path);
 // The name of a motion in a file of several: "walk" for "takes/walk.anim", "motion" for "-". UTF-8.
 std::string clip_name_of(const std::string& path);
 
+// "walk=takes/a.anim": the file takes/a.anim, to be called walk. Without a name, or for a file
+// whose path is the whole text, `name` is empty.
+struct NamedPath {
+  std::string name;  // UTF-8
+  std::string path;
+};
+NamedPath named_path(const std::string& text);
+
 }  // namespace krok::cli

@@ -28,6 +28,17 @@ Result<double> parse_height(const std::string& text) {
   return height ? length(kPositive).read(text) : height;
 }
 
+void declare_presets(CommandOptions& command, Options& o) {
+  command.group("Presets");
+  command
+      .add_flag("--game-loop", o.game_loop,
+                "A loop for a game engine: --plant --cycle auto --loop-turn straighten --treadmill "
+                "--at-origin, travelling towards +Z (facing +Z if it walks sideways or stays). The "
+                "velocity that was removed is printed and stored, in the .anim and by krok-skin "
+                "and krok-export in the animation's extras. Steps that are given replace these")
+      .not_with({"--sequences", "--rounds"});
+}
+
 void declare_cleaning(CommandOptions& command, Options& o) {
   const std::vector<std::string> cleaning = {"--spikes", "--filter"};
   command.group("1. Clean the whole input");
@@ -70,7 +81,7 @@ void declare_cleaning(CommandOptions& command, Options& o) {
   command.add_flag("--plant", o.plant,
                    "Remove foot skate: heel and ball stay where they stand, the pelvis is lowered "
                    "where a leg would be stretched");
-  add_contacts_option(command, o.contacts).only_with("--plant");
+  add_contacts_option(command, o.contacts).only_with({"--plant", "--game-loop"});
 }
 
 void declare_cut(CommandOptions& command, Options& o) {
@@ -140,7 +151,7 @@ void declare_loop(CommandOptions& command, Options& o) {
                    "Make a seamless loop. The last frame becomes the first, moved by the root "
                    "motion of one cycle, so n frames repeat every n - 1");
   // A sequence may loop if its file says so.
-  command.only_with({"--loop", "--cycle", "--sequences"});
+  command.only_with({"--loop", "--cycle", "--game-loop", "--sequences"});
   command.add("--loop-blend", o.loop_blend, clip_time(),
               "Time before and after the seam that may change", "0.2s");
   command.add(
@@ -200,6 +211,7 @@ void declare(CommandOptions& command, Options& o) {
       .required();
   command.group("Character");
   add_map_option(command, o.map);
+  declare_presets(command, o);
   declare_cleaning(command, o);
   declare_cut(command, o);
   declare_timing(command, o);
@@ -243,6 +255,8 @@ ToolSpec make_spec() {
        "a seamless walk cycle in place"},
       {"krok-edit take.anim -o walk.anim --cycle auto --in-place",
        "the gait cycle that loops best, in place"},
+      {"krok-edit takes --game-loop --keep-going --out-dir loops",
+       "a loop for an engine of each take that has a cycle, with its speed"},
       {"krok-edit take.anim -o step.anim --from left_strike[1] --to left_strike[2]",
        "from the first strike of the left foot to its second"},
       {"krok-edit take.anim -o 'take_{sequence}.anim' --sequences take.json",

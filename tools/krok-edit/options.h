@@ -47,6 +47,7 @@ struct Options {
   JointSelection joints;
   bool plant = false;
   std::string contacts;  // a file, "auto" or "find"
+  bool game_loop = false;
   // 2. cut
   std::optional<CutTime> from, to;
   CycleFoot cycle = CycleFoot::none;

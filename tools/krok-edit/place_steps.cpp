@@ -9,25 +9,76 @@
 
 namespace krok::cli::edit {
 
+namespace {
+
+// The heading of the removed travel, or of the character where it walks sideways, backwards or
+// hardly at all.
+double forward(const Edit& edit) {
+  constexpr double kForward = 30 * kRadiansPerDegree;
+  constexpr double kWalks = 0.1;  // metres per second
+  Vec2 facing = Vec2::Zero();
+  for (int f = 0; f < edit.clip.frame_count(); ++f) {
+    const double heading = ground_frame(edit.clip, edit.carrier, f).heading;
+    facing += Vec2(std::sin(heading), std::cos(heading));
+  }
+  const double mean = std::atan2(facing.x(), facing.y());
+  const auto& removed = edit.clip.provenance.removed_root_motion;
+  if (!removed || removed->velocity.norm() < kWalks) return mean;
+  const double travel = std::atan2(removed->velocity.x(), removed->velocity.z());
+  return std::abs(wrapped(travel - mean)) < kForward ? travel : mean;
+}
+
+std::string velocity_text(const RootMotion& removed) {
+  const Vec3& v = removed.velocity;
+  std::string text = fmt::format("{} m/s ({}, {}, {})", readable(v.norm(), 4), readable(v.x(), 4),
+                                 readable(v.y(), 4), readable(v.z(), 4));
+  if (removed.turn_rate != 0) text += fmt::format(", {}/s", in_degrees(removed.turn_rate));
+  return text;
+}
+
+}  // namespace
+
+void complete_game_loop(Options& options) {
+  if (!options.game_loop) return;
+  const bool ends = options.from || options.to;
+  options.plant = true;
+  if (options.cycle == CycleFoot::none && !(ends && options.loop)) {
+    options.cycle = CycleFoot::either;
+  }
+  if (options.looping.turn == LoopTurn::automatic) options.looping.turn = LoopTurn::straighten;
+  options.treadmill = !options.in_place;
+  options.at_origin = true;
+}
+
 Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
   if (!options.in_place && !options.treadmill) return {};
   const Travel removed = options.in_place ? Travel::all : Travel::trend;
   const int last = edit.clip.frame_count() - 1;
-  double way = 0;
+  Vec3 way = Vec3::Zero();
+  auto& root_motion = edit.clip.provenance.removed_root_motion;
   if (last > 0) {
     const GroundFrame from = ground_frame(edit.clip, edit.carrier, 0);
     const GroundFrame to = ground_frame(edit.clip, edit.carrier, last);
-    way = Vec2(to.x - from.x, to.z - from.z).norm();
+    way = Vec3(to.x - from.x, 0, to.z - from.z);
+    // What was removed before is still missing.
+    if (!root_motion) root_motion.emplace();
+    root_motion->velocity += way / edit.clip.duration();
+    root_motion->turn_rate += edit.turn_rate;
   }
   edit.clip = in_place(edit.clip, edit.carrier, removed);
   const bool all = removed == Travel::all;
   Json metrics;
   metrics["removed"] = all ? "all" : "trend";
-  metrics["way"] = way;
-  edit.note(
-      "travel", std::move(metrics),
-      fmt::format("{} of {} m from first to last frame removed",
-                  all ? "all root motion" : "constant-velocity root motion", readable(way, 3)));
+  metrics["way"] = way.norm();
+  std::string line = fmt::format("{} of {} m from first to last frame removed",
+                                 all ? "all root motion" : "constant-velocity root motion",
+                                 readable(way.norm(), 3));
+  if (root_motion) {
+    metrics["speed"] = root_motion->velocity.norm();
+    metrics["turn_rate"] = to_degrees(root_motion->turn_rate);
+    line += ", " + velocity_text(*root_motion);
+  }
+  edit.note("travel", std::move(metrics), std::move(line));
   return {};
 }
 
@@ -40,6 +91,7 @@ Status change_size(const Options& options, ToolContext&, Edit& edit) {
   }
   const double factor = options.scale ? *options.scale : *options.height / height;
   if (Status status = scale_clip(factor, edit.clip); !status) return status;
+  if (auto& removed = edit.clip.provenance.removed_root_motion) removed->velocity *= factor;
   Json metrics;
   metrics["factor"] = factor;
   metrics["height_before"] = height;
@@ -61,6 +113,12 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
   };
   const auto degrees = [](double angle) { return readable(angle / kRadiansPerDegree, 4); };
   if (options.at_origin) apply(to_origin(clip, edit.carrier), "starts above the origin");
+  auto& root_motion = clip.provenance.removed_root_motion;
+  if (options.game_loop && !options.heading && !options.re_orient) {
+    const double turn = -forward(edit);
+    apply(turned_about_start(clip, edit.carrier, turn),
+          fmt::format("turned by {} deg to +Z", degrees(turn)));
+  }
   if (options.heading || options.re_orient) {
     const double heading = options.heading.value_or(0);
     apply(facing_at_start(clip, edit.carrier, heading),
@@ -80,7 +138,18 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
     apply(lift, fmt::format("lifted by {} m onto the ground", readable(lift.position.y(), 4)));
   }
   if (line.empty()) return {};
+  if (root_motion) {
+    Vec3& velocity = root_motion->velocity;
+    velocity = (move.orientation * velocity).unaryExpr([](double part) {
+      return std::abs(part) < 1e-9 ? 0.0 : part;  // rounding
+    });
+  }
   Json metrics;
+  if (root_motion && options.game_loop) {
+    const Vec3& velocity = root_motion->velocity;
+    metrics["velocity"] = {velocity.x(), velocity.y(), velocity.z()};
+    line += fmt::format("; an engine moves it at {}", velocity_text(*root_motion));
+  }
   metrics["moved"] = {move.position.x(), move.position.y(), move.position.z()};
   metrics["turned"] = to_degrees(2 * std::atan2(move.orientation.y(), move.orientation.w()));
   edit.note("place", std::move(metrics), std::move(line));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -63,6 +64,7 @@ Provenance extended(const Provenance& before, Provenance now,
   std::vector<std::string> warnings = before.warnings;
   warnings.insert(warnings.end(), now.warnings.begin(), now.warnings.end());
   now.warnings = std::move(warnings);
+  now.removed_root_motion = before.removed_root_motion;
   return now;
 }
 
@@ -207,6 +209,13 @@ Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolConte
   return all;
 }
 
+// Whether an option is given that is a step, or stores orientations otherwise.
+bool has_step(const ToolContext& context) {
+  return std::ranges::any_of(context.result_options.items(), [](const auto& option) {
+    return option.key() != "input" && option.key() != "map";
+  });
+}
+
 }  // namespace
 
 void Edit::note(const char* step, Json metrics, std::string line) {
@@ -218,9 +227,15 @@ void Edit::note(const char* step, Json metrics, std::string line) {
   lines.push_back(std::move(line));
 }
 
-Result<int> run(const Options& options, ToolContext& context) {
+Result<int> run(const Options& given, ToolContext& context) {
+  Options options = given;
+  complete_game_loop(options);
   if (options.list_sequences) return list_sequences(options, context);
   if (context.output.empty()) return no_output();
+  if (!has_step(context)) {
+    return usage("no step is requested, so the motion would be copied",
+                 "krok-edit -h lists the steps; krok-import converts captures to .anim");
+  }
   auto source = read_inputs(options, context);
   if (!source) return source.error();
   const Json input_summary = summary_of(source->clip);

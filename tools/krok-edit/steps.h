@@ -27,8 +27,9 @@ struct Edit {
   std::vector<Keytime> keytimes;                 // of the input, for ends that are keytimes
   std::vector<Clip> appended;                    // in the order of Options::append
 
-  double speed = 1;   // of options and sequence together
-  bool loop = false;  // of options or sequence
+  double speed = 1;      // of options and sequence together
+  bool loop = false;     // of options or sequence
+  double turn_rate = 0;  // radians per second that straightening a loop took out
   Json steps = Json::array();
   std::vector<std::string> lines;  // what was done, for display and provenance
 
@@ -38,6 +39,9 @@ struct Edit {
 
 // "12.5 deg"; "0 deg" below 1e-4 degrees.
 std::string in_degrees(double radians);
+
+// The options that --game-loop sets, where they are not given.
+void complete_game_loop(Options& options);
 
 // Checks that all sequences of the sequences file are within the motion.
 Status check_sequences(const Options& options, const Edit& edit);

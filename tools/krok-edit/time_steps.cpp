@@ -237,6 +237,10 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
     context.diagnose(std::move(warning));
   }
   edit.clip = mirror(edit.clip, pairs);
+  if (auto& removed = edit.clip.provenance.removed_root_motion) {
+    removed->velocity.x() *= -1;
+    removed->turn_rate *= -1;
+  }
   std::string line = fmt::format("mirrored: {}, {} in the middle",
                                  counted(static_cast<long long>(pair_list.size()), "pair"),
                                  counted(static_cast<long long>(middle.size()), "joint"));
@@ -257,6 +261,10 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
       retime(edit.clip, rate, edit.speed, edit.loop ? LastFrame::kept : LastFrame::within);
   if (!retimed) return retimed.error();
   edit.clip = std::move(*retimed);
+  if (auto& removed = edit.clip.provenance.removed_root_motion) {
+    removed->velocity *= edit.speed;
+    removed->turn_rate *= edit.speed;
+  }
   Json metrics;
   metrics["speed"] = edit.speed;
   metrics["rate_before"] = old_rate;
@@ -285,6 +293,7 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
     if (!joined) return std::move(joined.error()).in_file(path);
     const int frames = edit.clip.frame_count();
     edit.clip = std::move(joined->clip);
+    edit.clip.provenance.removed_root_motion.reset();
     Json metrics;
     metrics["file"] = base_name(path);
     metrics["frames_before"] = frames;
@@ -325,6 +334,10 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
   }
   auto looped = loop(edit.clip, edit.carrier, looping);
   if (!looped) return std::move(looped.error()).in_file(options.input);
+  // Up to kLoopDrift it is a capture's drift, which nobody wants back.
+  if (std::abs(looped->straightened) > kLoopDrift) {
+    edit.turn_rate = looped->straightened / looped->clip.duration();
+  }
   Json metrics = loop_json(*looped, edit);
   std::string line = loop_text(*looped, edit);
   if (to_degrees(looped->before.angle) > kPoorSeam) {
@@ -333,7 +346,10 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
                              "over {} frames on either side",
                              in_degrees(looped->before.angle),
                              joint_name(edit, looped->before.angle_joint), looped->blended_frames),
-                 "choose ends at the same moment of a cycle: --cycle auto, or --from and --to");
+                 options.cycle == CycleFoot::none
+                     ? "choose ends at the same moment of a cycle: --cycle auto, or --from and --to"
+                     : "no cycle of the motion repeats better: choose its ends with --from, --to "
+                       "and --loop, or --loop-blend 0.4s for a longer transition");
   }
   edit.clip = std::move(looped->clip);
   if (options.rounds) {

@@ -278,6 +278,7 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
       },
       {.stretches = &stretches});
   if (!facts) return facts.error();
+  tracks->removed_root_motion = facts->removed_root_motion;
   auto reduced = reduce(options, facts->skeleton, context.jobs, *tracks);
   if (!reduced) return reduced.error();
   reduction = *std::move(reduced);

@@ -26,32 +26,6 @@ Status add_capture(const Capture& capture, const std::string& measured, const Sk
   return {};
 }
 
-// Reads all frames and drops them: whether each can be read.
-Status read_through(const FrameSource& source, int jobs) {
-  constexpr std::size_t kFramesAtOnce = 128;
-  const auto joints = static_cast<std::size_t>(source.joint_count());
-  const auto frames = static_cast<std::size_t>(source.frame_count);
-  struct Block {
-    std::vector<Vec3f> positions;
-    std::vector<Quatf> orientations;
-  };
-  std::vector<Block> blocks(slots_for(jobs));
-  const auto read = [&](std::size_t block, std::size_t slot) {
-    const std::size_t first = block * kFramesAtOnce;
-    const std::size_t count = std::min(kFramesAtOnce, frames - first);
-    blocks[slot].positions.resize(count * joints);
-    blocks[slot].orientations.resize(count * joints);
-    return source.read(static_cast<int>(first), static_cast<int>(count), blocks[slot].positions,
-                       blocks[slot].orientations);
-  };
-  const auto release = [&](std::size_t block, std::size_t) {
-    const std::size_t done = std::min((block + 1) * kFramesAtOnce, frames);
-    if (source.release) source.release(static_cast<int>(done));
-    return Status();
-  };
-  return make_in_order((frames + kFramesAtOnce - 1) / kFramesAtOnce, jobs, read, release);
-}
-
 // Without its frames, if they need not be in memory to find faults.
 Result<bvh::Capture> read_bvh(const InputFile& file, const bvh::ReadOptions& options,
                               int& frame_count) {

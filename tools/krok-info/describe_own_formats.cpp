@@ -58,25 +58,33 @@ void add_mesh_size(const Model& model, Description& out) {
   add_volumes({{"", mesh_volume(positions, model.triangles)}}, out);
 }
 
-Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how, ToolContext&) {
+Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how,
+                                  ToolContext& context) {
+  const auto opened = anim::open(file.bytes());
+  if (!opened) return opened.error();
+  const FrameSource& frames = opened->frames;
   Stretches stretches;
-  const auto clip = anim::read(file.bytes(), &stretches);
-  if (!clip) return clip.error();
+  if (opened->stretched) {
+    const auto clip = anim::read(file.bytes(), &stretches);
+    if (!clip) return clip.error();
+  } else if (Status status = read_through(frames, context.jobs); !status) {
+    return status.error();
+  }
   Description out;
   out.what = "a motion (.anim)";
   out.json["kind"] = "anim";
-  add_timing(clip->frame_count(), clip->rate, out);
-  if (Status status = add_skeleton(clip->skeleton, how, out); !status) return status.error();
+  add_timing(frames.frame_count, frames.rate, out);
+  if (Status status = add_skeleton(frames.skeleton, how, out); !status) return status.error();
   if (!stretches.empty()) {
-    const LargestStretch worst = largest_stretch(stretches, clip->joint_count());
-    const std::string& joint = clip->skeleton.names[at(worst.joint)];
+    const LargestStretch worst = largest_stretch(stretches, frames.joint_count());
+    const std::string& joint = frames.skeleton.names[at(worst.joint)];
     out.add("scale", fmt::format("joints change scale; most: {} by {}% in frame {}", shown(joint),
                                  readable(100 * worst.size, 3), worst.frame));
     out.json["largest_stretch"] = {{"joint", joint}, {"frame", worst.frame}, {"size", worst.size}};
   }
-  add_reference_size(clip->skeleton, out);
+  add_reference_size(frames.skeleton, out);
   add_orientations(file, out);
-  add_provenance(clip->provenance, out);
+  add_provenance(opened->provenance, out);
   return out;
 }
 

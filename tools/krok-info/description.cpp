@@ -6,6 +6,7 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
+#include "math/types.h"
 
 namespace krok::cli::info {
 
@@ -90,6 +91,15 @@ void add_provenance(const Provenance& provenance, Description& out) {
   }
   json["conversions"] = provenance.conversions;
   json["warnings"] = provenance.warnings;
+  if (const auto& removed = provenance.removed_root_motion) {
+    const Vec3& v = removed->velocity;
+    const double turn_rate = removed->turn_rate / kRadiansPerDegree;
+    json["removed_root_motion"] = {{"velocity", {v.x(), v.y(), v.z()}}, {"turn_rate", turn_rate}};
+    out.add("root motion",
+            fmt::format("removed: {} m/s ({}, {}, {}), {} deg/s", readable(v.norm(), 4),
+                        readable(v.x(), 4), readable(v.y(), 4), readable(v.z(), 4),
+                        readable(turn_rate, 4)));
+  }
   out.json["provenance"] = std::move(json);
 
   if (provenance.tool.empty()) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -12,6 +14,8 @@
 #include "formats/csv/field.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
+#include "motion/ground_frame.h"
+#include "motion/travel.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/shared/keys_choice.h"
@@ -44,8 +48,11 @@ std::string row_of(const std::string& name, double duration, const GaitFacts& fa
   return row + "\n";
 }
 
-Result<std::string> row_of(const std::string& path, const io::FindRoles& find_roles,
-                           ToolContext& context) {
+using Rows = Result<std::string>(const std::string& path, const io::FindRoles& find_roles,
+                                 ToolContext& context);
+
+Result<std::string> gait_row(const std::string& path, const io::FindRoles& find_roles,
+                             ToolContext& context) {
   const auto clip = io::open_motion(path, context);
   if (!clip) return clip.error();
   const auto roles = find_roles(clip->skeleton);
@@ -58,37 +65,67 @@ Result<std::string> row_of(const std::string& path, const io::FindRoles& find_ro
   return row_of(path, clip->duration(), gait_facts(*clip, *roles, found.keytimes));
 }
 
-}  // namespace
-
-GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes) {
-  return {gait_metrics(keytimes), step_measures(clip, roles, keytimes), slide_speed(clip, roles)};
+Result<std::string> event_rows(const std::string& path, const io::FindRoles& find_roles,
+                               ToolContext& context) {
+  const auto clip = io::open_motion(path, context);
+  if (!clip) return clip.error();
+  const auto keys =
+      choose_keys(KeysChoice::automatic, path, name_of_input(path), *clip, find_roles, context);
+  if (!keys) return keys.error();
+  std::string rows;
+  if (!*keys) return rows;
+  for (const Keytime& key : (*keys)->keytimes) {
+    rows += fmt::format("{},{},{:.6f},{}\n", csv::field(to_utf8(path)), csv::field(key.name),
+                        key.time, std::lround(key.time * clip->rate));
+  }
+  return rows;
 }
 
-Result<int> write_gait_table(const Options& options, ToolContext& context) {
+// Motions that cannot be read are reported and left out.
+Result<int> write_rows(const Options& options, const char* header, Rows* rows_of, const char* task,
+                       const std::string& output, ToolContext& context) {
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
-  std::string text = kHeader;
-  std::size_t rows = 0;
-  context.progress->begin("measuring gait", options.inputs.size());
+  std::string text = header;
+  std::size_t motions = 0;
+  context.progress->begin(task, options.inputs.size());
   for (const std::string& path : options.inputs) {
-    if (auto row = row_of(path, *find_roles, context)) {
-      text += *row;
-      ++rows;
+    if (auto rows = rows_of(path, *find_roles, context)) {
+      text += *rows;
+      ++motions;
     } else {
-      Error error = row.error();
+      Error error = rows.error();
       if (error.where.file.empty()) error.where.file = path;
       context.diagnose(error);
     }
     context.progress->advance(1);
   }
   context.progress->end();
-  if (rows == 0) return Error("keys-table", "none of the motions can be read");
+  if (motions == 0) return Error("keys-table", "none of the motions can be read");
   const Status status =
-      write_output(context, options.table, [&](OutputFile& file) { return file.write(text); });
+      write_output(context, output, [&](OutputFile& file) { return file.write(text); });
   if (!status) return status.error();
-  context.report.result["rows"] = rows;
-  context.log(fmt::format("{}: {} of {} motions", options.table, rows, options.inputs.size()));
-  return rows == options.inputs.size() ? kExitDone : kExitPartly;
+  context.report.result["rows"] = std::ranges::count(text, '\n') - 1;
+  context.log(fmt::format("{}: {} of {} motions", output, motions, options.inputs.size()));
+  return motions == options.inputs.size() ? kExitDone : kExitPartly;
+}
+
+}  // namespace
+
+GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes) {
+  if (const auto& removed = clip.provenance.removed_root_motion) {
+    return gait_facts(carried_along(clip, carrying_joint(roles), *removed), roles, keytimes);
+  }
+  return {gait_metrics(keytimes), step_measures(clip, roles, keytimes), slide_speed(clip, roles)};
+}
+
+Result<int> write_gait_table(const Options& options, ToolContext& context) {
+  return write_rows(options, kHeader, gait_row, "measuring gait", options.table, context);
+}
+
+Result<int> write_event_table(const Options& options, ToolContext& context) {
+  return write_rows(options, "file,event,time [s],frame\n", event_rows, "finding steps",
+                    context.output, context);
 }
 
 }  // namespace krok::cli::keys

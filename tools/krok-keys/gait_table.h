@@ -23,4 +23,7 @@ GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<K
 // cannot be read are reported and left out; the exit code then is kExitPartly.
 Result<int> write_gait_table(const Options& options, ToolContext& context);
 
+// Writes -o OUT.csv: a row for each keytime of each motion. Otherwise the same.
+Result<int> write_event_table(const Options& options, ToolContext& context);
+
 }  // namespace krok::cli::keys

@@ -116,7 +116,8 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-keys", options, declare, nullptr, run);
   spec.summary = "Detects foot contacts and gait keytimes; shows and saves them";
-  spec.details = "They are written to an editable file beside the motion.";
+  spec.details =
+      "They are written to an editable file beside the motion, or with -o OUT.csv as a table.";
   spec.inputs = "IN.anim|IN.bvh|IN.amc...";
   spec.examples = {
       {"krok-keys walk.anim", "prints what is detected, or walk.keys.json if that was edited"},
@@ -125,11 +126,12 @@ ToolSpec make_spec() {
       {"krok-keys walk.anim -o walk.keys.json --keytime left_strike=1.25s,right_off=1.31s",
        "moves two keytimes; they are kept when the file is rebuilt"},
       {"krok-keys motions --out-dir motions", "for all motions of a folder, beside them"},
-      {"krok-keys motions --table gait.csv", "a table of the gait of all motions of a folder"}};
+      {"krok-keys motions --table gait.csv", "a table of the gait of all motions of a folder"},
+      {"krok-keys motions -o events.csv", "the strikes and toe-offs of all motions of a folder"}};
   spec.exit_no = "--find steps was given and no step was found";
   spec.folder_endings = io::motion_endings();
   spec.needs_output = false;
-  spec.output_endings = {".json"};
+  spec.output_endings = {".json", ".csv"};
   spec.batch = {io::motion_endings(), always(".keys.json")};
   return spec;
 }

@@ -8,13 +8,17 @@
 
 #include "contacts/contacts.h"
 #include "contacts/gait_keytimes.h"
+#include "contacts/long_take.h"
 #include "core/numbers.h"
 #include "core/result.h"
+#include "core/text.h"
 #include "draw/plot.h"
 #include "formats/chart/chart_writer.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/keys/keys.h"
+#include "motion/ground_frame.h"
+#include "motion/travel.h"
 #include "scene/clip.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
@@ -236,6 +240,19 @@ std::string gait_text(const GaitFacts& facts) {
   return text;
 }
 
+void report(const Options& options, const krok::keys::Sidecar& sidecar, const Skeleton& skeleton,
+            const GaitFacts& gait, bool found, ToolContext& context) {
+  context.report.result = as_json(sidecar, skeleton);
+  context.report.result["gait"] = as_json(gait);
+  context.report.result["found"] = found;
+  context.report.result["edited"] = sidecar.has_edits();
+  if (context.output.empty() && options.plot.empty()) context.print(as_table(sidecar, skeleton));
+  context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input()),
+                          counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
+                          counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
+                          gait_text(gait)));
+}
+
 Status write_results(const Options& options, const Clip& clip, const RoleMap& roles,
                      std::optional<FoundContacts> found, const krok::keys::Sidecar& sidecar,
                      ToolContext& context) {
@@ -261,20 +278,74 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
   return outputs.finish();
 }
 
+// A file of this size is searched in parts, unless all of it is needed for more.
+constexpr std::size_t kLongFile = std::size_t{64} << 20;
+
+bool is_long_take(const Options& options, const InputFile& file, const ToolContext& context) {
+  const std::string& path =
+      context.output.empty() ? keys_sidecar_path(options.input()) : context.output;
+  return file.bytes().size() >= kLongFile && options.find != Find::none && options.keys.empty() &&
+         options.changes.empty() && options.plot.empty() &&
+         (options.discard_edits || !stands(path));
+}
+
+Result<int> run_long(const Options& options, const InputFile& file, ToolContext& context) {
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  std::optional<LongTake> found;
+  const auto motion = io::stream_motion(file, context, [&](const FrameSource& frames) -> Status {
+    const auto roles = (*find_roles)(frames.skeleton);
+    if (!roles) return roles.error();
+    auto take = find_in_long_take(frames, *roles, context.jobs, context.progress);
+    if (!take) return std::move(take.error()).in_file(options.input());
+    found = *std::move(take);
+    return {};
+  });
+  if (!motion) return motion.error();
+  context.diagnose(found->warnings);
+  krok::keys::Sidecar sidecar;
+  sidecar.keys = std::move(found->keys);
+  sidecar.duration = motion->duration;
+  if (Status status = krok::check(sidecar.keys, motion->skeleton, motion->duration); !status) {
+    return status.error();
+  }
+  if (!context.output.empty()) {
+    const std::string text = krok::keys::write_sidecar(sidecar, motion->skeleton);
+    const Status status = write_output(context, context.output,
+                                       [&](OutputFile& output) { return output.write(text); });
+    if (!status) return status.error();
+  }
+  report(options, sidecar, motion->skeleton,
+         {gait_metrics(sidecar.keys.keytimes), found->steps, found->slide_speed}, true, context);
+  return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
+}
+
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
   if (!options.table.empty()) return write_gait_table(options, context);
+  if (extension(context.output) == ".csv") {
+    if (!options.changes.empty() || !options.plot.empty() || !options.keys.empty()) {
+      return usage("a table of events is of keytimes as they are",
+                   "change them with -o NAME.keys.json first");
+    }
+    return write_event_table(options, context);
+  }
   if (options.inputs.size() > 1) {
-    return usage("several motions are given",
-                 "--table OUT.csv makes a table of them, --out-dir DIR a keytime file of each");
+    return usage(
+        "several motions are given",
+        "--table OUT.csv makes a table of their gait, -o OUT.csv of their events, --out-dir "
+        "DIR a keytime file of each");
   }
   if (!options.changes.empty() && context.output.empty()) {
     return no_output(fmt::format(
         "use -o {} to write beside the motion",
         options.input() == "-" ? "NAME.keys.json" : keys_sidecar_path(options.input())));
   }
-  const auto clip = io::open_motion(options.input(), context);
+  const auto file = context.open_input(options.input());
+  if (!file) return file.error();
+  if (is_long_take(options, *file, context)) return run_long(options, *file, context);
+  const auto clip = io::open_motion(*file, context);
   if (!clip) return clip.error();
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
@@ -287,9 +358,15 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   krok::keys::Sidecar sidecar = before->value_or(krok::keys::Sidecar{});
   std::optional<FoundContacts> contacts;
+  // In place, feet on the ground move with it: steps are found in the motion as it travels.
+  std::optional<Clip> travelling;
+  if (const auto& removed = clip->provenance.removed_root_motion) {
+    travelling = carried_along(*clip, carrying_joint(*roles), *removed);
+  }
   if (*finding) {
-    auto found = find(*clip, *roles, context);
+    auto found = find(travelling ? *travelling : *clip, *roles, context);
     if (!found) return std::move(found).error().in_file(options.input());
+    if (travelling) place_contacts(*clip, found->keys.contacts);
     sidecar = with_edits(std::move(found->keys), sidecar);
     contacts = std::move(found->contacts);
   } else if (*before && (*before)->has_edits()) {
@@ -300,22 +377,12 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !status) {
     return status.error();
   }
-  const Status status =
-      write_results(options, *clip, *roles, std::move(contacts), sidecar, context);
+  const Status status = write_results(options, travelling ? *travelling : *clip, *roles,
+                                      std::move(contacts), sidecar, context);
   if (!status) return status.error();
 
-  const GaitFacts gait = gait_facts(*clip, *roles, sidecar.keys.keytimes);
-  context.report.result = as_json(sidecar, clip->skeleton);
-  context.report.result["gait"] = as_json(gait);
-  context.report.result["found"] = *finding;
-  context.report.result["edited"] = sidecar.has_edits();
-  if (context.output.empty() && options.plot.empty()) {
-    context.print(as_table(sidecar, clip->skeleton));
-  }
-  context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input()),
-                          counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
-                          counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
-                          gait_text(gait)));
+  report(options, sidecar, clip->skeleton, gait_facts(*clip, *roles, sidecar.keys.keytimes),
+         *finding, context);
   return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
 }
 

@@ -101,8 +101,8 @@ void declare(CommandOptions& command, Options& o) {
       .required();
   command.add_option("motions IN.anim", o.motions,
                      "Motions: .anim, or captures read as by krok-import; several of one skeleton "
-                     "become the clips of one rig, named after their files. Without any, the mesh "
-                     "is in its reference pose");
+                     "become the clips of one rig, named after their files, or walk=IN.anim to "
+                     "call one walk. Without any, the mesh is in its reference pose");
   declare_what(command, o);
   declare_mesh(command, o);
 }

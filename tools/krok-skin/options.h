@@ -26,6 +26,7 @@ inline constexpr std::string_view kClipInName = "{clip}";
 struct Options {
   std::string subject;                      // a model or a character
   std::vector<std::string> motions;         // none: the reference pose
+  std::vector<std::string> clip_names;      // of `motions`; empty: after its file
   std::string morphs;                       // --morph, empty: none
   std::string weights;                      // --weights, empty: none
   As as = As::automatic;                    // see what_to_write()

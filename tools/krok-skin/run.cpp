@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/numbers.h"
+#include "tools/cli/file_name.h"
 #include "tools/krok-skin/outputs.h"
 #include "tools/krok-skin/small_rig.h"
 #include "tools/krok-skin/subject.h"
@@ -98,7 +99,13 @@ Result<Written> write(As as, const Options& options, const Subject& subject, Too
 
 }  // namespace
 
-Result<int> run(const Options& options, ToolContext& context) {
+Result<int> run(const Options& given, ToolContext& context) {
+  Options options = given;
+  for (std::string& motion : options.motions) {
+    NamedPath named = named_path(motion);
+    options.clip_names.push_back(std::move(named.name));
+    motion = std::move(named.path);
+  }
   const As as = what_to_write(options, context.output);
   if (Status status = check_for(as, options); !status) return status.error();
   if (Status status = check_output(as, context.output); !status) return status.error();

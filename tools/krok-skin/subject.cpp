@@ -125,7 +125,7 @@ class Loader {
     auto read = io::open_motion(path, context_, {.stretches = &subject_.stretches});
     if (!read) return read.error();
     clip = std::move(*read);
-    subject_.clip_name = names_.make(clip_name_of(path));
+    subject_.clip_name = names_.make(clip_name(0));
     auto bound = bind_to(std::move(subject_.model), clip.skeleton);
     if (!bound) return std::move(bound.error()).in_file(path);
     subject_.model = std::move(*bound);
@@ -159,7 +159,7 @@ class Loader {
         *clip = cut(*clip, 0, last, options_.every);
       }
       Subject::Motion& other = subject_.others.emplace_back();
-      other = {names_.make(clip_name_of(path)), std::move(*clip), std::move(stretches), {}};
+      other = {names_.make(clip_name(i)), std::move(*clip), std::move(stretches), {}};
       if (!options_.has_weights_by_clip()) continue;
       const auto weights = weights_of(i);
       if (!weights) return weights.error();
@@ -169,6 +169,11 @@ class Loader {
       other.weights = *std::move(sampled);
     }
     return {};
+  }
+
+  std::string clip_name(std::size_t motion) const {
+    const std::string& given = options_.clip_names[motion];
+    return given.empty() ? clip_name_of(options_.motions[motion]) : given;
   }
 
   void report_differences(const Clip& clip, const std::string& path) {

@@ -8,6 +8,8 @@
 
 #include "contacts/gait_keytimes.h"
 #include "core/numbers.h"
+#include "motion/ground_frame.h"
+#include "motion/travel.h"
 
 namespace krok::cli {
 
@@ -20,17 +22,20 @@ namespace {
 
 constexpr double kFar = 0.05;  // metres; feet in contact slide by less
 
+// Where the motion, which has frames, has the contact's joint halfway through.
+Vec3 joint_in_contact(const Clip& clip, const Contact& contact) {
+  const double middle = 0.5 * (contact.start + contact.end) * clip.rate;
+  const auto frame =
+      static_cast<int>(std::clamp<double>(std::lround(middle), 0, clip.frame_count() - 1));
+  return clip.frame_positions(frame)[static_cast<std::size_t>(contact.joint)].cast<double>();
+}
+
 // The median distance, in metres, of the contacts' places from where the motion has their joints;
 // 0 without contacts.
 double distance_of_contacts(const MotionKeys& keys, const Clip& clip) {
   std::vector<double> distances;
   for (const Contact& contact : keys.contacts) {
-    const double middle = 0.5 * (contact.start + contact.end) * clip.rate;
-    const auto frame =
-        static_cast<int>(std::clamp<double>(std::lround(middle), 0, clip.frame_count() - 1));
-    const auto positions = clip.frame_positions(frame);
-    const Vec3f& at = positions[static_cast<std::size_t>(contact.joint)];
-    distances.push_back((at.cast<double>() - contact.place).norm());
+    distances.push_back((joint_in_contact(clip, contact) - contact.place).norm());
   }
   if (distances.empty()) return 0;
   const auto half = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
@@ -92,12 +97,22 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
 }
 
 Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context) {
+  if (const auto& removed = clip.provenance.removed_root_motion) {
+    auto keys = find_keys(carried_along(clip, carrying_joint(roles), *removed), roles, context);
+    if (keys) place_contacts(clip, keys->contacts);
+    return keys;
+  }
   auto contacts = find_contacts(clip, roles);
   if (!contacts) return std::move(contacts).error();
   context.diagnose(contacts->warnings);
   Gait gait = find_gait(clip, roles, *contacts);
   context.diagnose(gait.warnings);
   return MotionKeys{std::move(contacts->contacts), std::move(gait.keytimes)};
+}
+
+void place_contacts(const Clip& clip, std::span<Contact> contacts) {
+  if (clip.frame_count() == 0) return;
+  for (Contact& contact : contacts) contact.place = joint_in_contact(clip, contact);
 }
 
 Json to_json(std::span<const Keytime> keytimes) {

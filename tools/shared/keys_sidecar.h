@@ -27,9 +27,13 @@ Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& 
 Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
                                                             const Clip& clip, ToolContext& context);
 
-// Detects contacts and keytimes as krok-keys does, with warnings for doubtful results. Code:
-// contacts-feet.
+// Detects contacts and keytimes as krok-keys does, with warnings for doubtful results; in a motion
+// in place, while it travels as it did before. Code: contacts-feet.
 Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context);
+
+// Sets the places of contacts to where the motion has their joints halfway through: those of a
+// motion in place move.
+void place_contacts(const Clip& clip, std::span<Contact> contacts);
 
 // Names and times for the report.
 Json to_json(std::span<const Keytime> keytimes);

@@ -7,6 +7,8 @@
 #include <span>
 
 #include "core/numbers.h"
+#include "motion/ground_frame.h"
+#include "motion/travel.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli {
@@ -53,6 +55,19 @@ Result<std::optional<std::vector<Contact>>> read_planting_contacts(const std::st
 Result<PlantedFeet> plant(const Clip& clip, const RoleMap& roles,
                           const std::optional<std::vector<Contact>>& contacts,
                           ToolContext& context) {
+  if (const auto& removed = clip.provenance.removed_root_motion) {
+    // In place, feet on the ground move with it: the motion is planted as it travels.
+    const int carrier = carrying_joint(roles);
+    const Clip travelling = carried_along(clip, carrier, *removed);
+    auto there = contacts;
+    if (there) place_contacts(travelling, *there);
+    auto planted = plant(travelling, roles, there, context);
+    if (!planted) return planted;
+    planted->clip =
+        carried_along(planted->clip, carrier, {-removed->velocity, -removed->turn_rate});
+    planted->clip.provenance = clip.provenance;
+    return planted;
+  }
   std::optional<std::span<const Contact>> given;
   if (contacts) given = *contacts;
   auto planted = plant_feet(clip, roles, given);

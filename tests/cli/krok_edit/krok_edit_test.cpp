@@ -365,9 +365,14 @@ TEST_F(KrokEdit, OptionsThatDoNotGoTogether) {
   EXPECT_EQ(edit({"walk.anim"}).exit_code, 2);
 }
 
-TEST_F(KrokEdit, WithoutOptionsTheMotionIsTheSame) {
+// Would fail if a forgotten option left a copy that is taken for the result.
+TEST_F(KrokEdit, WithoutAStepNothingIsCopied) {
   write("walk.anim", walk());
-  EXPECT_EQ(edited({}).positions, read("walk.anim").positions);
+  const auto copy = edit({"walk.anim", "-o", "x.anim"});
+  EXPECT_EQ(copy.exit_code, 2);
+  EXPECT_THAT(copy.err, HasSubstr("no step is requested"));
+  EXPECT_FALSE(std::filesystem::exists(path("x.anim")));
+  EXPECT_EQ(edited({"--playback-speed", "1"}).positions, read("walk.anim").positions);
   Clip empty = walk();
   empty.resize(0);
   write("walk.anim", empty);

@@ -103,6 +103,35 @@ TEST_F(KrokKeys, TheTableHasARowForEachMotion) {
   EXPECT_EQ(get(table), text);
 }
 
+// Would fail if the events of a spreadsheet were not those of the report, or got under another
+// motion's name.
+TEST_F(KrokKeys, EventsAsATable) {
+  std::filesystem::create_directory(path("takes"));
+  std::filesystem::copy_file(motion_, path("takes/a.bvh"));
+  std::filesystem::copy_file(motion_, path("takes/b.bvh"));
+  ASSERT_EQ(run_tool("krok-keys", {path("takes"), "-o", path("events.csv")}).exit_code, 0);
+  const json keytimes = json::parse(keys({"--json"}).out)["result"]["keytimes"];
+  std::istringstream stream(get(path("events.csv")));
+  std::string line;
+  std::getline(stream, line);
+  EXPECT_EQ(line, "file,event,time [s],frame");
+  for (const std::string& name : {path("takes/a.bvh"), path("takes/b.bvh")}) {
+    for (const json& key : keytimes) {
+      ASSERT_TRUE(std::getline(stream, line));
+      std::istringstream row(line);
+      std::string file, event, time;
+      std::getline(row, file, ',');
+      std::getline(row, event, ',');
+      std::getline(row, time, ',');
+      EXPECT_EQ(file, name);
+      EXPECT_EQ(event, key["name"]);
+      EXPECT_NEAR(std::stod(time), key["time"].get<double>(), 1e-6);
+    }
+  }
+  EXPECT_FALSE(std::getline(stream, line));
+  EXPECT_EQ(keys({"-o", path("e.csv"), "--keytime", "left_off=1s"}).exit_code, 2);
+}
+
 TEST_F(KrokKeys, SetMovesMarksAndStays) {
   ASSERT_EQ(keys({"-o", file_}).exit_code, 0);
   const std::size_t count = written()["keytimes"].size();

@@ -152,6 +152,25 @@ TEST(Anim, ReaderNamesJointFrameAndByteOfABadValue) {
   EXPECT_EQ(read.error().where.byte_offset, static_cast<std::int64_t>(place));
 }
 
+// Would fail if parts of a long file, or the place of a bad value there, were another's.
+TEST(Anim, FramesReadOnDemandAreThoseOfTheFile) {
+  const Clip clip = turning_chain(7, 60);
+  const auto bytes = samples::bytes_of(clip);
+  const auto opened = anim::open(bytes);
+  ASSERT_TRUE(opened.ok());
+  EXPECT_EQ(opened->frames.frame_count, 60);
+  EXPECT_EQ(opened->frames.rate, 120);
+  EXPECT_FALSE(opened->stretched);
+  const Clip whole = anim::read(bytes).value();
+  std::vector<Vec3f> positions(5 * 7);
+  std::vector<Quatf> orientations(5 * 7);
+  ASSERT_TRUE(opened->frames.read(41, 5, positions, orientations));
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    EXPECT_EQ(positions[i], whole.positions[41 * 7 + i]);
+    EXPECT_EQ(orientations[i].coeffs(), whole.orientations[41 * 7 + i].coeffs());
+  }
+}
+
 TEST(Anim, ReaderRefusesCountsThatTheFileHasNoBytesFor) {
   const auto with_counts = [](std::uint64_t frames, std::uint32_t joints) {
     auto file = samples::bytes_of(samples::clip());

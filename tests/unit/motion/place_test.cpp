@@ -132,6 +132,46 @@ TEST(InPlace, AllOrOnlyTheEvenPart) {
   EXPECT_EQ(in_place(swinging_human(1), 0, Travel::trend).positions, swinging_human(1).positions);
 }
 
+// Would fail if an engine's arithmetic gave another way than the one that was removed.
+TEST(InPlace, CarriedAlongIsTheMotionBefore) {
+  const Clip clip = astray();
+  const GroundFrame first = ground_frame(clip, 0, 0);
+  const GroundFrame last = ground_frame(clip, 0, clip.frame_count() - 1);
+  const Vec3 velocity = Vec3(last.x - first.x, 0, last.z - first.z) / clip.duration();
+  const Clip back = carried_along(in_place(clip, 0, Travel::trend), 0, {velocity, 0});
+  EXPECT_LT(distance(back, clip), 1e-5);
+  EXPECT_EQ(carried_along(swinging_human(0), 0, {velocity, 1}).frame_count(), 0);
+}
+
+// By the closed form of a circle: a character that faces +Z and turns to its left.
+TEST(InPlace, CarriedAlongWhileTurningWalksACircle) {
+  const double speed = 1.2, rate = 0.8, radius = speed / rate;
+  Clip clip;
+  clip.rate = 50;
+  clip.skeleton.add("Hips", -1, {Vec3(0, 1, 0), Quat::Identity()});
+  clip.skeleton.add("Foot", 0, {Vec3(0.1, 0, 0), Quat::Identity()});
+  clip.resize(201);
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    clip.set_pose(f, std::vector<Transform>{{Vec3(3, 1, 2), Quat::Identity()},
+                                            {Vec3(3.1, 0, 2), Quat::Identity()}});
+  }
+  clip.provenance.removed_root_motion = RootMotion{Vec3(0, 0, speed), rate};
+  const Clip moved = carried_along(clip, 0, *clip.provenance.removed_root_motion);
+  EXPECT_FALSE(moved.provenance.removed_root_motion);
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const double angle = rate * f / clip.rate;
+    const Vec3 hips(3 + radius * (1 - std::cos(angle)), 1, 2 + radius * std::sin(angle));
+    const Vec3 left(std::cos(angle), 0, -std::sin(angle));
+    EXPECT_LT((moved.frame_positions(f)[0].cast<double>() - hips).norm(), 1e-5) << f;
+    EXPECT_LT(
+        (moved.frame_positions(f)[1].cast<double>() - (hips + 0.1 * left - Vec3(0, 1, 0))).norm(),
+        1e-5)
+        << f;
+    EXPECT_NEAR(wrapped(ground_frame(moved, 0, f).heading - angle), 0, 1e-5);
+  }
+  EXPECT_LT(distance(carried_along(moved, 0, {Vec3(0, 0, -speed), -rate}), clip), 1e-5);
+}
+
 TEST(InPlace, AStillRootStaysWhereItIs) {
   Clip clip;
   clip.rate = 30;

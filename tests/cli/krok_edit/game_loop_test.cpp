@@ -1,0 +1,169 @@
+// --game-loop: a cycle in place that an engine moves at the velocity that was taken out. Would fail
+// if that velocity were not the walker's, if feet slid while the engine moves it, if the last frame
+// were not the first again, or if speed and contacts were lost on the way into a glTF file.
+#include <algorithm>
+#include <cmath>
+
+#include <set>
+
+#include "cli/motion_fixture.h"
+#include "math/euler.h"
+#include "motion/place.h"
+#include "motion/travel.h"
+
+namespace krok::test {
+namespace {
+
+class GameLoop : public MotionTest {
+ protected:
+  static constexpr double kRate = 60;
+
+  // Along a heading, of two steps a second.
+  void walk(const std::string& name, double heading, double turn = 0) {
+    samples::WalkOptions options;
+    options.cadence = 120;
+    options.steps = 10;
+    options.rate = kRate;
+    options.turn = turn;
+    Clip clip = samples::make_walk(options).value().clip;
+    move_clip({Vec3(3, 0, -2), axis_rotation(Axis::y, heading)}, clip);
+    write(name, clip);
+  }
+
+  json loop(const std::string& name, std::vector<std::string> more = {}) {
+    more.insert(more.begin(), {name, "--game-loop", "-o", "out.anim"});
+    return report_here("krok-edit", more)["result"]["steps"];
+  }
+
+  static Vec3 at(const Clip& clip, int frame, const std::string& joint) {
+    return clip.frame_positions(frame)[static_cast<std::size_t>(clip.skeleton.find(joint))]
+        .cast<double>();
+  }
+};
+
+TEST_F(GameLoop, MovedAtTheStoredVelocityFeetStay) {
+  walk("walk.anim", 1.1);
+  const json steps = loop("walk.anim");
+  const Clip out = read("out.anim");
+  ASSERT_TRUE(out.provenance.removed_root_motion);
+  const RootMotion& removed = *out.provenance.removed_root_motion;
+  // Two steps a second of 0.7 m.
+  EXPECT_NEAR(removed.velocity.z(), 1.4, 0.01);
+  EXPECT_NEAR(removed.velocity.x(), 0, 1e-6) << "travels towards +Z";
+  EXPECT_EQ(removed.velocity.y(), 0);
+  EXPECT_EQ(removed.turn_rate, 0);
+  EXPECT_EQ(steps.back()["step"], "place");
+  EXPECT_NEAR(steps.back()["velocity"][2].get<double>(), removed.velocity.z(), 1e-9);
+
+  const int end = out.frame_count() - 1;
+  for (const std::string& joint : out.skeleton.names) {
+    EXPECT_LT((at(out, end, joint) - at(out, 0, joint)).norm(), 1e-5) << joint;
+  }
+  EXPECT_LT(Vec2(at(out, 0, "Hips").x(), at(out, 0, "Hips").z()).norm(), 1e-5);
+  // An engine's arithmetic: in walking, some joint of a foot always stays.
+  int still = 0;
+  for (int f = 0; f < end; ++f) {
+    double slowest = 1;
+    for (const std::string& joint : out.skeleton.names) {
+      if (joint.find("Foot") == std::string::npos && joint.find("Toe") == std::string::npos) {
+        continue;
+      }
+      const Vec3 step = at(out, f + 1, joint) - at(out, f, joint) + removed.velocity / kRate;
+      slowest = std::min(slowest, step.norm());
+    }
+    still += slowest < 1.5e-3 ? 1 : 0;
+  }
+  EXPECT_GT(still, 0.9 * end) << "of " << end;
+}
+
+// Would fail if the contacts of a motion in place were those of feet that slide, which are none.
+TEST_F(GameLoop, ItsContactsAndItsSpeedAreFound) {
+  walk("walk.anim", -0.4);
+  loop("walk.anim");
+  const json keys = report_here("krok-keys", {"out.anim"})["result"];
+  const json before = report_here("krok-keys", {"walk.anim"})["result"];
+  std::set<std::string> joints, joints_before;
+  for (const json& contact : keys["contacts"]) joints.insert(contact["joint"]);
+  for (const json& contact : before["contacts"]) joints_before.insert(contact["joint"]);
+  EXPECT_EQ(joints, joints_before);
+  const Clip out = read("out.anim");
+  for (const json& contact : keys["contacts"]) {
+    const double middle = 0.5 * (contact["start"].get<double>() + contact["end"].get<double>());
+    const Vec3 place(contact["place"][0], contact["place"][1], contact["place"][2]);
+    const auto frame = static_cast<int>(std::lround(middle * kRate));
+    EXPECT_LT((at(out, frame, contact["joint"]) - place).norm(), 1e-6);
+  }
+  // Planted in place it is what it is planted on its way.
+  const RootMotion removed = *out.provenance.removed_root_motion;
+  write("travelling.anim", carried_along(out, 0, removed));
+  for (const char* name : {"out", "travelling"}) {
+    const std::string motion = name;
+    const std::vector<std::string> plant = {motion + ".anim", "--plant", "--contacts",
+                                            "find",           "-o",      motion + "_planted.anim"};
+    ASSERT_EQ(run_here("krok-edit", plant).exit_code, 0);
+  }
+  write("back.anim", carried_along(read("travelling_planted.anim"), 0, {-removed.velocity, 0}));
+  const ToolRun same = run_here("krok-diff", {"out_planted.anim", "back.anim"});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+}
+
+TEST_F(GameLoop, ItsVelocityFollowsLaterSteps) {
+  walk("walk.anim", 0.3);
+  loop("walk.anim");
+  const Vec3 before = read("out.anim").provenance.removed_root_motion->velocity;
+  const auto after = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> all = {"out.anim", "-o", "later.anim"};
+    all.insert(all.end(), options.begin(), options.end());
+    EXPECT_EQ(run_here("krok-edit", all).exit_code, 0);
+    return read("later.anim").provenance.removed_root_motion->velocity;
+  };
+  const double speed = before.norm();
+  EXPECT_LT((after({"--scale", "2"}) - 2 * before).norm(), 1e-9);
+  EXPECT_LT((after({"--playback-speed", "1.5"}) - 1.5 * before).norm(), 1e-9);
+  EXPECT_LT((after({"--turn", "90deg"}) - Vec3(speed, 0, 0)).norm(), 1e-6);
+  EXPECT_LT((after({"--turn", "90deg", "--mirror"}) - Vec3(speed, 0, 0)).norm(), 1e-6)
+      << "mirrored first";
+  EXPECT_LT((after({"--treadmill"}) - before).norm(), 1e-6) << "nothing more to take out";
+}
+
+// Would fail if an engine could not read the speed from the file, or a clip's name not be given.
+TEST_F(GameLoop, ItsSpeedIsInTheAnimationsExtras) {
+  walk("walk.anim", 0);
+  loop("walk.anim");
+  const double speed = read("out.anim").provenance.removed_root_motion->velocity.norm();
+  ASSERT_EQ(run_here("krok-body", {"walk.anim", "-o", "walker.model"}).exit_code, 0);
+  const auto animations = [&](const std::string& file) {
+    return json::parse(get(path(file)))["animations"];
+  };
+  ASSERT_EQ(run_here("krok-skin", {"walker.model", "jog=out.anim", "walk.anim", "--reduce", "0.1mm",
+                                   "-o", "hero.gltf"})
+                .exit_code,
+            0);
+  const json skinned = animations("hero.gltf");
+  EXPECT_EQ(skinned[0]["name"], "jog");
+  EXPECT_EQ(skinned[1]["name"], "walk");
+  EXPECT_NEAR(skinned[0]["extras"]["speed"].get<double>(), speed, 1e-6);
+  EXPECT_NEAR(skinned[0]["extras"]["velocity"][2].get<double>(), speed, 1e-6);
+  EXPECT_EQ(skinned[0]["extras"]["turnRate"], 0);
+  EXPECT_FALSE(skinned[1]["extras"].contains("speed"));
+  ASSERT_EQ(run_here("krok-export", {"out.anim", "-o", "out.gltf"}).exit_code, 0);
+  EXPECT_NEAR(animations("out.gltf")[0]["extras"]["speed"].get<double>(), speed, 1e-6);
+  // A file whose own name has the sign is a file.
+  std::filesystem::copy(path("walk.anim"), path("a=b.anim"));
+  ASSERT_EQ(run_here("krok-skin", {"walker.model", "a=b.anim", "-o", "odd.gltf"}).exit_code, 0);
+  EXPECT_EQ(animations("odd.gltf")[0]["name"], "a=b");
+}
+
+// A walk in a circle is straightened; its turning is what an engine does.
+TEST_F(GameLoop, TurningIsTakenOutWithItsRate) {
+  walk("circle.anim", 0, 25 * kRadiansPerDegree);
+  loop("circle.anim");
+  const Clip out = read("out.anim");
+  // 25 degrees a step, two steps a second.
+  EXPECT_NEAR(out.provenance.removed_root_motion->turn_rate / kRadiansPerDegree, 50, 4);
+  const int end = out.frame_count() - 1;
+  EXPECT_LT((at(out, end, "RightFoot") - at(out, 0, "RightFoot")).norm(), 1e-4);
+}
+
+}  // namespace
+}  // namespace krok::test
