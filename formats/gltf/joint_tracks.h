@@ -38,10 +38,10 @@ struct JointTrack {
 };
 
 struct JointTracks {
-  std::vector<float> times;                       // [frames], seconds, strictly increasing from 0
-  double rate = 0;                                // of the frames
+  std::vector<float> times;  // [frames], seconds, strictly increasing from 0
+  double rate = 0;           // of the frames
   std::optional<RootMotion> removed_root_motion = {};  // of a motion in place, see Provenance
-  std::vector<JointTrack> joints;                 // [joints]
+  std::vector<JointTrack> joints;                      // [joints]
 
   bool are_stretched() const;  // whether a joint has scales
 };

@@ -40,8 +40,8 @@ struct MotionSummary {
   Skeleton skeleton;
   double rate = 30.0;  // frames per second
   int frame_count = 0;
-  double duration = 0;                            // seconds
-  std::vector<std::string> conversions;           // those of reading a capture
+  double duration = 0;                                 // seconds
+  std::vector<std::string> conversions;                // those of reading a capture
   std::optional<RootMotion> removed_root_motion = {};  // of a motion in place, see Provenance
 };
 
