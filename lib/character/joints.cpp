@@ -145,6 +145,7 @@ class Chooser {
   void take_bare_nodes();
   void leave_stretches_out();
   bool link(Joints& joints) const;
+  void keep_still_meshes(Joints& joints) const;
   Result<Joints> order_joints();
   std::string skin_label(int skin) const {
     return label("skin", skin, scene_.skins[at(skin)].name);
@@ -436,7 +437,23 @@ bool Chooser::link(Joints& joints) const {
     int& joint = joints.node_to_joint[at(node)];
     if (joint < 0 && parent >= 0) joint = joints.node_to_joint[at(parent)];
   }
+  keep_still_meshes(joints);
   return true;
+}
+
+// A root that never moves holds the meshes beside the skeleton that do not move either.
+void Chooser::keep_still_meshes(Joints& joints) const {
+  std::vector<char> moves = below_.own_moved;  // with the nodes above
+  for (const int node : order_) {
+    const int parent = scene_.nodes[at(node)].parent;
+    if (parent >= 0) moves[at(node)] |= moves[at(parent)];
+  }
+  if (joints.nodes.empty() || (joints.nodes[0] >= 0 && moves[at(joints.nodes[0])])) return;
+  for (const int node : order_) {
+    const nodes::Node& one = scene_.nodes[at(node)];
+    int& joint = joints.node_to_joint[at(node)];
+    if (joint < 0 && one.mesh >= 0 && one.skin < 0 && !moves[at(node)]) joint = 0;
+  }
 }
 
 Result<Joints> Chooser::order_joints() {

@@ -16,8 +16,9 @@ struct Joints {
   std::vector<int> parents;  // [joints] indices into `nodes`, before children; -1 for the first
   std::vector<int> skins;    // skins of the scene bound to these joints, in scene order
 
-  std::vector<int> node_to_joint;  // [nodes] the joint that moves a node: itself or the nearest
-                                   // ancestor; -1 if none
+  // [nodes] the joint that moves a node: itself or the nearest ancestor; the first joint for meshes
+  // that move as little as it, not at all; -1 if none.
+  std::vector<int> node_to_joint;
 
   int count() const { return static_cast<int>(nodes.size()); }
 };

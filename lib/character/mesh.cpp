@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
 #include "capture/unique_names.h"
 #include "character/mesh_placement_internal.h"
@@ -24,6 +26,10 @@ namespace krok::character {
 using nodes::Scene;
 
 namespace {
+
+// Of a mesh at many nodes a model has a copy for each: more vertices than this are refused if they
+// are so many times the file's.
+constexpr std::size_t kMaxCopied = 1'000'000, kMaxGrowth = 20;
 
 // The first few distinct names, for a message.
 class NameList {
@@ -70,6 +76,7 @@ class MeshBuilder {
       if (is_wanted(instance)) wanted_.push_back(instance);
     }
     report_what_is_left();
+    if (Status status = check_growth(); !status) return status.error();
     look_at_attributes();
     for (const nodes::Instance& instance : wanted_) add(instance);
     if (with_normals_) make_missing_normals(actor_.model);
@@ -88,6 +95,7 @@ class MeshBuilder {
     return placements_.is_skinned(instance);
   }
   bool is_wanted(const nodes::Instance& instance);
+  Status check_growth() const;
   void report_what_is_left();
   void look_at_attributes();
   void add(const nodes::Instance& instance);
@@ -133,6 +141,26 @@ bool MeshBuilder::is_wanted(const nodes::Instance& instance) {
     return false;
   }
   return true;
+}
+
+Status MeshBuilder::check_growth() const {
+  std::size_t copied = 0, in_file = 0;
+  std::set<std::pair<int, int>> seen;
+  for (const nodes::Instance& instance : wanted_) {
+    const std::size_t count = evaluator_.primitive(instance).vertex_count();
+    copied += count;
+    if (seen.emplace(instance.mesh, instance.primitive).second) in_file += count;
+  }
+  if (copied <= kMaxCopied || copied <= kMaxGrowth * in_file) return {};
+  return Error(
+      "scene-instances",
+      fmt::format("{} at {} would be {} vertices, {} times the file's {}: a model has a copy "
+                  "for each node",
+                  counted(std::ssize(seen), "primitive"), counted(std::ssize(wanted_), "place"),
+                  grouped(static_cast<long long>(copied)), copied / in_file,
+                  grouped(static_cast<long long>(in_file))),
+      fmt::format("models over {} vertices may be {} times the file's: leave instances out",
+                  grouped(static_cast<long long>(kMaxCopied)), kMaxGrowth));
 }
 
 void MeshBuilder::report_what_is_left() {

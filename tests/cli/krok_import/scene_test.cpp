@@ -66,6 +66,62 @@ TEST_F(SceneImportTest, AFirstKeyThatIsNotAtZeroStaysWhereItIs) {
   EXPECT_EQ(diff.exit_code, 0) << diff.out << diff.err;
 }
 
+// 1,900 places of one mesh became a file of 282 MB.
+TEST_F(SceneImportTest, AMeshAtManyNodesIsRefusedOverAStatedGrowth) {
+  GlbBuilder builder = rig();
+  auto& json = builder.json;
+  std::vector<float> grid;
+  for (int i = 0; i < 3 * 6000; ++i) grid.push_back(0.01f * static_cast<float>(i % 71));
+  json["meshes"].push_back(
+      {{"primitives", {{{"attributes", {{"POSITION", builder.add(grid, "VEC3")}}}}}}});
+  for (int i = 0; i < 200; ++i) {
+    json["nodes"][1]["children"].push_back(json["nodes"].size());
+    json["nodes"].push_back({{"name", "Leaf" + std::to_string(i)}, {"mesh", 1}});
+  }
+  put_glb("in.glb", builder);
+  const ToolRun run = import({"--save-character", path("a.character")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.err.find("[scene-instances]"), std::string::npos) << run.err;
+  EXPECT_EQ(import({"-o", path("a.anim")}).exit_code, 0);
+}
+
+// A floor beside the actor was left out.
+TEST_F(SceneImportTest, AStillMeshBesideOneThatMovesIsKept) {
+  GlbBuilder builder;
+  const int times = builder.add(std::vector<float>{0, 1}, "SCALAR");
+  builder.json["accessors"][times]["min"] = {0};
+  builder.json["accessors"][times]["max"] = {1};
+  const int moves = builder.add(std::vector<float>{0, 0, 0, 0, 1, 0}, "VEC3");
+  const int corners = builder.add(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
+  builder.json["accessors"][corners]["min"] = {0, 0, 0};
+  builder.json["accessors"][corners]["max"] = {1, 1, 0};
+  const Json primitive = {{"attributes", {{"POSITION", corners}}}};
+  builder.json["meshes"] = {{{"name", "Box"}, {"primitives", {primitive}}},
+                            {{"name", "Floor"}, {"primitives", {primitive}}}};
+  builder.json["nodes"] = {{{"name", "A"}, {"mesh", 0}},
+                           {{"name", "B"}, {"mesh", 0}, {"translation", {2, 0, 0}}},
+                           {{"name", "Ground"}, {"mesh", 1}, {"translation", {0, -1, 0}}}};
+  builder.json["scenes"] = {{{"nodes", {0, 1, 2}}}};
+  builder.json["scene"] = 0;
+  Json channels = Json::array();
+  for (int node : {0, 1}) {
+    channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "translation"}}}});
+  }
+  builder.json["animations"] = {{{"name", "Rise"},
+                                 {"samplers", {{{"input", times}, {"output", moves}}}},
+                                 {"channels", channels}}};
+  put_glb("in.glb", builder);
+  const ToolRun run = import({"-o", path("a.anim"), "--save-character", path("a.character")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err.find("scene-mesh"), std::string::npos) << run.err;
+  ASSERT_EQ(
+      run_tool("krok-skin", {path("a.character"), path("a.anim"), "-o", path("b.glb")}).exit_code,
+      0);
+  const ToolRun diff = run_tool("krok-diff", {path("in.glb"), path("b.glb"), "--match", "order"});
+  EXPECT_NE(diff.out.find("3 meshes"), std::string::npos) << diff.out;
+  EXPECT_EQ(diff.exit_code, 0) << diff.out;
+}
+
 TEST_F(SceneImportTest, MotionAndModelOfAGlb) {
   put_glb("in.glb", rig());
   const ToolRun run = import({"-o", path("a.anim"), "--save-model", path("a.model")});
