@@ -360,29 +360,38 @@ void Finder::report_binds() {
         first_unusable_);
   }
   if (joints_.skins.empty()) return;
-  double widest = 0;
-  int worst = -1;
+  // Joints that are moved, as eyes of another face, count from a two thousandth of the size on.
+  double widest = 0, farthest = 0;
+  int worst = -1, moved = -1;
   for (int j = 1; j < joints_.count(); ++j) {
     const int parent = joints_.parents[at(j)];
     const auto local = [&](const Mat4& above, const Mat4& here) {
       return nodes::rigid_part(above).inverse() * nodes::rigid_part(here);
     };
-    const double angle =
-        angle_between(local(rest(parent), rest(j)).orientation,
-                      local(reference_[at(parent)], reference_[at(j)]).orientation);
+    const Transform shown_there = local(rest(parent), rest(j));
+    const Transform bound_there = local(reference_[at(parent)], reference_[at(j)]);
+    const double angle = angle_between(shown_there.orientation, bound_there.orientation);
+    const double distance = (shown_there.position - bound_there.position).norm();
+    if (distance > std::max(farthest, 5e-4 * size_)) {
+      farthest = distance;
+      moved = j;
+    }
     if (angle > std::max(widest, 0.5 * kRadiansPerDegree)) {
       widest = angle;
       worst = j;
     }
   }
-  if (worst < 0) return;
-  const int node = joints_.nodes[at(worst)];
+  if (worst < 0 && moved < 0) return;
+  const int node = joints_.nodes[at(worst < 0 ? moved : worst)];
   const std::string joint = node < 0 ? std::string() : scene_.nodes[at(node)].name;
   report_joint(
       diagnostics_, Severity::note, "scene-pose",
-      fmt::format("without animation the nodes are not in the bind pose of the mesh ({} is rotated "
-                  "by {} degrees); the bind pose is the reference pose",
-                  shown(joint), readable(widest / kRadiansPerDegree, 3)),
+      fmt::format("without animation the nodes are not in the bind pose of the mesh ({} is {}); "
+                  "the bind pose is the reference pose",
+                  shown(joint),
+                  worst < 0 ? fmt::format("moved by {} of the file's units", readable(farthest, 3))
+                            : fmt::format("rotated by {} degrees",
+                                          readable(widest / kRadiansPerDegree, 3))),
       joint);
 }
 
