@@ -81,16 +81,23 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
   context.depends_on_neighbours(motion_path, base_name(path));
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return std::optional<krok::keys::Sidecar>();
-  auto sidecar = read_keys_file(path, clip, context);
-  if (sidecar) return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
-  const std::string& code = sidecar.error().code;
-  const auto input = InputFile::open(path);
-  const bool replaceable = (code == "keys-joint" || code == "keys-time") && input &&
-                           !krok::keys::has_edits(input->text());
-  if (!replaceable) return std::move(sidecar).error();
-  Diagnostic ignored_file =
-      make_warning("keys-stale", fmt::format("not used, since {}", sidecar.error().message),
-                   "it was not edited by hand; krok-keys rebuilds it");
+  const auto input = context.open_input(path);
+  if (!input) return input.error();
+  auto sidecar = krok::keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
+  const std::string sign = sidecar ? sign_of_another_motion(*sidecar, clip) : std::string();
+  if (sidecar && sign.empty()) return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
+  const bool stale =
+      sidecar || sidecar.error().code == "keys-joint" || sidecar.error().code == "keys-time";
+  if (!stale) return std::move(sidecar).error();
+  if (krok::keys::has_edits(input->text())) {
+    auto edited = read_keys_file(path, clip, context);
+    if (!edited) return std::move(edited).error();
+    return std::optional<krok::keys::Sidecar>(std::move(*edited));
+  }
+  Diagnostic ignored_file = make_warning(
+      "keys-stale",
+      fmt::format("not used, since {}", sidecar ? "it was " + sign : sidecar.error().message),
+      "it was not edited by hand; krok-keys rebuilds it");
   ignored_file.where.file = path;
   context.diagnose(std::move(ignored_file));
   return std::optional<krok::keys::Sidecar>();

@@ -23,7 +23,8 @@ Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& 
                                            ToolContext& context);
 
 // Reads the sidecar of a motion read from `motion_path`; empty if there is none, and with a warning
-// (keys-stale) if it has other joints or times outside the motion, and was not edited by hand.
+// (keys-stale) if it was made for another motion (see read_keys_file(), or other joints, or times
+// outside the motion) and was not edited by hand. One that was is used, or an error.
 Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
                                                             const Clip& clip, ToolContext& context);
 

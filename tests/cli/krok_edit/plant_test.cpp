@@ -58,8 +58,10 @@ TEST_F(KrokEditPlant, KeysOfAnotherMotionAreToldOrLeftOut) {
   EXPECT_EQ(own.err.find("keys-stale"), std::string::npos) << own.err;
   ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--mirror", "-o", "mirrored.anim"}).exit_code, 0);
   std::filesystem::copy_file(path("walk.keys.json"), path("mirrored.keys.json"));
-  const auto mirrored = run_here("krok-edit", {"mirrored.anim", "--plant", "-o", "planted.anim"});
+  const auto mirrored =
+      run_here("krok-edit", {"mirrored.anim", "--plant", "-o", "planted.anim", "--json"});
   EXPECT_THAT(mirrored.err, HasSubstr("keys-stale"));
+  EXPECT_EQ(nlohmann::json::parse(mirrored.out)["result"]["steps"][0]["contacts"], "found");
 
   // Other joints: not used, unless somebody edited it.
   Clip renamed = walk_.clip;
