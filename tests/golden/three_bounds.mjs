@@ -2,7 +2,7 @@
 // something else.
 //
 // Usage: node three_bounds.mjs FILE [--every N] [--tolerance METRES]
-//          [--against OTHER.glb]   the same vertices, shown by three.js from another file: a rig
+//          [--against OTHER.glb]   the same vertices at the same times, shown by three.js from another file: a rig
 //                                  against its bake, say
 //          [--joints TABLE.csv]    frame,time,joint,x,y,z: the joints' world positions; the file
 //                                  must show every joint and frame of the table
@@ -90,8 +90,8 @@ async function main() {
   const other = values.against ? await ThreeScene.open(values.against) : undefined;
   const table = values.joints ? parseTable(values.joints) : undefined;
   const wanted = values.bounds ? JSON.parse(readFileSync(values.bounds, 'utf8')) : undefined;
-  if (other && other.times.length !== scene.times.length) {
-    throw new Error(`${scene.times.length} frames against ${other.times.length}`);
+  if (other && Math.abs(other.times.at(-1) - scene.times.at(-1)) > 1e-3) {
+    throw new Error(`${scene.times.at(-1)} s against ${other.times.at(-1)} s`);
   }
   if (table && table.size !== scene.times.length) {
     throw new Error(`${scene.times.length} frames, the table has ${table.size}`);
@@ -111,7 +111,7 @@ async function main() {
     frames++;
     if (values['write-bounds']) written.push({frame, ...bounds(vertices)});
     if (other) {
-      other.seek(other.times[frame]);
+      other.seek(scene.times[frame]);
       const {distance, at} = farthest(vertices, other.vertices());
       worst.add(distance, `vertex ${at}, frame ${frame}`);
     }
