@@ -55,7 +55,7 @@ struct Pace {
 
 // Steps over the range of the examples' lengths, a centimetre apart.
 std::vector<Pace> paces_of(const StepLibrary& steps) {
-  constexpr double kSpacing = 0.01, kNear = 0.02;  // metres
+  constexpr double kPaceSpacing = 0.01, kAlike = 0.02;  // metres
   std::vector<Pace> examples;
   for (std::size_t i = 0; i < steps.found_steps().size(); ++i) {
     const std::vector<double>& times = steps.library().examples[i].keytimes;
@@ -64,12 +64,12 @@ std::vector<Pace> paces_of(const StepLibrary& steps) {
   }
   const auto [least, most] = std::ranges::minmax(examples, {}, &Pace::length);
   std::vector<Pace> paces;
-  const int count = static_cast<int>((most.length - least.length) / kSpacing);
+  const int count = static_cast<int>((most.length - least.length) / kPaceSpacing);
   for (int i = 0; i <= count; ++i) {
-    Pace pace{least.length + i * kSpacing, 0};
+    Pace pace{least.length + i * kPaceSpacing, 0};
     double weights = 0;
     for (const Pace& example : examples) {
-      const double apart = (example.length - pace.length) / kNear;
+      const double apart = (example.length - pace.length) / kAlike;
       const double weight = 1 / ((1 + apart * apart) * (1 + apart * apart));
       pace.duration += weight * example.duration;
       weights += weight;
