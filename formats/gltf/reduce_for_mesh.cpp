@@ -112,7 +112,7 @@ MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const Tr
                      const JointTracks& b_tracks, int jobs) {
   return mesh_error(a, a_tracks, shown({b.model, palettes_of(b.model, b_tracks), shape_of(b)}),
                     jobs);
-}
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): a std::function frees what it holds
 
 MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const ShownMesh& b,
                      int jobs) {
@@ -121,7 +121,7 @@ MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const Sh
   return krok::mesh_error(shown({a.model, palettes_of(a.model, a_tracks), shape_of(a)}), b,
                           a.model.vertex_count(), std::max(1, 2 * static_cast<int>(frames) - 1),
                           jobs);
-}
+}  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): the same
 
 Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& kept,
                                       const MeshReduceOptions& options, int jobs,
