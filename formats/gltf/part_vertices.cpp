@@ -158,8 +158,9 @@ int Document::add_displacements(std::vector<Vec3f> values, bool bounds) {
 
 int Document::add_sparse(std::vector<Vec3f> values, bool bounds, int component) {
   const auto moved = std::ranges::count_if(values, [](const Vec3f& one) { return !one.isZero(0); });
-  const std::ptrdiff_t bytes =
-      3 * tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component));
+  const std::ptrdiff_t value =
+      tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(component));
+  const std::ptrdiff_t bytes = 3 * value;
   constexpr int kIndex = sizeof(std::uint32_t);
   const std::ptrdiff_t sparse = bytes + kIndex, dense = (bytes + 3) / 4 * 4;
   if ((options_.compressed && options_.binary) || 2 * moved * sparse > std::ssize(values) * dense) {
