@@ -379,7 +379,8 @@ TEST(Promises, AFileReadAndWrittenIsTheFile) {
 // way of another.
 TEST(Promises, DifferencesAreAMetric) {
   Dice dice(5);
-  for (const auto& [name, clip] : test::promised_motions()) {
+  for (const auto& [name, motion] : test::promised_motions()) {
+    const Clip& clip = motion;  // clang captures no structured bindings
     const auto nudged = [&](double size) {
       Clip other = clip;
       for (Vec3f& position : other.positions) position += dice.vector(size).cast<float>();
