@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 
 #include "compare/surface_fit_internal.h"
 #include "core/numbers.h"
@@ -178,12 +177,10 @@ void compare_areas(SceneComparison& comparison, const SurfaceGroup& group,
     });
   };
   if (is_cloud(first, group.first) || is_cloud(second, group.second)) return;
-  const auto names = [](const std::map<std::string, MaterialArea>& areas) {
-    return std::views::keys(areas);
-  };
+  const auto name_of = [](const auto& area) -> const std::string& { return area.first; };
   auto a = areas_of(first, group.first, true), b = areas_of(second, group.second, true);
   // Materials of other names are compared elsewhere; their surfaces then are as a whole.
-  if (!std::ranges::equal(names(a), names(b))) {
+  if (!std::ranges::equal(a, b, {}, name_of, name_of)) {
     a = areas_of(first, group.first, false);
     b = areas_of(second, group.second, false);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <vector>
 
 #include "contacts/legs.h"
@@ -42,10 +41,9 @@ void add_flat_frames(const ClipContacts& given, FootSide side, int joint, std::v
 // Whether contacts are at different heights, as on a slope, where a flat foot is tilted.
 bool climbs(const ClipContacts& given) {
   if (given.contacts == nullptr || given.contacts->stays.empty()) return false;
-  const auto [low, high] =
-      std::ranges::minmax(given.contacts->stays |
-                          std::views::transform([](const Stay& stay) { return stay.place.y(); }));
-  return high - low > kClimb * given.contacts->leg_length;
+  const auto [low, high] = std::ranges::minmax_element(
+      given.contacts->stays, {}, [](const Stay& stay) { return stay.place.y(); });
+  return high->place.y() - low->place.y() > kClimb * given.contacts->leg_length;
 }
 
 Vec3 level(const Vec3& v, const Vec3& up) {

@@ -52,7 +52,7 @@ TEST(PackedMotion, LeavesOutWhatDoesNotMove) {
   Json item;
   Blob blob;
   pack_motion(clip, item, blob);
-  EXPECT_EQ(item["moving"], Json({0}));  // bones keep their length, the root walks
+  EXPECT_EQ(item["moving"], Json::array({0}));  // bones keep their length, the root walks
   EXPECT_EQ(item["turning"].size(), static_cast<std::size_t>(clip.joint_count()));
 
   for (int f = 1; f < clip.frame_count(); ++f) {

@@ -76,7 +76,7 @@ TEST(CameraInGltf, AloneIsAWholeFile) {
   EXPECT_EQ(lens["aspectRatio"], 1.5);
   EXPECT_EQ(lens["znear"], 0.2);
   EXPECT_FALSE(lens.contains("zfar"));
-  EXPECT_EQ(glb.json["scenes"][0]["nodes"], nlohmann::json({0}));
+  EXPECT_EQ(glb.json["scenes"][0]["nodes"], nlohmann::json::array({0}));
   // Frame by frame what the track has, rotations in one hemisphere.
   const auto& animation = glb.json["animations"][0];
   for (const auto& channel : animation["channels"]) {

@@ -64,7 +64,7 @@ std::vector<std::array<Corner, 3>> triangles_of(const Model& model, const MorphS
                     model.influence_weights[v * places]};
     }
     // The order round the triangle is its front; where it begins is not.
-    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
     all.push_back(corners);
   }
   std::ranges::sort(all);
