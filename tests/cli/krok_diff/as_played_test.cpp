@@ -408,8 +408,8 @@ TEST_F(KrokDiffAsPlayed, InstancesAreMeshesOfTheirOwn) {
     const int places = builder.add(std::vector<float>{0, 0, 0, 0, height, 0}, "VEC3");
     builder.json["nodes"][0]["extensions"] = {
         {"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}};
-    builder.json["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
-    builder.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    builder.json["extensionsUsed"] = nlohmann::json::array({"EXT_mesh_gpu_instancing"});
+    builder.json["extensionsRequired"] = nlohmann::json::array({"EXT_mesh_gpu_instancing"});
     return builder;
   };
   write("nodes.glb", nodes);

@@ -27,10 +27,10 @@ class CharacterImportTest : public CliTest {
     GlbBuilder builder = rig();
     auto& json = builder.json;
     json["nodes"].push_back({{"name", "Eye.L"}, {"translation", {0.1, 0.2, 0.3}}});
-    json["nodes"][2]["children"] = {3};
+    json["nodes"][2]["children"] = nlohmann::json::array({3});
     auto& mesh = json["meshes"][0];
     mesh["extras"] = {{"targetNames", {"Nose"}}};
-    mesh["weights"] = {0.5};
+    mesh["weights"] = nlohmann::json::array({0.5});
     auto& first = mesh["primitives"][0];
     first["attributes"]["TEXCOORD_0"] =
         builder.add(std::vector<float>{0, 1, 1, 1, 1, 0, 0, 0}, "VEC2");

@@ -33,13 +33,13 @@ class SceneImportTest : public CliTest {
                         {"type", "perspective"},
                         {"perspective", {{"yfov", 0.7}, {"znear", 1}}}}};
     json["nodes"].push_back({{"name", "Shot"}, {"camera", 0}, {"translation", {0, 0, 2}}});
-    json["nodes"][2]["children"] = {3};
+    json["nodes"][2]["children"] = nlohmann::json::array({3});
     auto& primitive = json["meshes"][0]["primitives"][0];
     primitive["targets"] = {
         {{"POSITION",
           builder.add(std::vector<float>{0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3")}}};
     json["meshes"][0]["extras"] = {{"targetNames", {"Nose"}}};
-    json["meshes"][0]["weights"] = {0.5};
+    json["meshes"][0]["weights"] = nlohmann::json::array({0.5});
     return builder;
   }
 
@@ -53,8 +53,8 @@ class SceneImportTest : public CliTest {
 TEST_F(SceneImportTest, AFirstKeyThatIsNotAtZeroStaysWhereItIs) {
   GlbBuilder builder = rig();
   const int late = builder.add(std::vector<float>{0.5f, 1, 1.5f}, "SCALAR");
-  builder.json["accessors"][late]["min"] = {0.5};
-  builder.json["accessors"][late]["max"] = {1.5};
+  builder.json["accessors"][late]["min"] = nlohmann::json::array({0.5});
+  builder.json["accessors"][late]["max"] = nlohmann::json::array({1.5});
   for (Json& sampler : builder.json["animations"][0]["samplers"]) sampler["input"] = late;
   put_glb("in.glb", builder);
   const ToolRun run = import({"-o", path("a.anim"), "--save-character", path("a.character")});
@@ -89,8 +89,8 @@ TEST_F(SceneImportTest, AMeshAtManyNodesIsRefusedOverAStatedGrowth) {
 TEST_F(SceneImportTest, AStillMeshBesideOneThatMovesIsKept) {
   GlbBuilder builder;
   const int times = builder.add(std::vector<float>{0, 1}, "SCALAR");
-  builder.json["accessors"][times]["min"] = {0};
-  builder.json["accessors"][times]["max"] = {1};
+  builder.json["accessors"][times]["min"] = nlohmann::json::array({0});
+  builder.json["accessors"][times]["max"] = nlohmann::json::array({1});
   const int moves = builder.add(std::vector<float>{0, 0, 0, 0, 1, 0}, "VEC3");
   const int corners = builder.add(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
   builder.json["accessors"][corners]["min"] = {0, 0, 0};

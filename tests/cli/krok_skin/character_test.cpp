@@ -21,7 +21,7 @@ TEST_F(SkinCharacter, ARigHasItsMaterialsEyesAndExpressions) {
   EXPECT_EQ(made["materials"][0]["name"], "Skin");
   EXPECT_EQ(made["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"], 0.25);
   EXPECT_EQ(made["images"].size(), 1u);
-  EXPECT_EQ(made["meshes"][0]["extras"]["targetNames"], json({"bow"}));
+  EXPECT_EQ(made["meshes"][0]["extras"]["targetNames"], json::array({"bow"}));
   // The eye hangs on the head, where it is in the reference pose: 1.8 m up in all.
   bool found = false;
   for (const json& node : made["nodes"]) {

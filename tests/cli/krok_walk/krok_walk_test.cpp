@@ -108,8 +108,8 @@ TEST_F(KrokWalk, FollowsAJointAndANode) {
                          {{"name", "lamp"}},
                          {{"name", "cart"}}};
   const int times = scene.add(std::vector<float>{0, 4, 8}, "SCALAR");
-  scene.json["accessors"][static_cast<std::size_t>(times)]["min"] = {0};
-  scene.json["accessors"][static_cast<std::size_t>(times)]["max"] = {8};
+  scene.json["accessors"][static_cast<std::size_t>(times)]["min"] = nlohmann::json::array({0});
+  scene.json["accessors"][static_cast<std::size_t>(times)]["max"] = nlohmann::json::array({8});
   const int places = scene.add(std::vector<float>{0, 1, 0, 0, 1, 3, 2, 1, 5}, "VEC3");
   scene.json["animations"] = {
       {{"samplers", {{{"input", times}, {"output", places}}}},

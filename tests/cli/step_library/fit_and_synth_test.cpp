@@ -198,7 +198,7 @@ TEST_F(StepLibrary, ALibraryWithOtherPointsThanItSaysIsNotGoneOnWith) {
            [](json& report) { report["rounds"][0]["inserted"] = 1; },
            [](json& report) { report["rounds"][0]["inserted"] = -1; },
            [](json& report) {  // as many, but more than a round inserts
-             report["rounds"] = {report["rounds"][0]};
+             report["rounds"] = nlohmann::json::array({report["rounds"][0]});
              report["rounds"][0]["inserted"] = report["inserted"];
            },
            [](json& report) { report["rounds"][0]["refused"] = 1; },

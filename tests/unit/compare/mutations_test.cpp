@@ -487,7 +487,7 @@ const std::vector<Mutation> kChanges = {
                 }),
     json_change("the face is hidden",
                 [](File& file) {
-                  file.json["extensionsUsed"] = {"KHR_node_visibility"};
+                  file.json["extensionsUsed"] = nlohmann::json::array({"KHR_node_visibility"});
                   file.node(kFace)["extensions"] = {{"KHR_node_visibility", {{"visible", false}}}};
                 }),
     json_change("the hat has the mesh of the body",
@@ -531,18 +531,18 @@ const std::vector<Mutation> kChanges = {
                 }),
     json_change("a texture is shifted",
                 [](File& file) {
-                  file.json["extensionsUsed"] = {"KHR_texture_transform"};
+                  file.json["extensionsUsed"] = nlohmann::json::array({"KHR_texture_transform"});
                   file.material(0)["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] = {
                       {"KHR_texture_transform", {{"offset", {0.1, 0}}}}};
                 }),
     json_change("unlit",
                 [](File& file) {
-                  file.json["extensionsUsed"] = {"KHR_materials_unlit"};
+                  file.json["extensionsUsed"] = nlohmann::json::array({"KHR_materials_unlit"});
                   file.material(0)["extensions"] = {{"KHR_materials_unlit", Json::object()}};
                 }),
     json_change("a coat",
                 [](File& file) {
-                  file.json["extensionsUsed"] = {"KHR_materials_clearcoat"};
+                  file.json["extensionsUsed"] = nlohmann::json::array({"KHR_materials_clearcoat"});
                   file.material(0)["extensions"] = {
                       {"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}}};
                 }),

@@ -94,7 +94,7 @@ TEST(GltfMaterials, HoldEveryValue) {
   EXPECT_EQ(cloth["alphaMode"], "BLEND");
   EXPECT_FALSE(cloth.contains("alphaCutoff"));
   EXPECT_TRUE(cloth["extensions"].contains("KHR_materials_unlit"));
-  EXPECT_EQ(glb.json["extensionsUsed"], nlohmann::json({"KHR_materials_unlit"}));
+  EXPECT_EQ(glb.json["extensionsUsed"], nlohmann::json::array({"KHR_materials_unlit"}));
   EXPECT_FALSE(glb.json.contains("extensionsRequired"));
 }
 

@@ -79,7 +79,8 @@ GlbBuilder meshopt_packed(bool filters) {
   GlbBuilder to;
   to.json = from.json;
   to.json["bufferViews"] = Json::array();
-  to.json["extensionsUsed"] = to.json["extensionsRequired"] = {"EXT_meshopt_compression"};
+  to.json["extensionsUsed"] = to.json["extensionsRequired"] =
+      nlohmann::json::array({"EXT_meshopt_compression"});
   std::size_t unpacked = 0;
   const Sheet sheet;
   for (std::size_t v = 0; v < from.json["bufferViews"].size(); ++v) {
@@ -187,7 +188,8 @@ GlbBuilder draco_packed() {
   to.json["bufferViews"] = Json::array();
   for (Json& accessor : to.json["accessors"]) accessor.erase("bufferView");
   const int view = to.add_view(std::as_bytes(std::span(buffer.data(), buffer.size())));
-  to.json["extensionsUsed"] = to.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  to.json["extensionsUsed"] = to.json["extensionsRequired"] =
+      nlohmann::json::array({"KHR_draco_mesh_compression"});
   to.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = {
       {"bufferView", view}, {"attributes", ids}};
   return to;
@@ -298,7 +300,8 @@ TEST(GltfCompression, UndoesTheFilterOfColours) {
 // Under its later name, and with a buffer that nothing marks as one without data.
 TEST(GltfCompression, MeshoptHasTwoNames) {
   GlbBuilder builder = meshopt_packed(false);
-  builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {"KHR_meshopt_compression"};
+  builder.json["extensionsUsed"] = builder.json["extensionsRequired"] =
+      nlohmann::json::array({"KHR_meshopt_compression"});
   for (Json& view : builder.json["bufferViews"]) {
     const Json packed = view["extensions"]["EXT_meshopt_compression"];
     view["extensions"] = {{"KHR_meshopt_compression", packed}};

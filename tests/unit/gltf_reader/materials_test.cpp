@@ -48,7 +48,7 @@ class GltfMaterialReader : public test::FolderTest {
     builder_.json["materials"] = {
         {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
     builder_.json["textures"] = {{{"source", 0}}};
-    builder_.json["images"] = {image};
+    builder_.json["images"] = nlohmann::json::array({image});
     scene_ = read();
     return scene_.materials.at(0).base_color_texture;
   }
@@ -64,7 +64,7 @@ class GltfMaterialReader : public test::FolderTest {
 };
 
 TEST_F(GltfMaterialReader, DefaultsAreThoseOfTheStandard) {
-  builder_.json["materials"] = {nlohmann::ordered_json::object()};
+  builder_.json["materials"] = nlohmann::json::array({nlohmann::ordered_json::object()});
   const auto scene = read();
   ASSERT_EQ(scene.materials.size(), 1u);
   const Material& material = scene.materials[0];

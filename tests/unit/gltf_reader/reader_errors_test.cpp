@@ -34,13 +34,18 @@ Json& accessor(Json& json, const char* attribute) {
 
 const std::vector<Fault>& faults() {
   static const std::vector<Fault> list = {
-      {"node_own_child", "gltf-node", [](Json& j) { j["nodes"][2]["children"] = {2}; }},
-      {"node_cycle", "gltf-node", [](Json& j) { j["nodes"][2]["children"] = {1}; }},
-      {"node_two_parents", "gltf-node", [](Json& j) { j["nodes"][0]["children"] = {2}; }},
-      {"node_child_missing", "gltf-node", [](Json& j) { j["nodes"][2]["children"] = {9}; }},
-      {"node_child_negative", "gltf-structure", [](Json& j) { j["nodes"][2]["children"] = {-7}; }},
+      {"node_own_child", "gltf-node",
+       [](Json& j) { j["nodes"][2]["children"] = nlohmann::json::array({2}); }},
+      {"node_cycle", "gltf-node",
+       [](Json& j) { j["nodes"][2]["children"] = nlohmann::json::array({1}); }},
+      {"node_two_parents", "gltf-node",
+       [](Json& j) { j["nodes"][0]["children"] = nlohmann::json::array({2}); }},
+      {"node_child_missing", "gltf-node",
+       [](Json& j) { j["nodes"][2]["children"] = nlohmann::json::array({9}); }},
+      {"node_child_negative", "gltf-structure",
+       [](Json& j) { j["nodes"][2]["children"] = nlohmann::json::array({-7}); }},
       {"node_child_wraps", "gltf-structure",
-       [](Json& j) { j["nodes"][1]["children"] = {4294967298u}; }},
+       [](Json& j) { j["nodes"][1]["children"] = nlohmann::json::array({4294967298u}); }},
       {"node_mesh_missing", "gltf-node", [](Json& j) { j["nodes"][0]["mesh"] = 1; }},
       {"node_skin_missing", "gltf-node", [](Json& j) { j["nodes"][0]["skin"] = 3; }},
       {"node_matrix_short", "gltf-node",
@@ -77,7 +82,8 @@ const std::vector<Fault>& faults() {
            accessor(j, name)["count"] = 3;
          }
        }},
-      {"mesh_weights", "gltf-mesh", [](Json& j) { j["meshes"][0]["weights"] = {1}; }},
+      {"mesh_weights", "gltf-mesh",
+       [](Json& j) { j["meshes"][0]["weights"] = nlohmann::json::array({1}); }},
       {"accessor_missing", "gltf-accessor",
        [](Json& j) { j["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; }},
       {"accessor_negative", "gltf-structure",
@@ -129,7 +135,8 @@ const std::vector<Fault>& faults() {
        [](Json& j) {
          j["buffers"] = {{{"byteLength", 100000}}};
        }},
-      {"buffer_length_missing", "gltf-structure", [](Json& j) { j["buffers"] = {Json::object()}; }},
+      {"buffer_length_missing", "gltf-structure",
+       [](Json& j) { j["buffers"] = nlohmann::json::array({Json::object()}); }},
       {"buffer_second_without_data", "gltf-buffer",
        [](Json& j) {
          j["buffers"] = {{{"byteLength", 4}}, {{"byteLength", 4}}};
@@ -148,7 +155,8 @@ const std::vector<Fault>& faults() {
        }},
       {"skin_without_joints", "gltf-skin",
        [](Json& j) { j["skins"][0]["joints"] = Json::array(); }},
-      {"skin_too_small", "gltf-skin", [](Json& j) { j["skins"][0]["joints"] = {1}; }},
+      {"skin_too_small", "gltf-skin",
+       [](Json& j) { j["skins"][0]["joints"] = nlohmann::json::array({1}); }},
       {"skin_too_few_matrices", "gltf-skin",
        [](Json& j) {
          j["skins"][0]["joints"] = {1, 2, 0};
@@ -166,7 +174,7 @@ const std::vector<Fault>& faults() {
          j["animations"][0]["channels"][0]["target"] = {{"node", 0}, {"path", "weights"}};
        }},
       {"extension_required", "gltf-extension",
-       [](Json& j) { j["extensionsRequired"] = {"VENDOR_other_geometry"}; }},
+       [](Json& j) { j["extensionsRequired"] = nlohmann::json::array({"VENDOR_other_geometry"}); }},
       {"version_1", "gltf-version", [](Json& j) { j["asset"]["version"] = "1.0"; }},
       {"asset_missing", "gltf-version", [](Json& j) { j.erase("asset"); }},
       {"buffers_number", "gltf-structure", [](Json& j) { j["buffers"] = 3; }},

@@ -363,7 +363,7 @@ TEST(GltfReader, VerticesWithoutWeightsHangOnTheirFirstJointWithAWarning) {
 
 TEST(GltfReader, ANodeThatIsNoRootIsShownWhereItsParentsPutIt) {
   GlbBuilder builder = test::rig();
-  builder.json["scenes"][0]["nodes"] = {2};
+  builder.json["scenes"][0]["nodes"] = nlohmann::json::array({2});
   const nodes::Scene asset = read_good(builder);
   EXPECT_FALSE(asset.nodes[1].in_scene);
   EXPECT_TRUE(asset.nodes[2].in_scene);
@@ -412,7 +412,7 @@ TEST(GltfReader, AnimationPointersToNodesAndFieldsOfViewAreRead) {
       pointer(9, "/cameras/0/perspective/yfov")};
   builder.json["cameras"] = {
       {{"type", "perspective"}, {"perspective", {{"yfov", 0.8}, {"znear", 1}}}}};
-  builder.json["extensionsRequired"] = {"KHR_animation_pointer"};
+  builder.json["extensionsRequired"] = nlohmann::json::array({"KHR_animation_pointer"});
   const nodes::Scene asset = read_good(builder);
   ASSERT_EQ(asset.animations.at(0).channels.size(), 1u);
   EXPECT_EQ(asset.animations[0].channels[0].node, 2);

@@ -135,7 +135,7 @@ TEST(GltfEvaluate, MultipliesNodesDownTheTree) {
   builder.json["nodes"][0]["scale"] = {2, 3, 4};
   builder.json["nodes"].push_back(
       {{"children", {0}}, {"matrix", {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 10, 20, 30, 1}}});
-  builder.json["scenes"][0]["nodes"] = {1};
+  builder.json["scenes"][0]["nodes"] = nlohmann::json::array({1});
   const Played played = play(builder, -1, 0);
   // (1, 1, 0) scaled is (2, 3, 0), a quarter turn about Z makes it (-3, 2, 0).
   expect_near(played.state.positions.at(0)[2], Vec3(7, 22, 30), 1e-12);
@@ -249,7 +249,7 @@ TEST(GltfEvaluate, ShowsAMeshAtEachOfItsNodesOfTheSceneOnly) {
 
 TEST(GltfEvaluate, FindsJointsWithTheirNearestJointAbove) {
   GlbBuilder builder = test::rig();
-  builder.json["nodes"][1]["children"] = {3};
+  builder.json["nodes"][1]["children"] = nlohmann::json::array({3});
   builder.json["nodes"].push_back({{"name", "Between"}, {"children", {2}}});
   const auto asset = gltf::read(builder.glb());
   ASSERT_TRUE(asset.ok());
