@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "core/index.h"
@@ -293,10 +294,21 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
   for (std::size_t i = 0; i < frames.poses.size(); ++i) {
     const double time = parts_.time_of(frames.first + static_cast<int>(i));
     auto& target = frames.target.emplace_back();
+    // A foot that has left the ground in flight goes no further from the hip than the leg reaches:
+    // the pelvis need not be lowered for it.
+    const auto within_reach = [&](FootPose foot, FootSide side) {
+      const Vec3& hip = frames.hips[i][index_of(side)];
+      const Vec3 way = foot.foot.position - hip;
+      const Vec3 usual = frames.blend[i][index_of(side)].foot.position - hip;
+      const double longest = longest_reach(parts_.walker.leg(side), usual.norm());
+      if (way.norm() > longest) foot.foot.position = hip + longest / way.norm() * way;
+      return foot;
+    };
     const FootPose& stands = frames.blend[i][index_of(standing)];
-    target[index_of(standing)] = next && time > next_leaves
-                                     ? next->at(time, with_signs(step + 1, stands))
-                                     : stance(step + 1).at(time, stands);
+    target[index_of(standing)] =
+        next && time > next_leaves
+            ? within_reach(next->at(time, with_signs(step + 1, stands)), standing)
+            : stance(step + 1).at(time, stands);
     const FootPose blend = with_signs(step, frames.blend[i][index_of(moving)]);
     FootPose& foot = target[index_of(moving)];
     if (time <= leaves) {
@@ -305,6 +317,10 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
       foot = stance(step + 2).at(time, blend);
     } else {
       foot = swing.at(time, blend);
+      const bool was_in_flight = leaves <= now.start;
+      if (was_in_flight && time < std::midpoint(leaves, now.strike)) {
+        foot = within_reach(foot, moving);
+      }
       const auto points = sole_points(parts_.leg_of(step), foot);
       // Heel and ball: the tip of the toes rolls over the ground as the foot leaves.
       for (const Vec3& point : std::span(points).first(2)) {
