@@ -242,7 +242,8 @@ Gap BodyMotion::gap_after(std::size_t step) const {
   const double strange = smoother_step((apart - kUsualGap) / kUsualGap);
   gap.root_share = (1 - strange) * gap.share;
   gap.after += strange * (after.strike - after.start - gap.after);
-  // Runners' hips are nearer to the foot that strikes: both steps make room for the difference.
+  // At a strike, the hips are nearer to the striking foot in a run than in a walk: the correction
+  // is spread over both steps, so that their speed changes gradually.
   if (before.runs() != after.runs() && gap.share == 0.5) {
     gap.before = before.strike - before.start;
     gap.after = after.strike - after.start;

@@ -304,11 +304,11 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
       if (way.norm() > longest) foot.foot.position = hip + longest / way.norm() * way;
       return foot;
     };
-    const FootPose& stands = frames.blend[i][index_of(standing)];
+    const FootPose& stance_blend = frames.blend[i][index_of(standing)];
     target[index_of(standing)] =
         next && time > next_leaves
-            ? within_reach(next->at(time, with_signs(step + 1, stands)), standing)
-            : stance(step + 1).at(time, stands);
+            ? within_reach(next->at(time, with_signs(step + 1, stance_blend)), standing)
+            : stance(step + 1).at(time, stance_blend);
     const FootPose blend = with_signs(step, frames.blend[i][index_of(moving)]);
     FootPose& foot = target[index_of(moving)];
     if (time <= leaves) {

@@ -82,7 +82,7 @@ TEST(LongTakes, ManyPartsHaveTheSameSteps) {
   }
 }
 
-// One who stands for longer than a part with its margins stands once.
+// A foot contact that is longer than a part with its margins is found once.
 TEST(LongTakes, AStanceOverManyPartsIsOneContact) {
   const TakeInParts take(60);
   Clip still = take.clip;

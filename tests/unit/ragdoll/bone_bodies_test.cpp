@@ -138,7 +138,7 @@ TEST(BoneBodies, FallsRestInFiveSecondsWithoutGaps) {
     FallOptions options;
     options.duration = 6;
     options.surroundings.level = true;
-    // From what stands in balance nothing falls.
+    // A body in exact balance would not fall.
     options.pushes = {{0, Vec3(0.5, 0, 0.2) * bodies->front().mass, 0}};
     const auto fall =
         simulate_fall(clip, roles, *bodies, cone_limits(clip.skeleton, *bodies), options);
