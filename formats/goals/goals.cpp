@@ -258,7 +258,13 @@ struct File {
 int find_joint(std::string_view name, const Skeleton& skeleton, const RoleMap& roles) {
   const int joint = skeleton.find(name);
   if (joint >= 0) return joint;
-  const auto role = parse_role(name);
+  std::string words;  // RightHand is right_hand
+  for (const char c : name) {
+    const bool capital = c >= 'A' && c <= 'Z';
+    if (capital && !words.empty() && words.back() != '_') words += '_';
+    words += capital ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  const auto role = parse_role(words);
   return role ? roles.joint(*role) : -1;
 }
 

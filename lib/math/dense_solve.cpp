@@ -14,6 +14,10 @@ Eigen::MatrixXd inverse_full_pivoting(const Eigen::MatrixXd& a) {
   return a.fullPivLu().inverse();
 }
 
+Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return a.partialPivLu().solve(b);
+}
+
 Eigen::VectorXd solve_minimum_norm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
   return a.completeOrthogonalDecomposition().solve(b);
 }

@@ -15,6 +15,10 @@ namespace krok {
 Eigen::VectorXd solve_full_pivoting(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd inverse_full_pivoting(const Eigen::MatrixXd& a);
 
+// Solves a x = b for a square matrix, column by column, by LU with partial pivoting: many times
+// faster than full pivoting. Not finite, or off, if `a` is singular.
+Eigen::MatrixXd solve_square(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
 // The minimum-norm least-squares solution of a x = b, for any shape and rank.
 Eigen::VectorXd solve_minimum_norm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 

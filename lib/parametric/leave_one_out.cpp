@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "parametric/bounds.h"
 #include "parametric/left_out_internal.h"
+#include "rbf/point_weights.h"
 #include "rbf/weight_evaluator.h"
 
 namespace krok::parametric {
@@ -25,21 +26,21 @@ Gap gap_of(const Library& library, std::size_t index) {
   Gap gap;
   gap.wanted = detail::example_poses(library, index);
   gap.point = library.examples[index].parameters;
-  gap.others = library;
-  gap.others.examples.erase(gap.others.examples.begin() + static_cast<std::ptrdiff_t>(index));
+  std::vector<Example> others;
+  for (std::size_t i = 0; i < library.examples.size(); ++i) {
+    if (i != index) others.push_back(library.examples[i]);
+  }
+  gap.others = library.with(std::move(others));
   gap.packed = pack_examples(gap.others);
   return gap;
 }
 
 // Distance of the motion by the weight function of the others.
 std::optional<double> weighted_distance(const Gap& gap, rbf::Kernel kernel, double smoothing) {
-  const auto function = detail::weights_of(gap.others, kernel, smoothing);
-  if (!function) return std::nullopt;
-  const auto evaluator = rbf::WeightEvaluator::create(*function);
-  if (!evaluator) return std::nullopt;
-  std::vector<double> weights(gap.others.examples.size());
-  evaluator->weights(gap.point, weights);
-  return detail::distance(gap.others, gap.packed, weights, gap.wanted);
+  const auto weights = rbf::point_weights(
+      gap.others.dimensions(), detail::parameters_of(gap.others), kernel, smoothing, gap.point);
+  if (!weights) return std::nullopt;
+  return detail::distance(gap.others, gap.packed, *weights, gap.wanted);
 }
 
 HeldOut hold_out(const Library& library, std::size_t index, rbf::Kernel kernel, double smoothing) {
@@ -111,37 +112,6 @@ Result<std::vector<double>> distances_to_examples(const Library& library,
             .value_or(std::numeric_limits<double>::infinity()));
   }
   return distances;
-}
-
-Result<std::vector<SmoothingTrial>> try_smoothings(const Library& library, rbf::Kernel kernel,
-                                                   std::span<const double> smoothings, int jobs) {
-  if (Status status = check(library); !status) return status.error();
-  for (const double smoothing : smoothings) {
-    if (const auto all = detail::weights_of(library, kernel, smoothing); !all) return all.error();
-  }
-  const std::size_t tried = smoothings.size();
-  std::vector<std::optional<double>> distances(library.examples.size() * tried);
-  parallel_for(library.examples.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Gap gap = gap_of(library, i);
-      if (outside(bounds_of(gap.others), gap.point).distance > 0) continue;
-      for (std::size_t s = 0; s < tried; ++s) {
-        distances[i * tried + s] = weighted_distance(gap, kernel, smoothings[s]);
-      }
-    }
-  });
-  std::vector<SmoothingTrial> trials;
-  for (std::size_t s = 0; s < tried; ++s) {
-    SmoothingTrial& trial = trials.emplace_back();
-    trial.smoothing = smoothings[s];
-    for (std::size_t i = s; i < distances.size(); i += tried) {
-      if (!distances[i]) continue;
-      ++trial.examples;
-      trial.weighted += *distances[i];
-    }
-    trial.weighted /= std::max(1, trial.examples);
-  }
-  return trials;
 }
 
 }  // namespace krok::parametric

@@ -41,16 +41,4 @@ LeftOutMeans means_of(std::span<const HeldOut> left_out);
 Result<std::vector<double>> distances_to_examples(const Library& library,
                                                   const rbf::WeightFunction& function);
 
-// Mean leave-one-out error for a smoothing, over the examples that are inside the bounds of the
-// others and that the others can make.
-struct SmoothingTrial {
-  double smoothing = 0;
-  int examples = 0;
-  double weighted = 0;  // metres
-};
-// One result per smoothing. Codes: those of leave_one_out().
-Result<std::vector<SmoothingTrial>> try_smoothings(const Library& library, rbf::Kernel kernel,
-                                                   std::span<const double> smoothings,
-                                                   int jobs = 1);
-
 }  // namespace krok::parametric

@@ -100,8 +100,7 @@ std::optional<double> distance(const Library& library, const PackedExamples& pac
 }
 
 std::vector<Vec3> example_poses(const Library& library, std::size_t index) {
-  Library alone = library;
-  alone.examples.assign(1, library.examples[index]);
+  const Library alone = library.with({library.examples[index]});
   const PackedExamples packed = pack_examples(alone);
   const double all = 1;
   return poses_of(*BlendedMotion::create(alone, packed, {&all, 1}), packed);

@@ -156,6 +156,18 @@ std::vector<GivenRole> given_roles(const RoleMap& map) {
   return result;
 }
 
+Library Library::with(std::vector<Example> others) const {
+  return {.skeleton = skeleton,
+          .given_roles = given_roles,
+          .swing = swing,
+          .feet = feet,
+          .keytimes = keytimes,
+          .parameters = parameters,
+          .rate = rate,
+          .examples = std::move(others),
+          .ground = ground};
+}
+
 double shortest_interval(const Library& library) {
   return std::min(2 / library.rate, kShortest) * (1 - 1e-9);
 }
@@ -211,8 +223,7 @@ Result<Example> make_example(const Library& library, std::string name, const Cli
   move_contacts(to_stance, example.contacts);
   sort_contacts(example.contacts);
 
-  Library alone = library;
-  alone.examples.assign(1, example);
+  const Library alone = library.with({example});
   const Measure measure(alone, pack_examples(alone));
   auto scratch = measure.make_scratch();
   example.parameters.resize(library.parameters.size());

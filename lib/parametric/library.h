@@ -43,6 +43,8 @@ struct Library {
   FootSide stance() const { return swing == FootSide::left ? FootSide::right : FootSide::left; }
   const FootShape& foot(FootSide side) const { return feet[static_cast<std::size_t>(side)]; }
   int dimensions() const { return static_cast<int>(parameters.size()); }
+  // The same with other examples; this one's are not copied, which may be thousands.
+  Library with(std::vector<Example> others) const;
 };
 
 // Min interval between keytimes, seconds: two frames at the library's rate, at most 10 ms. (In fast

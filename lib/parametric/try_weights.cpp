@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "parametric/left_out_internal.h"
 #include "parametric/thin_out.h"
-#include "rbf/weight_evaluator.h"
+#include "rbf/point_weights.h"
 
 namespace krok::parametric {
 
@@ -29,12 +29,11 @@ struct Material {
 };
 
 Library thinned(const Library& library, double spacing, std::size_t most) {
-  Library result = library;
-  result.examples.clear();
+  std::vector<Example> kept;
   for (const int i : thin_out(library, spacing, most)) {
-    result.examples.push_back(library.examples[static_cast<std::size_t>(i)]);
+    kept.push_back(library.examples[static_cast<std::size_t>(i)]);
   }
-  return result;
+  return library.with(std::move(kept));
 }
 
 // The distances for one example left out; nullopt if a candidate makes no motion.
@@ -59,16 +58,13 @@ class Part {
   }
 
   std::vector<Prediction> predict() const {
-    Library others = library_;
-    others.examples.clear();
+    std::vector<Example> others;
     for (std::size_t i = 0; i < library_.examples.size(); ++i) {
-      if (!std::ranges::binary_search(left_out_, i)) {
-        others.examples.push_back(library_.examples[i]);
-      }
+      if (!std::ranges::binary_search(left_out_, i)) others.push_back(library_.examples[i]);
     }
     std::vector<Prediction> predictions;
-    if (others.examples.empty()) return predictions;
-    const Material all(std::move(others));
+    if (others.empty()) return predictions;
+    const Material all(library_.with(std::move(others)));
     const Bounds bounds = bounds_of(all.library);
     std::vector<std::vector<Vec3>> wanted;
     std::vector<std::size_t> inside;
@@ -93,6 +89,11 @@ class Part {
   void try_all(const Material& all, const std::vector<std::size_t>& inside,
                const std::vector<std::vector<Vec3>>& wanted,
                std::vector<Prediction>& predictions) const {
+    std::vector<double> points;
+    for (const std::size_t i : inside) {
+      const std::vector<double>& point = library_.examples[i].parameters;
+      points.insert(points.end(), point.begin(), point.end());
+    }
     std::map<std::pair<double, std::size_t>, Material> by_spacing;
     for (const WeightCandidate& candidate : candidates_) {
       const std::size_t most = candidate.smoothing > 0 ? kMaxSmoothed : rbf::kMaxExamples;
@@ -103,26 +104,20 @@ class Part {
                              Material(thinned(all.library, candidate.spacing, most)))
                     .first;
       }
-      const auto evaluator = evaluator_of(found->second.library, candidate);
+      const Material& material = found->second;
+      const std::size_t n = material.library.examples.size();
+      const auto weights =
+          rbf::point_weights(library_.dimensions(), detail::parameters_of(material.library),
+                             candidate.kernel, candidate.smoothing, points);
       for (std::size_t p = 0; p < inside.size(); ++p) {
         std::optional<double> apart;
-        if (evaluator) {
-          std::vector<double> weights(found->second.library.examples.size());
-          evaluator->weights(library_.examples[inside[p]].parameters, weights);
-          apart = detail::distance(found->second.library, found->second.packed, weights, wanted[p]);
+        if (weights) {
+          apart = detail::distance(material.library, material.packed,
+                                   std::span(*weights).subspan(p * n, n), wanted[p]);
         }
         predictions[p].by.push_back(apart);
       }
     }
-  }
-
-  static std::optional<rbf::WeightEvaluator> evaluator_of(const Library& library,
-                                                          const WeightCandidate& candidate) {
-    const auto function = detail::weights_of(library, candidate.kernel, candidate.smoothing);
-    if (!function) return std::nullopt;
-    auto evaluator = rbf::WeightEvaluator::create(*function);
-    if (!evaluator) return std::nullopt;
-    return *std::move(evaluator);
   }
 
   const Library& library_;

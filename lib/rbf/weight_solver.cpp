@@ -14,12 +14,7 @@ namespace krok::rbf {
 
 namespace {
 
-constexpr double kMinDistance = 1e-6;      // between centres, relative to the ranges
 constexpr double kRowSumTolerance = 1e-6;  // of given rows
-
-double radius_factor(Kernel kernel) {
-  return kernel == Kernel::wendland ? 4 : 2;
-}
 
 // Distance from each example to the nearest other one, scaled. Code: rbf-duplicate.
 Result<std::vector<double>> example_distances(const WeightFunction& f) {
@@ -38,7 +33,7 @@ Result<std::vector<double>> example_distances(const WeightFunction& f) {
         square += along * along;
       }
       const double distance = std::sqrt(square);
-      if (!(distance >= kMinDistance)) {
+      if (!(distance >= detail::kMinDistance)) {
         return Error("rbf-duplicate",
                      fmt::format("examples {} and {} have the same parameters, {}", i + 1, k + 1,
                                  detail::place_text(f.centre(static_cast<int>(k)))),
@@ -105,7 +100,7 @@ Result<WeightSolver> WeightSolver::from_function(WeightFunction function) {
   if (has_radii(function.kernel)) {
     if (radii.empty()) {
       for (const double distance : *distances) {
-        radii.push_back(radius_factor(function.kernel) * distance);
+        radii.push_back(detail::radius_factor(function.kernel) * distance);
       }
     }
     function.radii.assign(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(n));
@@ -142,7 +137,7 @@ Status WeightSolver::insert(std::span<const double> points, std::span<const doub
     if (status = check_insertion(point, given); !status) break;
     std::vector<double> row(given.begin(), given.end());
     detail::bring_sums(row, system.n(), 1, 1);
-    const double radius = radius_factor(system.f.kernel) * distance_to_centres(point);
+    const double radius = detail::radius_factor(system.f.kernel) * distance_to_centres(point);
     status = system.add_centre(point, row, radius);
   }
   if (status.ok()) status = system.solve();
@@ -172,7 +167,7 @@ Status WeightSolver::check_insertion(std::span<const double> point,
     return Error("rbf-sum", fmt::format("the weights given at {} sum to {}, not to 1",
                                         detail::place_text(point), readable(sum)));
   }
-  if (!(distance_to_centres(point) >= kMinDistance)) {
+  if (!(distance_to_centres(point) >= detail::kMinDistance)) {
     return Error("rbf-duplicate",
                  fmt::format("there is already a centre at {}", detail::place_text(point)),
                  "centres must differ by at least a millionth of the ranges");

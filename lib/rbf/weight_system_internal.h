@@ -47,6 +47,13 @@ struct WeightSystem {
   double find_residual(std::span<double> left) const;
 };
 
+inline constexpr double kMinDistance = 1e-6;  // between centres, relative to the ranges
+
+// Of the distance to the nearest other centre.
+inline double radius_factor(Kernel kernel) {
+  return kernel == Kernel::wendland ? 4 : 2;
+}
+
 bool all_finite(std::span<const double> values);
 
 // Adds the same number to all elements of a row so that it sums to its target: `first` for the

@@ -150,7 +150,11 @@ class Lister {
     } else if (fs::exists(argument, missing)) {
       return {{argument, std::nullopt}};
     } else {
-      fail(Error("file-missing", "no such file", "check the path").in_file(argument));
+      const bool may_be_result = line_.inputs.size() == 2 && argument == line_.inputs.back();
+      fail(Error("file-missing", "no such file",
+                 may_be_result ? "check the path; a file to be written is given with -o"
+                               : "check the path")
+               .in_file(argument));
       return {};
     }
     std::vector<Found> found;

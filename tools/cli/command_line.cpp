@@ -390,7 +390,9 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
       return Error(
           "usage",
           fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),
-          file ? fmt::format("for several inputs, use --out-dir DIR; see {} --help", tool_)
+          file ? fmt::format("a file to be written is given with -o; for several inputs, use "
+                             "--out-dir DIR; see {} --help",
+                             tool_)
                : fmt::format("see {} --help", tool_));
     }
     const bool too_many = form_ == Form::single && takes_many_ &&

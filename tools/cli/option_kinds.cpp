@@ -98,9 +98,13 @@ ValueKind<ClipTime> clip_time(Range range) {
 
 ValueKind<double> number(Range range, const std::string& unit) {
   const auto read = [range, unit](const std::string& text) -> Result<double> {
+    constexpr std::string_view kPerHour = "km/h";
     std::string_view digits = text;
-    if (!unit.empty() && digits.ends_with(unit)) digits.remove_suffix(unit.size());
-    const auto value = parse_finite(digits);
+    const bool per_hour = unit == "m/s" && digits.ends_with(kPerHour);
+    if (per_hour) digits.remove_suffix(kPerHour.size());
+    if (!per_hour && !unit.empty() && digits.ends_with(unit)) digits.remove_suffix(unit.size());
+    auto value = parse_finite(digits);
+    if (value && per_hour) *value /= 3.6;
     if (value && holds(range, *value)) return *value;
     const bool any = !std::isfinite(range.low) && !std::isfinite(range.high);
     return usage(fmt::format("'{}' is not a number{}", shown(text),

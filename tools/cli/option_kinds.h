@@ -32,7 +32,7 @@ ValueKind<double> angle(Range degrees = {});               // radians
 ValueKind<double> seconds(Range seconds = kNotNegative);   // not in frames
 ValueKind<ClipTime> clip_time(Range time = kNotNegative);  // seconds or frames
 ValueKind<double> frequency(Range hertz = kPositive);
-// A finite number; code usage. `unit` may follow it.
+// A finite number; code usage. `unit` may follow it, where that is m/s also km/h.
 ValueKind<double> number(Range range = {}, const std::string& unit = {});
 // A frame rate in frames per second, from 0.001 to 1000000. Code usage.
 ValueKind<double> rate();

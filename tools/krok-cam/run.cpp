@@ -18,6 +18,7 @@
 #include "formats/cam/cam.h"
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/gltf/add_camera.h"
+#include "formats/goals/goals.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
@@ -155,10 +156,9 @@ Result<Shot> from_scene(const Options& options, const InputFile& file, ToolConte
 
 // Finds a joint by name or role.
 Result<int> find_joint(const std::string& name, const Skeleton& skeleton, const RoleMap& roles) {
-  const int joint = skeleton.find(name);
+  const int joint = goals::find_joint(name, skeleton, roles);
   if (joint >= 0) return joint;
   const auto role = parse_role(name);
-  if (role && roles.joint(*role) >= 0) return roles.joint(*role);
   std::vector<std::string> known = skeleton.names;
   for (const Role one : roles.roles) known.emplace_back(role_name(one));
   const std::string near = role ? std::string() : nearest_name(name, known);

@@ -83,8 +83,9 @@ void declare_goals(CommandOptions& command, Options& o) {
                     "Heights of goals in the world are over this ground, as for krok-walk: a mesh, "
                     "a height field, stairs:rise=17cm,run=29cm, slope:12deg, ...");
   command.add("--reach", o.points, point_goal("--reach", krok::ik::Goal::Kind::position),
-              "Bring a joint, given by name or role, to a point at a time: "
-              "RightHand=0.4m,1.2m,0.3m@2s, or for a while: @2s..3.5s; repeatable");
+              "Bring a joint, given by name or role, to a point of the world at a time: "
+              "RightHand=0.4m,1.2m,0.3m@2s, or for a while: @2s..3.5s (x to the left of who faces "
+              "+Z, y up; --goals for points in a joint's frame); repeatable");
   command.add("--look-at", o.looks, point_goal("--look-at", krok::ik::Goal::Kind::look_at),
               "The same for what faces forwards in the reference pose, which then points to the "
               "place: head=0m,1.5m,4m@1s..3s");
@@ -151,6 +152,7 @@ void declare_solver(CommandOptions& command, Options& o) {
               "A goal's position is reached within this", "0.01mm");
   command.add("--angle-tolerance", o.solver.angle, angle(kPositive),
               "A goal's angle is reached within this", "0.01deg");
+  command.add_flag("--strict", o.strict, "Exit with 1 if a goal is missed (otherwise a warning)");
 }
 
 void declare(CommandOptions& command, Options& o) {
@@ -199,6 +201,7 @@ ToolSpec make_spec() {
       {"krok-ik walk.anim --learn-limits run.anim --learn-limits dance.anim --save-limits "
        "actor.limits.json",
        "the ranges that an actor uses in captures, as a file for --limits"}};
+  spec.exit_no = "with --strict: a goal is missed";
   spec.batch = {io::motion_endings(), always(".anim")};
   return spec;
 }

@@ -42,6 +42,7 @@ struct Options {
   std::vector<Stiffness> stiffness;
   double whole_body = 0;  // how much the trunk takes part, 0 to 1
   std::optional<int> depth;
+  bool strict = false;
   std::string plot;  // an SVG file, or empty
   OrientationEncoding orientation = OrientationEncoding::xyz;
 
@@ -53,8 +54,9 @@ struct Options {
 ToolSpec make_spec();
 
 // Reads the motion, its goals and limits; writes the motion with the goals brought about. Goals
-// that are missed are warnings (ik-missed). Codes: those of the readers, of formats/goals,
-// formats/limits and lib/ik; ik-joint for a joint of an option that the motion has not.
+// that are missed are warnings (ik-missed); with `strict` the exit code is 1 then. Codes: those of
+// the readers, of formats/goals, formats/limits and lib/ik; ik-joint for a joint of an option that
+// the motion has not.
 Result<int> run(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::ik

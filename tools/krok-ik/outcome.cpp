@@ -12,6 +12,9 @@ namespace krok::cli::ik {
 
 namespace {
 
+// Metres; who misses by more has meant another unit.
+constexpr double kFarAway = 5;
+
 std::string_view kind_name(krok::ik::Goal::Kind kind) {
   switch (kind) {
     case krok::ik::Goal::Kind::position:
@@ -31,17 +34,23 @@ std::string_view kind_name(krok::ik::Goal::Kind kind) {
 }
 
 struct Summary {
-  int reached = 0;
+  int reached = 0, counted = 0;                // frames
   const krok::ik::GoalFrame* worst = nullptr;  // missed by the most; nullptr if all are reached
   double distance = 0, angle = 0;              // largest
 };
 
+// Of the frames in which the goal has its full strength: one that fades in is reached without being
+// where it was asked for. A goal that fades all the time is judged in all its frames.
 Summary summary_of(const std::vector<krok::ik::GoalFrame>& frames) {
   Summary summary;
+  const auto is_full = [](const krok::ik::GoalFrame& f) { return f.strength >= 1; };
+  const bool any_full = std::any_of(frames.begin(), frames.end(), is_full);
   const auto miss = [](const krok::ik::GoalFrame& f) {
     return f.residual.distance + f.residual.angle;
   };
   for (const krok::ik::GoalFrame& frame : frames) {
+    if (any_full && !is_full(frame)) continue;
+    ++summary.counted;
     summary.distance = std::max(summary.distance, frame.residual.distance);
     summary.angle = std::max(summary.angle, frame.residual.angle);
     if (frame.residual.reached) {
@@ -82,12 +91,13 @@ std::size_t count_of(const krok::ik::Limits& limits, krok::ik::JointLimit::Kind 
 }  // namespace
 
 std::string summary(const Outcome& outcome) {
-  std::size_t reached = 0, total = 0;
+  int reached = 0, total = 0;
   for (const auto& frames : outcome.motion.goals) {
-    total += frames.size();
-    reached += at(summary_of(frames).reached);
+    const Summary goal = summary_of(frames);
+    total += goal.counted;
+    reached += goal.reached;
   }
-  return fmt::format("{} in {} of {}, reached in {} of {}",
+  return fmt::format("{} in {} of {}, reached in {} of {} at full strength",
                      counted(static_cast<long long>(outcome.goals.size()), "goal"),
                      outcome.motion.changed_frames, counted(outcome.input.frame_count(), "frame"),
                      reached, total);
@@ -100,7 +110,7 @@ std::string table(const Outcome& outcome) {
     const Summary summary = summary_of(frames);
     text += fmt::format("  {} ({}): reached in {} of {}, off by {} at most\n",
                         shown(outcome.goals[g].name), kind_name(outcome.goals[g].goal.kind),
-                        summary.reached, counted(static_cast<long long>(frames.size()), "frame"),
+                        summary.reached, counted(summary.counted, "frame"),
                         miss_text(summary.distance, summary.angle));
   }
   return text;
@@ -125,10 +135,13 @@ Diagnostics missed_goals(const Outcome& outcome) {
     const krok::ik::GoalFrame& worst = *summary.worst;
     warning.code = "ik-missed";
     warning.message = fmt::format("goal '{}' is missed in {} of {}, by up to {} in frame {}: {}",
-                                  shown(outcome.goals[g].name), frames.size() - at(summary.reached),
-                                  counted(static_cast<long long>(frames.size()), "frame"),
+                                  shown(outcome.goals[g].name), summary.counted - summary.reached,
+                                  counted(summary.counted, "frame"),
                                   miss_text(worst.residual.distance, worst.residual.angle),
                                   worst.frame, holder_text(outcome, worst));
+    if (worst.residual.distance > kFarAway) {
+      warning.hint = "lengths without a unit are metres: 110cm, not 110";
+    }
     warning.frame = worst.frame;
     if (worst.residual.held_by >= 0) {
       warning.joint = outcome.input.skeleton.names[at(worst.residual.held_by)];
@@ -158,6 +171,7 @@ Json to_json(const Outcome& outcome) {
     const bool balance = goal.goal.kind == krok::ik::Goal::Kind::balance;
     entry["joint"] = joint_name(outcome, balance ? -1 : goal.goal.joint);
     entry["active_frames"] = frames.size();
+    entry["full_strength_frames"] = summary.counted;
     entry["reached_frames"] = summary.reached;
     entry["largest_distance"] = summary.distance;
     entry["largest_angle"] = to_degrees(summary.angle);

@@ -272,7 +272,7 @@ Result<int> Run::joint_of(const std::string& option, const std::string& name) co
   return Error("ik-joint",
                fmt::format("{} {}: the motion has no joint of that name or role", option,
                            shown(name)),
-               nearest_hint(name, clip_.skeleton.names))
+               nearest_hint(name, clip_.skeleton.names) + "; or a role, such as right_hand")
       .in_file(options_.input);
 }
 
@@ -469,7 +469,9 @@ Result<int> Run::run() {
                                                                   : options_.goals);
   }
   const Outcome outcome{clip_, goals_, limits_, *made};
-  for (Diagnostic& missed : missed_goals(outcome)) {
+  Diagnostics missed_ones = missed_goals(outcome);
+  const bool all_reached = missed_ones.empty();
+  for (Diagnostic& missed : missed_ones) {
     missed.where.file = options_.input;
     context_.diagnose(std::move(missed));
   }
@@ -488,7 +490,7 @@ Result<int> Run::run() {
   }
   context_.log(fmt::format("{}: {}", context_.output, summary(outcome)));
   if (context_.verbose) context_.log(table(outcome));
-  return kExitDone;
+  return options_.strict && !all_reached ? kExitNo : kExitDone;
 }
 
 }  // namespace

@@ -27,7 +27,12 @@ namespace {
 constexpr const char* kHeader =
     "file,duration [s],cycles,steps,speed [m/s],cadence [1/min],stride_length [m],"
     "step_length_left [m],step_length_right [m],step_width [m],stance_left [%],stance_right [%],"
-    "double_support [%],slide_speed [mm/s]\n";
+    "double_support [%],slide_speed [mm/s],gait\n";
+
+// No time in which both feet are down.
+bool is_run(const GaitMetrics& gait) {
+  return gait.cycles > 0 && gait.double_support <= 0;
+}
 
 // Empty for what no step shows.
 std::string row_of(const std::string& name, double duration, const GaitFacts& facts) {
@@ -35,17 +40,18 @@ std::string row_of(const std::string& name, double duration, const GaitFacts& fa
   const auto if_known = [](double value, double factor = 1) {
     return value > 0 ? std::optional(value * factor) : std::nullopt;
   };
-  const bool walks = gait.stance[0] > 0 && gait.stance[1] > 0;
+  const bool steps_known = gait.stance[0] > 0 && gait.stance[1] > 0;
   std::string row = fmt::format("{},{},{},{}", csv::field(to_utf8(name)), readable(duration, 6),
                                 gait.cycles, steps.steps);
   for (const std::optional<double>& value : std::array<std::optional<double>, 10>{
            steps.speed, if_known(gait.cadence), steps.stride_length, steps.step_length[0],
            steps.step_length[1], steps.step_width, if_known(gait.stance[0], 100),
            if_known(gait.stance[1], 100),
-           walks ? std::optional(100 * gait.double_support) : std::nullopt, 1000 * slide}) {
+           steps_known ? std::optional(100 * gait.double_support) : std::nullopt,
+           slide ? std::optional(1000 * *slide) : std::nullopt}) {
     row += value ? "," + readable(*value, 4) : ",";
   }
-  return row + "\n";
+  return row + (steps_known ? is_run(gait) ? ",run\n" : ",walk\n" : ",\n");
 }
 
 using Rows = Result<std::string>(const std::string& path, const io::FindRoles& find_roles,
@@ -112,11 +118,18 @@ Result<int> write_rows(const Options& options, const char* header, Rows* rows_of
 
 }  // namespace
 
+GaitFacts gait_facts(const std::vector<Keytime>& keytimes, const StepMeasures& steps,
+                     double slide_speed) {
+  GaitFacts facts{gait_metrics(keytimes), steps, {}};
+  if (!is_run(facts.gait)) facts.slide_speed = slide_speed;
+  return facts;
+}
+
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes) {
   if (const auto& removed = clip.provenance.removed_root_motion) {
     return gait_facts(carried_along(clip, carrying_joint(roles), *removed), roles, keytimes);
   }
-  return {gait_metrics(keytimes), step_measures(clip, roles, keytimes), slide_speed(clip, roles)};
+  return gait_facts(keytimes, step_measures(clip, roles, keytimes), slide_speed(clip, roles));
 }
 
 Result<int> write_gait_table(const Options& options, ToolContext& context) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "contacts/gait_metrics.h"
 #include "contacts/step_measures.h"
 #include "core/result.h"
@@ -15,8 +18,11 @@ namespace krok::cli::keys {
 struct GaitFacts {
   GaitMetrics gait;
   StepMeasures steps;
-  double slide_speed = 0;  // metres per second
+  // Metres per second. Absent in a run: where both feet fly, no foot could be still.
+  std::optional<double> slide_speed;
 };
+GaitFacts gait_facts(const std::vector<Keytime>& keytimes, const StepMeasures& steps,
+                     double slide_speed);
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes);
 
 // Writes --table: a row for each motion, with keytimes of its sidecar or detected. Motions that

@@ -77,7 +77,7 @@ std::string rules_text() {
   return text;
 }
 
-std::string console_text(const LintedFile& file) {
+std::string console_text(const LintedFile& file, bool errors_only) {
   if (file.error) {
     return fmt::format("{}: error: {} [unreadable]\n", shown_path(file),
                        printable(file.error->message));
@@ -85,6 +85,7 @@ std::string console_text(const LintedFile& file) {
   std::string text;
   for (const Finding& finding : file.findings) {
     const auto& facts = facts_of(finding.rule);
+    if (errors_only && facts.severity != Severity::error) continue;
     text +=
         fmt::format("{}: {:.2f} s: {}: {} [{}]\n", shown_path(file), file.seconds(finding.worst),
                     name_of(facts.severity), text_of(finding, file), facts.id);

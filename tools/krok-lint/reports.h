@@ -15,7 +15,7 @@ using LintedFiles = std::span<const LintedFile* const>;
 const char* name_of(Severity severity);  // "error", "warning"
 
 // A line for each fault: "walk.bvh: 1.20 s: warning: LeftFoot: 63 mm, limit 40 mm [foot-slide]".
-std::string console_text(const LintedFile& file);
+std::string console_text(const LintedFile& file, bool errors_only = false);
 std::string rules_text();
 
 std::string table_of(LintedFiles files);  // CSV

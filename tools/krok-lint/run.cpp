@@ -144,7 +144,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto order = worst_first(files);
   Json list = Json::array();
   for (const LintedFile* file : order) {
-    context.print(console_text(*file));
+    context.print(console_text(*file, context.quiet));
     if (context.verbose) {
       context.diagnose_in(file->path, file->diagnostics);
       for (const std::string& note : file->notes) context.log(file->path + ": " + note);

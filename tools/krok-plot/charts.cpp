@@ -149,6 +149,8 @@ class MotionChart {
                                 counted(static_cast<long long>(motions_.files.size()), "motion")));
     }
     append(chart_.panels, std::move(cycles.panels));
+    chart_.title = fmt::format("{} left and {} right gait cycles, mean \u00B1 standard deviation",
+                               cycles.counts[0], cycles.counts[1]);
     return {};
   }
 

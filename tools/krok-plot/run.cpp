@@ -95,7 +95,10 @@ Status add_charts(const Options& options, ToolContext& context, OutputSet& outpu
                   std::vector<std::string>& done) {
   auto chart = make_chart(options, context);
   if (!chart) return chart.error();
-  chart->title = options.title.empty() ? usual_title(options.inputs) : options.title;
+  // What is there says what the chart is of.
+  if (!chart->title.empty()) chart->title = usual_title(options.inputs) + ": " + chart->title;
+  if (chart->title.empty()) chart->title = usual_title(options.inputs);
+  if (!options.title.empty()) chart->title = options.title;
   lay_out(options, *chart);
   const auto svg = draw::to_svg(*chart);
   if (!svg) return svg.error();

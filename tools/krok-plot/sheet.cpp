@@ -20,6 +20,9 @@ namespace krok::cli::plot {
 namespace {
 
 constexpr int kSheetMoments = 8;
+// A sheet of many has half as many moments, and one view between the usual two.
+constexpr std::size_t kMany = 12;
+constexpr int kMomentsOfMany = 4;
 constexpr int kStripMoments = 10;
 constexpr int kStripWidth = 2400;
 constexpr int kPathPoints = 400;
@@ -204,7 +207,9 @@ Status write(const render::Sheet& sheet, const render::SheetOptions& options,
   return {};
 }
 
-constexpr int kSmallest = 64;  // pixels: of actors on a sheet of many
+constexpr int kSmallest = 64;   // pixels: of actors on a sheet of many
+constexpr int kReadable = 128;  // pixels: of actors where the sheet would be larger than a page
+constexpr int kPage = 4000;     // pixels: height of a page
 
 // Rows side by side: one for a few, then as many as make the sheet about as high as wide.
 int usual_columns(const render::Sheet& sheet) {
@@ -219,14 +224,25 @@ int usual_columns(const render::Sheet& sheet) {
 
 Status make_sheet(const std::vector<MovingActor>& actors, const std::vector<ImageSide>& sides,
                   const SheetOptions& options, const SheetGround& ground, Results& results) {
-  const auto all = show_all(actors, options, ground, kSheetMoments, results.context.jobs);
+  const bool many = actors.size() > kMany;
+  const auto all = show_all(actors, options, ground, many ? kMomentsOfMany : kSheetMoments,
+                            results.context.jobs);
   if (!all) return all.error();
-  render::Sheet sheet = contact_sheet(*all, sides, options);
+  std::vector<ImageSide> seen = sides;
+  if (many && are_usual_sides(options.image.sides)) {
+    seen = {{"front-left", (sides.front().yaw + sides.back().yaw) / 2, sides.front().elevation}};
+  }
+  render::Sheet sheet = contact_sheet(*all, seen, options);
   keep_most_large(*all, sheet);
   sheet.columns = options.columns.value_or(usual_columns(sheet));
   render::SheetOptions how;
   how.jobs = results.context.jobs;
-  for (int size = options.image.size;; size = size * 4 / 5) {
+  int size = options.image.size;
+  if (!options.size_given) {
+    const int rows = std::max(1, static_cast<int>(sheet.rows.size()) / sheet.columns);
+    size = std::min(size, std::max(kReadable, kPage / rows));
+  }
+  for (;; size = size * 4 / 5) {
     how.row_height = size;
     how.cell_width = 2 * size;
     Status status = write(sheet, how, options.sheet, *all, results, "sheet");
@@ -267,10 +283,12 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 }  // namespace
 
 void declare_sheet(CommandOptions& command, SheetOptions& options, GroundChoice& ground) {
-  command.add("--sheet OUT.png", options.sheet, output({".png"}),
-              "Contact sheet as PNG: characters at several times, in rows by file and side; "
-              "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out where "
-              "alpha is below their cutoff, or below one half for blended ones");
+  command.add(
+      "--sheet OUT.png", options.sheet, output({".png"}),
+      "Contact sheet as PNG: characters at several times, in rows by file and side (more than "
+      "12 files: at four times, from the front left, unless --moments or --view say else); "
+      "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out where "
+      "alpha is below their cutoff, or below one half for blended ones");
   command.add("--strip OUT.png", options.strip, output({".png"}),
               "Motion strip as PNG: a character at several times in one image, earlier ones "
               "fainter");

@@ -61,7 +61,8 @@ void declare_steps(CommandOptions& command, Options& o) {
   command
       .add("--pace SPEED[,SPEED...]", o.pace,
            numbers(std::vector(kMaxPaces, number({0.1, 12}, "m/s")), 1),
-           "Speed along the path in m/s, or several that follow one another from its start to its "
+           "Speed along the path in m/s or km/h, or several that follow one another from its start "
+           "to its "
            "end: 1.4m/s,3m/s,1.4m/s; steps are as long as those of the libraries at that speed, "
            "walked or run")
       .not_with({"--prints", "--step-length"});

@@ -232,9 +232,38 @@ Json parameters_json(const parametric::Library& library, std::span<const double>
   return object;
 }
 
-void report_steps(std::span<const gait::StepLibrary> libraries, const gait::WalkDetails& details,
-                  ToolContext& context) {
+// Along the ground while a foot stands, metres per second: half of the way of the other foot.
+double speed_of(const gait::StepReport& step, const std::vector<gait::GroundedPrint>& prints) {
+  const Vec3 way = prints[at(step.stance) + 1].heel - prints[at(step.stance) - 1].heel;
+  return std::hypot(way.x(), way.z()) / 2 / std::max(step.end - step.start, 1e-9);
+}
+
+// Warns of a pace that the steps nearest to its place do not go at: the mean of three, as they
+// begin and end a walk standing.
+void check_pace(const Options& options, const std::vector<double>& speeds, ToolContext& context) {
+  constexpr double kTolerance = 0.15;  // of the pace
+  const int count = static_cast<int>(speeds.size());
+  for (std::size_t p = 0; p < options.pace.size() && count > 0; ++p) {
+    const double part =
+        options.pace.size() < 2 ? 0.5 : static_cast<double>(p) / double(options.pace.size() - 1);
+    const int middle = std::clamp(static_cast<int>(std::lround(part * (count - 1))),
+                                  std::min(2, count / 2), std::max(count - 3, count / 2));
+    const int first = std::max(middle - 1, 0), end = std::min(middle + 2, count);
+    double speed = 0;
+    for (int i = first; i < end; ++i) speed += speeds[at(i)] / (end - first);
+    if (std::abs(speed - options.pace[p]) <= kTolerance * options.pace[p]) continue;
+    context.warn("walk-pace",
+                 fmt::format("--pace asks for {} m/s, the steps there go at {} m/s",
+                             readable(options.pace[p], 3), readable(speed, 3)),
+                 count < 10 ? "it takes some steps to get up to speed: give a longer way"
+                            : "examples of this speed are needed; krok-fit --json lists theirs");
+  }
+}
+
+void report_steps(const Options& options, std::span<const gait::StepLibrary> libraries,
+                  const gait::WalkDetails& details, ToolContext& context) {
   Json steps = Json::array();
+  std::vector<double> speeds;
   double missed = 0, clearance = 1e9, lowered = 0, extension = 0;
   int moved = 0;
   for (const gait::StepReport& step : details.steps) {
@@ -251,6 +280,8 @@ void report_steps(std::span<const gait::StepLibrary> libraries, const gait::Walk
       entry["asked"] = parameters_json(library->library(), step.asked);
       entry["made"] = parameters_json(library->library(), step.made);
     }
+    speeds.push_back(speed_of(step, details.prints));
+    entry["speed"] = speeds.back();
     entry["missed"] = step.missed;
     entry["moved"] = step.moved;
     if (!step.why_moved.empty()) entry["why_moved"] = step.why_moved;
@@ -273,7 +304,9 @@ void report_steps(std::span<const gait::StepLibrary> libraries, const gait::Walk
   result["largest_leg_extension"] = extension;
   result["largest_pelvis_lowering"] = lowered;
   result["moved_prints"] = moved;
+  result["largest_speed"] = speeds.empty() ? 0 : std::ranges::max(speeds);
   result["steps"] = std::move(steps);
+  check_pace(options, speeds, context);
 }
 
 // The prints as walked: those that `adapt` moved are where they were moved to.
@@ -300,7 +333,7 @@ Status write_all(const Options& options, const gait::Walk& walk,
   const auto provenance = [&] {
     details = walk.details();
     context.diagnose(details.warnings);
-    report_steps(libraries, details, context);
+    report_steps(options, libraries, details, context);
     return context.provenance();
   };
   Status status = outputs.add(context.output, [&](OutputFile& file) {
@@ -342,10 +375,11 @@ void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prin
   result["duration"] = frames.duration();
   const double missed = 1000 * result["largest_miss"].get<double>();
   context.log(fmt::format(
-      "{}: {}, {} s; feet miss their prints by {} mm, swing {} cm over "
+      "{}: {}, {} s, at up to {} m/s; feet miss their prints by {} mm, swing {} cm over "
       "the ground or more",
       context.output, counted(static_cast<long long>(prints.size()) - 2, "step"),
-      readable(frames.duration(), 4), missed < 0.001 ? "less than 0.001" : readable(missed, 2),
+      readable(frames.duration(), 4), readable(result["largest_speed"].get<double>(), 2),
+      missed < 0.001 ? "less than 0.001" : readable(missed, 2),
       readable(100 * result["min_clearance"].get<double>(), 3)));
 }
 

@@ -88,6 +88,13 @@ TEST_F(KrokIk, WhatIsMissedIsToldWithTheJointThatHoldsBack) {
   const json issue = json::parse(far.out)["issues"][0];
   EXPECT_EQ(issue["code"], "ik-missed");
   EXPECT_EQ(issue["frame"], 30);
+  // In a script that must not go on with it.
+  EXPECT_EQ(
+      ik({"walk.anim", "--reach", reach(Vec3(5, 0, 0)), "-o", "far.anim", "--strict"}).exit_code,
+      1);
+  EXPECT_TRUE(std::filesystem::exists(path("far.anim")));
+  const auto metres = ik({"walk.anim", "--reach", "RightHand=40,110,30@1s", "-o", "far.anim"});
+  EXPECT_THAT(metres.err, HasSubstr("lengths without a unit are metres"));
 
   put("stiff.limits.json",
       R"({"schema": "krok.limits/1", "joints": {

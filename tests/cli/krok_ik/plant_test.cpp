@@ -75,7 +75,7 @@ TEST_F(KrokIkPlant, GoalsAreForThePlantedMotion) {
   const Clip out = read("both.anim");
   EXPECT_LT((joint_of(out, 30, out.skeleton.find("RightHand")).position - to).norm(), 1e-4);
   const json result = json::parse(both.out)["result"];
-  EXPECT_EQ(result["goals"][0]["reached_frames"], result["goals"][0]["active_frames"]);
+  EXPECT_EQ(result["goals"][0]["reached_frames"], result["goals"][0]["full_strength_frames"]);
   EXPECT_LT(result["plant"]["drift"], 0.0005);
   for (int f = 0; f < out.frame_count(); ++f) {
     for (const char* foot : {"LeftFoot", "RightFoot", "LeftToeBase", "RightToeBase"}) {

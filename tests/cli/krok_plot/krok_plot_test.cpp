@@ -55,6 +55,7 @@ TEST_F(KrokPlot, CyclesAreOfAllTakesAndKeysNeedNotBeThere) {
   ASSERT_EQ(plot({kWalk, "--show", "cycles"}).exit_code, 0);
   const json alone = json::parse(get(path("report.json")))["result"];
   EXPECT_LT(alone["cycles"]["left"], both);
+  EXPECT_THAT(get(path("out.svg")), HasSubstr(alone["cycles"]["left"].dump() + " left and"));
   EXPECT_GE(alone["cycles"]["left"], 1);
   EXPECT_THAT(titles(), ElementsAre("Hip flexion", "Knee flexion", "Ankle dorsiflexion",
                                     "Shoulder elevation", "Elbow flexion"));

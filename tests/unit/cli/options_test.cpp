@@ -73,6 +73,15 @@ TEST_F(OptionKinds, ValuesAreReadIntoMetresAndRadians) {
   EXPECT_FALSE(options.smooth);
 }
 
+TEST(SpeedOption, IsInMetresPerSecondOrKilometresPerHour) {
+  const ValueKind<double> speed = number({0.1, 12}, "m/s");
+  EXPECT_DOUBLE_EQ(speed.read("3m/s").value(), 3);
+  EXPECT_DOUBLE_EQ(speed.read("5.4km/h").value(), 1.5);
+  EXPECT_DOUBLE_EQ(speed.read("1.4").value(), 1.4);
+  EXPECT_FALSE(speed.read("50km/h"));
+  EXPECT_FALSE(number({0, 9}, "mm").read("5km/h"));
+}
+
 TEST_F(OptionKinds, MistakesNameOptionValueAndRange) {
   EXPECT_EQ(parse({"--stretch", "1"}), "--stretch: '1' is not a length from 0 to 0.1 m");
   EXPECT_EQ(parse({"--turn", "91deg"}), "--turn: '91deg' is not an angle from -90 to 90 degrees");

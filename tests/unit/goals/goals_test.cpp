@@ -84,6 +84,19 @@ TEST(Goals, ReadsWhatTheSpecSays) {
 }
 
 // What faces forwards in the reference pose looks, whatever the joint's own axes are.
+TEST(Goals, ARoleIsFoundHoweverItIsWritten) {
+  const Skeleton skeleton = test::turned_human();
+  const RoleMap roles = find_roles(skeleton);
+  const int arm = skeleton.find("RightForeArm");
+  ASSERT_GE(arm, 0);
+  for (const char* name : {"right_lower_arm", "RightLowerArm", "Right_Lower_Arm"}) {
+    EXPECT_EQ(find_joint(name, skeleton, roles), arm) << name;
+  }
+  for (const char* name : {"", "rightlowerarm", "RIGHT", "Right_", "LowerArm"}) {
+    EXPECT_EQ(find_joint(name, skeleton, roles), -1) << name;
+  }
+}
+
 TEST(Goals, AJointLooksWhereItFacesUnlessToldOtherwise) {
   const Skeleton skeleton = test::turned_human();
   const auto file = read_for(test::replaced(kGood, "\"axis\": [0, 0, 2], ", ""));
