@@ -70,9 +70,14 @@ Quat shortest_arc(const Vec3& from, const Vec3& to) {
     const Vec3 perpendicular = a.cross(Vec3::Unit(least)).normalized();
     return Quat(0, perpendicular.x(), perpendicular.y(), perpendicular.z());
   }
-  // Half-angle form, accurate up to nearly opposite directions.
-  const double angle = std::atan2(axis.norm(), cosine);
-  return axis.norm() == 0 ? Quat::Identity() : from_rotation_vector(axis.normalized() * angle);
+  // The half angle's cosine or sine is half the length of the sum or difference, whichever is
+  // longer, so that both are accurate at any angle.
+  const double sine = axis.norm();
+  if (!(sine > 0)) return Quat::Identity();
+  const double longer = 0.5 * (cosine < 0 ? Vec3(a - b) : Vec3(a + b)).norm(),
+               shorter = 0.5 * sine / longer;
+  const Vec3 xyz = axis * ((cosine < 0 ? longer : shorter) / sine);
+  return normalized_or_identity(Quat(cosine < 0 ? shorter : longer, xyz.x(), xyz.y(), xyz.z()));
 }
 
 }  // namespace krok
