@@ -95,8 +95,9 @@ Job job_of(const SkinBinding& binding, const SkinPose& pose, const SkinSurface& 
   const skin_detail::Posed& posed = pose.data();
   Job job;
   job.influences = binding.data().influences();
-  const bool by_motions = binding.method() == SkinMethod::dual_quaternion;
+  const bool by_motions = skin_detail::blends_motions(binding.method());
   if (by_motions) job.motions = posed.pair_motions.data();
+  if (!posed.pair_centres.empty()) job.centres = posed.pair_centres.data();
   if (!by_motions || !posed.is_rigid) job.palette = posed.palette.data();
   job.inverse_transpose = !posed.is_rigid;
   job.positions = floats(in.positions);
@@ -116,15 +117,16 @@ SkinSurface skin_surface(const Model& model) {
 
 void skin(const SkinBinding& binding, const SkinPose& pose, const SkinSurface& in,
           const SkinnedSurface& out, int jobs) {
-  const auto kernel = binding.method() == SkinMethod::dual_quaternion
-                          ? skin_detail::dual_quaternion_simd
-                          : skin_detail::linear_simd;
+  const auto kernel =
+      binding.method() == SkinMethod::dual_quaternion ? skin_detail::dual_quaternion_simd
+      : binding.method() == SkinMethod::spherical     ? skin_detail::dual_quaternion_scalar
+                                                      : skin_detail::linear_simd;
   skin_detail::over_tiles(kernel, job_of(binding, pose, in, out), binding.vertex_count(), jobs);
 }
 
 void skin_reference(const SkinBinding& binding, const SkinPose& pose, const SkinSurface& in,
                     const SkinnedSurface& out) {
-  const auto reference = binding.method() == SkinMethod::dual_quaternion
+  const auto reference = skin_detail::blends_motions(binding.method())
                              ? skin_detail::dual_quaternion_scalar
                              : skin_detail::linear_scalar;
   reference(job_of(binding, pose, in, out), 0, binding.vertex_count());
@@ -190,6 +192,7 @@ std::unique_ptr<const Binding> bind(const Model& model, SkinMethod method) {
   binding->joint_to_world = model.skeleton.reference;
   binding->reference_to_joint = inverse_reference(model.skeleton);
   PairNumbers numbers(binding->pairs);
+  SetNumbers sets(*binding);
   std::array<VertexInfluences, kBlock> block;
   for (std::size_t begin = 0; begin < binding->vertex_count; begin += kBlock) {
     const std::size_t size = std::min(kBlock, binding->vertex_count - begin);
@@ -201,6 +204,11 @@ std::unique_ptr<const Binding> bind(const Model& model, SkinMethod method) {
     binding->blocks.push_back({binding->joints.size(), most});
     for (std::size_t i = 0; i < size; ++i) {
       const VertexInfluences& vertex = block[i];
+      std::uint32_t set = 0;
+      if (method == SkinMethod::spherical) {
+        const auto* joints = vertex.joints.data();
+        set = sets.set({joints, joints + std::max<std::size_t>(1, vertex.count)});
+      }
       for (std::size_t k = 0; k < most; ++k) {
         // Padding repeats the first joint with weight 0, which does not change the result.
         const std::uint16_t joint = vertex.joints[k < vertex.count ? k : 0];
@@ -208,6 +216,9 @@ std::unique_ptr<const Binding> bind(const Model& model, SkinMethod method) {
         binding->weights.push_back(k < vertex.count ? vertex.weights[k] : 0.0f);
         if (method == SkinMethod::dual_quaternion) {
           binding->pair_indices.push_back(numbers.number(vertex.joints[0], joint));
+        }
+        if (method == SkinMethod::spherical) {
+          binding->pair_indices.push_back(sets.pair(set, joint));
         }
       }
     }
@@ -264,6 +275,7 @@ void fill_pairs(Posed& pose) {
       for (float& component : motion.components) component = -component;
     }
   }
+  if (!pose.pair_centres.empty()) skin_detail::fill_centres(pose);
 }
 
 }  // namespace
@@ -271,9 +283,11 @@ void fill_pairs(Posed& pose) {
 SkinPose::SkinPose(const SkinBinding& binding) : data_(std::make_unique<Posed>()) {
   data_->binding = &binding.data();
   data_->palette.resize(binding.joint_count());
-  if (binding.method() == SkinMethod::dual_quaternion) {
+  if (skin_detail::blends_motions(binding.method())) {
     data_->motions.resize(binding.joint_count());
     data_->pair_motions.resize(binding.data().pairs.size());
+    data_->set_centres.resize(binding.data().sets.size());
+    data_->pair_centres.resize(binding.data().pair_sets.size());
   }
   set(binding.data().joint_to_world);
 }

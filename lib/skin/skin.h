@@ -26,6 +26,13 @@
 //                    Geometric Skinning with Approximate Dual Quaternion Blending (ACM TOG 27(4),
 //                    2008). Matrices with scale or shear are split (dual_quaternion.h): the
 //                    deformations are blended linearly and applied before the rigid transforms.
+//   spherical        v' = Q (v - r) + sum_i w_i P_i r, with Q the rotation of the normalised sum_i
+//                    s_i w_i q_i, and r the rotation centre of the vertex's set of joints: that
+//                    which the P_i move to places as near to each other as possible, by least
+//                    squares over all pairs; of several the nearest to the mean of the joints after
+//                    the first in the reference pose. For two joined bones it is their joint.
+//                    Source: Kavan, Zara, Spherical Blend Skinning (I3D 2005). Deformations as
+//                    above. Not vectorised; surfaces may step where sets of joints change.
 //
 // Normals and tangents are transformed by the same map without its translation and normalised. If
 // the palette is not rigid, normals use the inverse transpose of the blended matrix, so that they
@@ -44,7 +51,7 @@
 
 namespace krok {
 
-enum class SkinMethod : unsigned char { rigid, linear, dual_quaternion };
+enum class SkinMethod : unsigned char { rigid, linear, dual_quaternion, spherical };
 
 namespace skin_detail {
 struct Binding;

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "skin/dual_quaternion.h"
@@ -39,6 +41,8 @@ struct Job {
   const SkinMatrix* palette = nullptr;      // by joint; for dual quaternions the deformations,
                                             // null if all matrices are rigid
   const DualQuaternion* motions = nullptr;  // by pair; null for linear blend
+  const Vec3f* centres = nullptr;           // by pair; of spherical blend alone, whose motions are
+                                            // the rotation and where it moves the centre
   bool inverse_transpose = false;           // transform normals by the inverse transpose
   const float* positions = nullptr;
   const float* normals = nullptr;
@@ -109,6 +113,8 @@ struct Binding {
   std::vector<std::uint32_t> pair_indices;  // dual quaternions only
   std::vector<float> weights;
   std::vector<Pair> pairs;
+  std::vector<std::uint32_t> pair_sets;          // [pairs] spherical blend only
+  std::vector<std::vector<std::uint16_t>> sets;  // of joints, in order; spherical blend only
 
   Influences influences() const;
 };
@@ -117,8 +123,31 @@ struct Posed {
   const Binding* binding = nullptr;
   bool is_rigid = true;
   std::vector<SkinMatrix> palette;           // [joints]; for dual quaternions the deformations
-  std::vector<DualQuaternion> motions;       // [joints]; dual quaternions only
+  std::vector<DualQuaternion> motions;       // [joints]; dual quaternions and spherical blend
   std::vector<DualQuaternion> pair_motions;  // [pairs]
+  std::vector<Vec3> set_centres;             // [sets]; spherical blend only
+  std::vector<Vec3f> pair_centres;           // [pairs]; the same as floats
 };
+
+// Whether a method blends rotations rather than matrices.
+constexpr bool blends_motions(SkinMethod method) {
+  return method == SkinMethod::dual_quaternion || method == SkinMethod::spherical;
+}
+
+// Spherical blend: numbers the set of joints of each vertex, and its pairs; sets the motions of the
+// pairs and the rotation centres.
+class SetNumbers {
+ public:
+  explicit SetNumbers(Binding& binding) : binding_(binding) {}
+  // The number of the set of some joints, and of the pair of a set and a joint in it.
+  std::uint32_t set(std::vector<std::uint16_t> joints);
+  std::uint32_t pair(std::uint32_t set, std::uint16_t joint);
+
+ private:
+  Binding& binding_;
+  std::map<std::vector<std::uint16_t>, std::uint32_t> sets_;
+  std::map<std::pair<std::uint32_t, std::uint16_t>, std::uint32_t> pairs_;
+};
+void fill_centres(Posed& pose);
 
 }  // namespace krok::skin_detail

@@ -119,6 +119,21 @@ struct Motion {
     return true;
   }
 
+  // From rotation q and q(centre) - centre = d to the rigid transform that takes the centre there:
+  // d becomes t q / 2 with t = centre + d - q centre q*.
+  void turn_about(const Vector& centre) {
+    const float square = std::fma(r.x, r.x, std::fma(r.y, r.y, std::fma(r.z, r.z, rw * rw)));
+    const float scale = is_regular(square) ? 1.0f / std::sqrt(square) : 1.0f;
+    r = {r.x * scale, r.y * scale, r.z * scale};
+    rw *= scale;
+    const Vector moved = vector(centre);
+    const Vector t{centre.x + d.x - moved.x, centre.y + d.y - moved.y, centre.z + d.z - moved.z};
+    const Vector c = cross(t, r);
+    d = {0.5f * std::fma(rw, t.x, c.x), 0.5f * std::fma(rw, t.y, c.y),
+         0.5f * std::fma(rw, t.z, c.z)};
+    dw = -0.5f * dot(t, r);
+  }
+
   // r x v + w v; the rotation adds 2 r x (this) to v.
   Vector half_way(const Vector& v) const {
     const Vector c = cross(r, v);
@@ -222,8 +237,13 @@ void dual_quaternion_scalar(const Job& job, std::size_t begin, std::size_t end) 
     if (deforms) blend(vertex, 16, matrix_of, matrix_sum);
     const Columns blended(matrix_sum), first_matrix(deforms ? matrix_of(0) : matrix_sum);
     TwoPhases first{deforms ? &first_matrix : nullptr, Motion(motion_of(0))};
-    first.motion.normalize();
     TwoPhases all{deforms ? &blended : nullptr, Motion(motion_sum)};
+    if (job.centres != nullptr) {
+      const Vector centre = read(job.centres[vertex.pairs[0]].data());
+      first.motion.turn_about(centre);
+      all.motion.turn_about(centre);
+    }
+    first.motion.normalize();
     if (!all.motion.normalize()) all.motion = first.motion;
     write(all.point(read(job.positions + 3 * v)), job.out_positions + 3 * v);
     if (job.normals != nullptr) {

@@ -40,6 +40,7 @@ ALLOWED = {
     "lib/retarget": BASE | {"lib/roles", "lib/contacts", "lib/ik", "lib/motion"},
     "lib/skin": BASE,
     "lib/body": BASE | {"lib/roles", "lib/retarget"},
+    "lib/correctives": BASE | {"lib/rbf", "lib/skin"},
     "lib/compare": BASE,
     "lib/lint": BASE | {"lib/capture", "lib/contacts", "lib/motion", "lib/roles"},
     "lib/draw": BASE | {"lib/roles", "lib/contacts", "lib/motion", "lib/compare", "lib/retarget"},
@@ -82,6 +83,7 @@ ALLOWED = {
     "formats/height_field": BASE | {"lib/terrain", "formats/image", "formats/json", "formats/morph_exr"},
     "formats/material": BASE | {"formats/json"},
     "formats/character": BASE | {"formats/json"},
+    "formats/correctives": BASE | {"lib/correctives", "lib/rbf", "lib/skin", "formats/json"},
     "formats/key_shapes": BASE | {"lib/skin", "formats/json"},
     "formats/morph_exr": BASE | {"formats/container"},
 }

@@ -35,6 +35,7 @@ void declare(CommandOptions& command, Options& options) {
               "Bind pose of the body: reference (the skeleton's), a frame number, or auto (the "
               "reference pose, with overlapping limbs turned aside)",
               "auto");
+  add_twist_joints_option(command, options.twist);
   add_orientation_option(command, options.orientation);
 }
 

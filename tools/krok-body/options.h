@@ -5,6 +5,7 @@
 #include "body/body.h"
 #include "formats/container/packed_orientation.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/twist_joints.h"
 
 namespace krok::cli::body {
 
@@ -18,6 +19,7 @@ struct Options {
   std::string input;
   BodyDetail detail = BodyDetail::medium;
   Pose pose;
+  TwistJoints twist;
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 

@@ -75,6 +75,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.diagnose(body->diagnostics);
 
   Model& model = body->model;
+  if (Status status = add_twist_joints(options.twist, model); !status) {
+    return std::move(status.error()).in_file(input->path());
+  }
   model.provenance = context.provenance();
   model.provenance.conversions.push_back(fmt::format("body built in pose: {}", body->pose));
   const Status status = write_output(context, context.output, [&](OutputFile& file) {

@@ -34,10 +34,11 @@ void declare_weights(CommandOptions& command, Options& o) {
 void declare_refinement(CommandOptions& command, Options& o) {
   command.group("Fit");
   command.add("--refine", o.refine, whole(0, kMaxRefined),
-              "Max number of points to insert, 0 for none (default: 40 per parameter)");
+              "Max number of points to insert, 0 for none (default: 40 per parameter); of sculpted "
+              "poses, held-out poses that become examples, the worst first (default: none)");
   command.add("--max-error", o.until, length_with_unit(kPositive),
               "Max accepted error of length parameters (default: each parameter's tolerance in the "
-              "description)");
+              "description), or of sculpted poses");
   command.add("--holdout", o.held_out, whole(0, 100'000),
               "Number of held-out points for measuring the error; 0: chosen by the number of "
               "parameters");
@@ -51,8 +52,10 @@ void declare_refinement(CommandOptions& command, Options& o) {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("library IN.json", options.library,
-                  "Library description (JSON): examples and parameters")
+      .add_option(
+          "library IN.json", options.library,
+          "Library description (JSON): examples and parameters; or sculpted poses of a model "
+          "(formats/correctives/SPEC.md), of which correctives for krok-skin are made")
       .required();
   command.add_flag(
       "--keep-going", options.keep_going,
@@ -71,16 +74,19 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-fit", options, declare, nullptr, run);
   spec.summary = "Fits a step library to example motions, with a measured error";
-  spec.details = "krok-synth then makes motions for any parameters between them.";
+  spec.details =
+      "krok-synth then makes motions for any parameters between them. Of sculpted poses of a model "
+      "it makes correctives, morph targets by pose, which krok-skin adds.";
   spec.inputs = "LIBRARY.json";
-  spec.writes = registry::Kind::steps;
   spec.examples = {
       {"krok-fit walking.json -o walking.steps",
        "uses the examples in the description and refines until the tolerances are met"},
       {"krok-fit walking.json -o walking.steps --refine 80 --max-error 0.5mm --plot charts",
        "inserts up to 80 points until lengths are within 0.5 mm, and writes charts"},
       {"krok-fit walking.json --resume walking.steps --refine 160 -o better.steps",
-       "continues the refinement of an earlier run"}};
+       "continues the refinement of an earlier run"},
+      {"krok-fit correctives.json -o hero.correctives",
+       "correctives that keep the volume of bent joints, with their error on held-out poses"}};
   spec.exit_partly = "with --keep-going: some motions were left out, the library was written";
   spec.report_name = "--report";
   return spec;

@@ -10,8 +10,10 @@
 #include "core/result.h"
 #include "fit/refine.h"
 #include "formats/steps/steps.h"
+#include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/report.h"
+#include "tools/krok-fit/corrective_fit.h"
 #include "tools/krok-fit/fit_library.h"
 #include "tools/krok-fit/fit_plots.h"
 #include "tools/krok-fit/fit_report.h"
@@ -192,6 +194,9 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
+  if (describes_poses(options.library)) return run_correctives(options, context);
+  Status kind = check_output_kind(context.output, "-o", registry::Kind::steps);
+  if (!kind) return kind.error();
   auto input = read_library(options.library, options.keep_going, context);
   if (!input) return input.error();
   std::optional<krok::fit::Refined> start;

@@ -54,10 +54,12 @@ void declare_what(CommandOptions& command, Options& o) {
 }
 
 void declare_mesh(CommandOptions& command, Options& o) {
-  add_skin_method(command, o.method,
-                  "Skinning method. linear: linear blend skinning, as in viewers; loses volume at "
-                  "twisted joints. dual-quaternion: preserves volume. rigid: each vertex follows "
-                  "only its strongest joint");
+  add_skin_method(
+      command, o.method,
+      "Skinning method. linear: linear blend skinning, as in viewers; loses volume at "
+      "twisted joints. dual-quaternion: preserves volume. spherical: the same about the joint "
+      "between two bones, without its bulge. rigid: each vertex follows "
+      "only its strongest joint");
   command
       .add_option("--morph IN.exr", o.morphs,
                   "Morph targets (OpenEXR, from krok-morph or krok-import), applied before "
@@ -69,6 +71,12 @@ void declare_mesh(CommandOptions& command, Options& o) {
                   "the motion. {clip} in the name is the motion's path without its ending, for "
                   "motions with a file each: '{clip}.csv'")
       .not_with("--as motion");
+  command
+      .add_option("--correctives IN.correctives", o.correctives,
+                  "Shapes by pose (from krok-fit), added before skinning: morph targets whose "
+                  "weights follow the rotations of joints")
+      .not_with("--as motion");
+  add_twist_joints_option(command, o.twist);
   command.add("--up AXIS", o.up, up_axis<pc2::Up>({{"y", pc2::Up::y}, {"z", pc2::Up::z}}),
               "Up axis of a point cache: y as in the written OBJ and glTF files, or z as in "
               "Blender and 3ds Max",
@@ -204,6 +212,8 @@ ToolSpec make_spec() {
        "a character with its materials, eyes and expressions"},
       {"krok-skin hero.character walk.anim talk.anim --weights '{clip}.csv' -o hero.glb",
        "two clips with expressions of their own, from walk.csv and talk.csv"},
+      {"krok-skin body.model walk.anim --correctives body.correctives -o walk.glb",
+       "joints that keep their volume, as morph targets with a weight at each frame"},
       {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one pose"},
       {"krok-skin body.model walk.anim --as baked -o baked.glb",
        "baked vertex animation, for viewers without skinning"},

@@ -12,6 +12,7 @@
 #include "skin/skin.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/twist_joints.h"
 
 namespace krok::cli::skin {
 
@@ -29,12 +30,14 @@ struct Options {
   std::vector<std::string> clip_names;      // of `motions`; empty: after its file
   std::string morphs;                       // --morph, empty: none
   std::string weights;                      // --weights, empty: none
+  std::string correctives;                  // --correctives, empty: none
   As as = As::automatic;                    // see what_to_write()
   SkinMethod method = SkinMethod::linear;   // always for --as rig
   std::optional<ClipTime> time;             // --as pose; empty: the start
   std::optional<ClipTime> from, to;         // time range; empty: the ends; not --as pose
   int every = 1;                            // frame step; not --as pose
   pc2::Up up = pc2::Up::y;                  // of a point cache
+  TwistJoints twist;                        // to add to the model
   Influences influences = Influences::all;  // per vertex at most
   std::optional<double> reduce;             // --as rig: the tolerance, metres; empty: all keys
   bool quantize = false, compress = false;  // --as rig

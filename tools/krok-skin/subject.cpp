@@ -7,6 +7,8 @@
 
 #include "capture/unique_names.h"
 #include "core/numbers.h"
+#include "correctives/correctives.h"
+#include "formats/correctives/correctives_format.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
@@ -15,6 +17,7 @@
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
 #include "skin/bind.h"
+#include "skin/twist_joints.h"
 #include "tools/cli/file_name.h"
 
 namespace krok::cli::skin {
@@ -28,9 +31,9 @@ class Loader {
   Loader(const Options& options, ToolContext& context) : options_(options), context_(context) {}
 
   Result<Subject> load() {
-    for (const auto step :
-         {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights, &Loader::read_clip,
-          &Loader::take_weights, &Loader::take_part, &Loader::read_others}) {
+    for (const auto step : {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights,
+                            &Loader::read_clip, &Loader::take_weights, &Loader::take_part,
+                            &Loader::read_others, &Loader::add_correctives}) {
       if (Status status = (this->*step)(); !status) return status.error();
     }
     return std::move(subject_);
@@ -51,6 +54,9 @@ class Loader {
     subject_.eyes = std::move(actor->eyes);
     subject_.morphs = std::move(actor->morphs);
     rest_weights_ = std::move(actor->rest_weights);
+    if (Status status = add_twist_joints(options_.twist, subject_.model); !status) {
+      return std::move(status.error()).in_file(options_.subject);
+    }
     if (!subject_.model.triangles.empty()) return {};
     return Error("skin-empty-model", "the model has no triangles",
                  "create a model with a mesh with krok-body")
@@ -126,6 +132,7 @@ class Loader {
     if (!read) return read.error();
     clip = std::move(*read);
     subject_.clip_name = names_.make(clip_name(0));
+    carry_twist_joints(subject_.model.skeleton, clip, subject_.stretches);
     auto bound = bind_to(std::move(subject_.model), clip.skeleton);
     if (!bound) return std::move(bound.error()).in_file(path);
     subject_.model = std::move(*bound);
@@ -143,6 +150,7 @@ class Loader {
       Stretches stretches;
       auto clip = io::open_motion(path, context_, {.stretches = &stretches});
       if (!clip) return clip.error();
+      carry_twist_joints(subject_.model.skeleton, *clip, stretches);
       const std::string difference =
           difference_in_structure(subject_.model.skeleton, clip->skeleton);
       if (!difference.empty()) {
@@ -169,6 +177,85 @@ class Loader {
       other.weights = *std::move(sampled);
     }
     return {};
+  }
+
+  // Appends the targets of --correctives to the morph targets, and their weights at each frame.
+  Status add_correctives() {
+    const std::string& path = options_.correctives;
+    if (path.empty()) return {};
+    const auto file = context_.open_input(path);
+    if (!file) return file.error();
+    auto correctives = correctives_file::read(file->text());
+    if (!correctives) return std::move(correctives.error()).in_file(path);
+    if (correctives->vertex_count != subject_.model.vertex_count()) {
+      return Error("skin-correctives",
+                   fmt::format("they are for a mesh with {}, but the model has {}",
+                               counted(correctives->vertex_count, "vertex", "vertices"),
+                               subject_.model.vertex_count()),
+                   "fit them to this model with krok-fit")
+          .in_file(path);
+    }
+    const bool linear = options_.as == As::automatic || options_.as == As::rig;
+    if (correctives->method != (linear ? SkinMethod::linear : options_.method)) {
+      Diagnostic other = make_warning(
+          "skin-correctives-method",
+          "they were fitted to another skinning method, whose faults they correct instead",
+          linear ? "rigs are skinned by the viewer, with linear blend skinning"
+                 : "use the --method that the description of the correctives has");
+      other.where.file = path;
+      context_.diagnose(std::move(other));
+    }
+    const auto weights = CorrectiveWeights::create(*correctives, subject_.model.skeleton);
+    if (!weights) return Error(weights.error()).in_file(path);
+    MorphSet targets = targets_of(*correctives, subject_.model);
+    UniqueNames names;
+    for (const std::string& name : subject_.morphs.names) names.claim(name);
+    for (std::string& name : targets.names) name = names.make(name);
+    append(std::move(targets));
+    const MorphWeights own = std::move(subject_.weights);
+    subject_.weights = with_correctives(own, subject_.clip, *weights);
+    for (Subject::Motion& other : subject_.others) {
+      other.weights = with_correctives(other.weights.values.empty() ? own : other.weights,
+                                       other.clip, *weights);
+    }
+    return {};
+  }
+
+  // Appends morph targets; all have normals if the model has.
+  void append(MorphSet targets) {
+    MorphSet& morphs = subject_.morphs;
+    const std::vector<Vec3f>& normals = subject_.model.normals;
+    if (normals.empty()) morphs.normals.clear();
+    while (morphs.normals.size() < morphs.positions.size() && !normals.empty()) {
+      morphs.normals.insert(morphs.normals.end(), normals.begin(), normals.end());
+    }
+    morphs.vertex_count = targets.vertex_count;
+    const auto add = [](auto& to, const auto& from) {
+      to.insert(to.end(), from.begin(), from.end());
+    };
+    add(morphs.names, targets.names);
+    add(morphs.positions, targets.positions);
+    add(morphs.normals, targets.normals);
+  }
+
+  // Weights of the targets before, followed by those of the correctives at each frame.
+  MorphWeights with_correctives(const MorphWeights& own, const Clip& clip,
+                                const CorrectiveWeights& correctives) const {
+    MorphWeights all{clip.rate, subject_.morphs.names, {}};
+    const std::size_t targets = all.names.size(), added = correctives.target_count();
+    all.values.resize(targets * static_cast<std::size_t>(clip.frame_count()));
+    std::vector<Transform> joints(clip.skeleton.names.size());
+    for (int frame = 0; frame < clip.frame_count(); ++frame) {
+      const std::span row = std::span(all.values).subspan(frame * targets, targets);
+      if (own.frame_count() > 0) {
+        const auto from = std::min(frame, own.frame_count() - 1) * (targets - added);
+        std::copy_n(own.values.begin() + static_cast<std::ptrdiff_t>(from), targets - added,
+                    row.begin());
+      }
+      clip.get_pose(frame, joints);
+      correctives.at(joints, row.last(added));
+    }
+    return all;
   }
 
   std::string clip_name(std::size_t motion) const {

@@ -104,6 +104,7 @@ CommandOption add_skin_method(CommandOptions& command, SkinMethod& method,
   return command.add("--method METHOD", method,
                      choice<SkinMethod>({{"linear", SkinMethod::linear},
                                          {"dual-quaternion", SkinMethod::dual_quaternion},
+                                         {"spherical", SkinMethod::spherical},
                                          {"rigid", SkinMethod::rigid}}),
                      help, "linear");
 }

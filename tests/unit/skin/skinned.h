@@ -14,7 +14,7 @@
 namespace krok::test {
 
 constexpr SkinMethod kMethods[] = {SkinMethod::rigid, SkinMethod::linear,
-                                   SkinMethod::dual_quaternion};
+                                   SkinMethod::dual_quaternion, SkinMethod::spherical};
 
 // A surface that owns its vertices.
 struct Skinned {
