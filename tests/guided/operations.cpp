@@ -306,7 +306,7 @@ void body(Choices& choices, const Motions& motions, Options options) {
   if (!run_tool(cli::body::make_spec, options)) return;
   judge_model(model);
   constexpr const char* kKinds[] = {"rig", "pose", "clip"};
-  constexpr const char* kMethods[] = {"linear", "dual-quaternion", "rigid"};
+  constexpr const char* kMethods[] = {"linear", "dual-quaternion", "spherical", "rigid"};
   std::vector<std::string> skinning = {
       model,
       motions.edited,

@@ -12,6 +12,8 @@
 #include "formats/alignment/alignment_format.h"
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/character/character_format.h"
+#include "formats/correctives/corrective_poses.h"
+#include "formats/correctives/correctives_format.h"
 #include "formats/goals/goals.h"
 #include "formats/height_field/height_image.h"
 #include "formats/key_shapes/key_shapes.h"
@@ -34,6 +36,8 @@ const std::pair<const char*, std::string (*)()> kSchemas[] = {
     {"alignment/alignment", alignment::schema},
     {"camera_keys/camera_keys", camera_keys::schema},
     {"character/character", character_file::schema},
+    {"correctives/corrective_poses", corrective_poses::schema},
+    {"correctives/correctives", correctives_file::schema},
     {"goals/goals", goals::schema},
     {"height_field/ground", height_field::schema},
     {"keys/keys", keys::schema},
