@@ -195,7 +195,7 @@ class Loader {
                    "fit them to this model with krok-fit")
           .in_file(path);
     }
-    const bool linear = options_.as == As::automatic || options_.as == As::rig;
+    const bool linear = what_to_write(options_, context_.output) == As::rig;
     if (correctives->method != (linear ? SkinMethod::linear : options_.method)) {
       Diagnostic other = make_warning(
           "skin-correctives-method",
