@@ -269,12 +269,19 @@ std::string_view describe_content(std::span<const std::byte> content) {
 std::string advice(Kind found, Kind wanted) {
   if (found == wanted) return {};
   if (wanted == Kind::steps) return "krok-fit makes it from a description of example clips (.json)";
+  if (wanted == Kind::model && is_of(found, Group::capture)) {
+    return "a mesh comes first, then motions: hero.model, or hero.character; krok-body makes one "
+           "for a capture";
+  }
   if (is_of(found, Group::capture) || is_of(found, Group::scene))
     return "import it with krok-import";
   if (is_of(found, Group::gltf)) {
     return "krok-import converts it: --save-character NAME.character writes its mesh and skeleton, "
            "-o "
            "NAME.anim an animation";
+  }
+  if (found == Kind::unknown && wanted == Kind::anim) {
+    return "motions are .anim files and what krok-import reads: .bvh, .amc, .fbx, .glb and more";
   }
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
   if (is_of(found, Group::own)) return "perhaps two arguments are in the wrong order";

@@ -397,8 +397,15 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     }
     const bool too_many = form_ == Form::single && takes_many_ &&
                           dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    std::string missing;
+    for (const CLI::Option* option : app_.get_options()) {
+      if (!option->get_required() || !option->empty()) continue;
+      missing = fmt::format("give {} {}; ", option->get_positional() ? "" : option->get_name(),
+                            option->get_type_name());
+      break;
+    }
     return Error("usage", error.what(),
-                 fmt::format("see {} --help{}", tool_,
+                 fmt::format("{}see {} --help{}", missing, tool_,
                              too_many ? "; for several inputs, use --out-dir DIR" : ""));
   }
   if (Status status = check_use_of_batch_options(); !status) return status.error();

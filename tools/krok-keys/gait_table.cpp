@@ -29,11 +29,6 @@ constexpr const char* kHeader =
     "step_length_left [m],step_length_right [m],step_width [m],stance_left [%],stance_right [%],"
     "double_support [%],slide_speed [mm/s],gait\n";
 
-// No time in which both feet are down.
-bool is_run(const GaitMetrics& gait) {
-  return gait.cycles > 0 && gait.double_support <= 0;
-}
-
 // Empty for what no step shows.
 std::string row_of(const std::string& name, double duration, const GaitFacts& facts) {
   const auto& [gait, steps, slide] = facts;
@@ -48,10 +43,10 @@ std::string row_of(const std::string& name, double duration, const GaitFacts& fa
            steps.step_length[1], steps.step_width, if_known(gait.stance[0], 100),
            if_known(gait.stance[1], 100),
            steps_known ? std::optional(100 * gait.double_support) : std::nullopt,
-           slide ? std::optional(1000 * *slide) : std::nullopt}) {
+           facts.is_run() ? std::nullopt : std::optional(1000 * slide)}) {
     row += value ? "," + readable(*value, 4) : ",";
   }
-  return row + (steps_known ? is_run(gait) ? ",run\n" : ",walk\n" : ",\n");
+  return row + (steps_known ? facts.is_run() ? ",run\n" : ",walk\n" : ",\n");
 }
 
 using Rows = Result<std::string>(const std::string& path, const io::FindRoles& find_roles,
@@ -118,18 +113,11 @@ Result<int> write_rows(const Options& options, const char* header, Rows* rows_of
 
 }  // namespace
 
-GaitFacts gait_facts(const std::vector<Keytime>& keytimes, const StepMeasures& steps,
-                     double slide_speed) {
-  GaitFacts facts{gait_metrics(keytimes), steps, {}};
-  if (!is_run(facts.gait)) facts.slide_speed = slide_speed;
-  return facts;
-}
-
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes) {
   if (const auto& removed = clip.provenance.removed_root_motion) {
     return gait_facts(carried_along(clip, carrying_joint(roles), *removed), roles, keytimes);
   }
-  return gait_facts(keytimes, step_measures(clip, roles, keytimes), slide_speed(clip, roles));
+  return {gait_metrics(keytimes), step_measures(clip, roles, keytimes), slide_speed(clip, roles)};
 }
 
 Result<int> write_gait_table(const Options& options, ToolContext& context) {

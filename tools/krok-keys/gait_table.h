@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "contacts/gait_metrics.h"
@@ -18,11 +17,10 @@ namespace krok::cli::keys {
 struct GaitFacts {
   GaitMetrics gait;
   StepMeasures steps;
-  // Metres per second. Absent in a run: where both feet fly, no foot could be still.
-  std::optional<double> slide_speed;
+  double slide_speed = 0;  // metres per second
+  // Where both feet fly, no foot could be still: the slide says nothing.
+  bool is_run() const { return gait.cycles > 0 && gait.double_support <= 0; }
 };
-GaitFacts gait_facts(const std::vector<Keytime>& keytimes, const StepMeasures& steps,
-                     double slide_speed);
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes);
 
 // Writes --table: a row for each motion, with keytimes of its sidecar or detected. Motions that

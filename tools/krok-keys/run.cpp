@@ -198,7 +198,7 @@ Json as_json(const GaitFacts& facts) {
       {"stride_length", number(steps.stride_length)},
       {"step_length", {number(steps.step_length[0]), number(steps.step_length[1])}},
       {"step_width", number(steps.step_width)},
-      {"slide_speed", number(slide)}};
+      {"slide_speed", slide}};
 }
 
 Json as_json(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton) {
@@ -235,7 +235,7 @@ std::string gait_text(const GaitFacts& facts) {
     text += fmt::format(", {} m/s, strides of {} m", readable(*steps.speed, 3),
                         readable(*steps.stride_length, 3));
   }
-  if (slide) text += fmt::format(", foot skate {:.1f} mm/s", 1e3 * *slide);
+  if (!facts.is_run()) text += fmt::format(", foot skate {:.1f} mm/s", 1e3 * slide);
   return text;
 }
 
@@ -315,7 +315,7 @@ Result<int> run_long(const Options& options, const InputFile& file, ToolContext&
     if (!status) return status.error();
   }
   report(options, sidecar, motion->skeleton,
-         gait_facts(sidecar.keys.keytimes, found->steps, found->slide_speed), true, context);
+         {gait_metrics(sidecar.keys.keytimes), found->steps, found->slide_speed}, true, context);
   return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;
 }
 

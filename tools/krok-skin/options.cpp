@@ -100,6 +100,9 @@ void declare_mesh(CommandOptions& command, Options& o) {
   command.add_flag("--compress", o.compress,
                    "For --as rig as .glb: compress meshes and keys (EXT_meshopt_compression), "
                    "without --quantize exactly; equal vertices become one, and are reordered");
+  command.add_flag("--minify", o.minify,
+                   "For --as rig: leave out texture coordinates that no texture uses, and where "
+                   "the file comes from");
 }
 
 void declare(CommandOptions& command, Options& o) {
@@ -152,8 +155,8 @@ Status check_for(As as, const Options& options) {
                  "use --as baked to bake the mesh with this method");
   }
   if (as == As::motion && options.motions.empty()) return usage("--as motion needs a motion");
-  if (as != As::rig && (options.reduce || options.quantize || options.compress)) {
-    return usage("--reduce, --quantize and --compress are for --as rig");
+  if (as != As::rig && (options.reduce || options.quantize || options.compress || options.minify)) {
+    return usage("--reduce, --quantize, --compress and --minify are for --as rig");
   }
   if (options.motions.size() < 2) return {};
   if (!rigged) {

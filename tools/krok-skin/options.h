@@ -41,6 +41,7 @@ struct Options {
   Influences influences = Influences::all;  // per vertex at most
   std::optional<double> reduce;             // --as rig: the tolerance, metres; empty: all keys
   bool quantize = false, compress = false;  // --as rig
+  bool minify = false;                      // --as rig
 
   bool has_weights_by_clip() const { return weights.find(kClipInName) != std::string::npos; }
 };

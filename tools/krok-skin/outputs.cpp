@@ -207,6 +207,7 @@ Result<bool> write_rig(const Options& chosen, const Subject& subject, ToolContex
     if (subject.changes_shape()) options.weights = &subject.weights;
     options.quantized = rig->quantization;
     options.compressed = chosen.compress;
+    if (chosen.minify) options.provenance = {};
     const auto write = [&](OutputFile& to) {
       return gltf::write_rig(rig->model, rig->clips.named(), options, to);
     };

@@ -268,22 +268,26 @@ Status lose_bits(const Options& options, SmallRig& rig, int jobs) {
   return {};
 }
 
-// Sets of texture coordinates after the last that a texture of a part uses.
-void drop_unused_sets(std::span<const Material> materials, Model& model, ToolContext& context) {
-  std::size_t used = 0;
+// Sets of texture coordinates after the last that a texture of a part uses; of the first one, which
+// other programs may want to put textures on, only with --minify.
+void drop_unused_sets(bool minify, std::span<const Material> materials, Model& model,
+                      ToolContext& context) {
+  std::size_t used = minify ? 0 : 1;
   for (const Model::Part& part : model.parts) {
     const Material* const material = find_material(materials, part.material);
     if (material == nullptr) continue;
     for (const Texture* texture : textures_of(*material)) {
-      if (*texture) used = std::max(used, static_cast<std::size_t>(texture->set));
+      if (*texture) used = std::max(used, static_cast<std::size_t>(texture->set) + 1);
     }
   }
-  if (model.more_texture_coordinates.size() <= used) return;
-  context.log(fmt::format(
-      "{} that no texture uses left out",
-      counted(std::ssize(model.more_texture_coordinates) - static_cast<std::ptrdiff_t>(used),
-              "set of texture coordinates", "sets of texture coordinates")));
-  model.more_texture_coordinates.resize(used);
+  const std::size_t first = model.texture_coordinates.empty() ? 0 : 1;
+  const std::size_t sets = first + model.more_texture_coordinates.size();
+  if (sets <= used) return;
+  context.log(fmt::format("{} that no texture uses left out",
+                          counted(static_cast<long long>(sets - used), "set of texture coordinates",
+                                  "sets of texture coordinates")));
+  model.more_texture_coordinates.resize(used > first ? used - first : 0);
+  if (used == 0) model.texture_coordinates.clear();
 }
 
 }  // namespace
@@ -297,8 +301,8 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
   if (!clips) return clips.error();
   warn_of_second_set(subject.model, context);
   SmallRig rig{subject.model, subject.morphs, *std::move(clips)};
-  if (options.quantize || options.compress) {
-    drop_unused_sets(subject.materials, rig.model, context);
+  if (options.quantize || options.compress || options.minify) {
+    drop_unused_sets(options.minify, subject.materials, rig.model, context);
   }
   if (options.reduce || options.quantize) {
     if (Status status = lose_bits(options, rig, context.jobs); !status) return status.error();

@@ -33,6 +33,23 @@ TEST_F(SkinCharacter, ARigHasItsMaterialsEyesAndExpressions) {
   EXPECT_TRUE(found);
 }
 
+// Coordinates that a texture uses stay, others go, and nothing that is seen changes.
+TEST_F(SkinCharacter, MinifyLeavesOutWhatNothingUses) {
+  const auto has_coordinates = [this](const std::string& name) {
+    return gltf(name)["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_0");
+  };
+  tool("krok-skin", {"in.model", "in.anim", "-o", "whole.gltf"});
+  tool("krok-skin", {"in.model", "in.anim", "--minify", "-o", "small.gltf"});
+  EXPECT_TRUE(has_coordinates("whole.gltf"));
+  EXPECT_FALSE(has_coordinates("small.gltf"));
+  EXPECT_FALSE(gltf("small.gltf")["asset"].contains("extras"));
+  const std::string told = tool("krok-diff", {"whole.gltf", "small.gltf"}, 1).out;
+  EXPECT_NE(told.find("positions: equal"), std::string::npos) << told;
+  EXPECT_NE(told.find("texture coordinates"), std::string::npos) << told;
+  tool("krok-skin", {"hero.character", "in.anim", "--minify", "-o", "hero.gltf"});
+  EXPECT_TRUE(has_coordinates("hero.gltf"));
+}
+
 TEST_F(SkinCharacter, AnExpressionAtRestShows) {
   tool("krok-skin", {"hero.character", "--as", "pose", "-o", "pose.glb"});
   expect_same("pose.glb", "bent.glb");

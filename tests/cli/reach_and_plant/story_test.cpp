@@ -43,7 +43,7 @@ TEST_F(ReachAndPlant, HoldsWhatItsReadmeTells) {
   EXPECT_LT(result["plant"]["drift"], 0.0005);
   EXPECT_LE(result["limits"]["largest_excess"].get<double>(), 1e-6);
   const json& rail = result["goals"][0];
-  EXPECT_EQ(rail["reached_frames"], rail["active_frames"]);
+  EXPECT_EQ(rail["reached_frames"], rail["full_strength_frames"]);
 
   // What the tools say is what the page shows.
   for (const char* start : {"standing.anim: feet planted", "rail.anim: 3 goals"}) {

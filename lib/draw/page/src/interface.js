@@ -9,6 +9,7 @@ import { Recorder, screenshot } from './capture.js';
 import { drawLegend, DifferenceLegend } from './legend.js';
 import { linkTo, linked, placeCamera } from './link.js';
 import { makeKeys } from './keys.js';
+import { CONTACT_COLOUR } from './actor.js';
 import { sideLanes } from './contacts.js';
 import { Timeline } from './timeline.js';
 
@@ -211,6 +212,15 @@ export class Interface {
       label.append(box, ` ${text}`);
       find('switches').append(label);
       this.switches.set(key, box);
+    }
+    if (items.some(({ contacts }) => contacts?.length > 0)) {
+      const swatch = document.createElement('span');
+      swatch.className = 'swatch';
+      swatch.style.background = CONTACT_COLOUR;
+      const meaning = document.createElement('span');
+      meaning.className = 'check';
+      meaning.append(swatch, ' Red: in contact');
+      find('switches').append(meaning);
     }
   }
 

@@ -254,11 +254,13 @@ export class Timeline {
       pen.lineTo(x + 8, 5.5);
       pen.lineTo(x, 9);
       pen.fill();
-      // As much of the name as fits before the next flag.
-      const wide = Math.min(next, this.width) - x - 14;
-      const fits = pen.measureText(name).width <= wide;
-      const short = fits ? name : name.replace(/^left_/, 'L ').replace(/^right_/, 'R ');
-      if (wide > LEAST_NAME) pen.fillText(shortened(pen, short, wide), x + 10, 7);
+      // As much of the name as fits before the next flag: left_strike, L strike, L.
+      const wide = Math.min(next, this.width) - x - 12;
+      const short = name.replace(/^left_/, 'L ').replace(/^right_/, 'R ');
+      const names = short === name ? [name] : [name, short, short[0]];
+      const fitting = names.find((one) => pen.measureText(one).width <= wide);
+      if (fitting) pen.fillText(fitting, x + 10, 7);
+      else if (wide > LEAST_NAME) pen.fillText(shortened(pen, name, wide), x + 10, 7);
     });
   }
 
