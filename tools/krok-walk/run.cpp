@@ -255,8 +255,9 @@ void check_pace(const Options& options, const std::vector<double>& speeds, ToolC
     context.warn("walk-pace",
                  fmt::format("--pace asks for {} m/s, the steps there go at {} m/s",
                              readable(options.pace[p], 3), readable(speed, 3)),
-                 count < 10 ? "it takes some steps to get up to speed: give a longer way"
-                            : "examples of this speed are needed; krok-fit --json lists theirs");
+                 count < 10
+                     ? "it takes some steps to get up to speed: give a longer way"
+                     : "steps in curves and on slopes are shorter; --speed makes them quicker");
   }
 }
 
