@@ -86,8 +86,8 @@ void declare_steps(CommandOptions& command, Options& o) {
   command.add_flag(
       "--strict", o.strict,
       "Exit with 1 if a step is not as it should be: a foot misses its print or is lower "
-      "than --clearance, the hips are beside the feet, an ankle bends too far (otherwise a "
-      "warning)");
+      "than --clearance, the hips are beside the feet, an ankle bends too far, the speed is not "
+      "--pace (otherwise a warning)");
   command.add("--stretch", o.stretch, length({0, 0.1}),
               "Length by which a leg may grow rather than its knee snap straight", "0");
   command.add("--variation", o.variation, number({0, 1}),

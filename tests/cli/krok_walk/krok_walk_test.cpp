@@ -218,5 +218,26 @@ TEST_F(KrokWalk, IsTheSameOnAnyNumberOfThreads) {
   }
 }
 
+// Would fail if a speed were said to be reached that the motion does not have.
+TEST_F(KrokWalk, ThePaceIsReachedOrItIsSaid) {
+  const auto report = walked({"--goal", "0,12m", "--pace", "1.2m/s"});
+  const Clip clip = this->clip("walk.anim");
+  const auto hips = static_cast<std::size_t>(clip.skeleton.find("Hips"));
+  const auto& steps = report["steps"];
+  const auto at = [&](const nlohmann::json& time) {
+    const int frame = static_cast<int>(std::lround(time.get<double>() * clip.rate));
+    return clip.frame_positions(std::min(frame, clip.frame_count() - 1))[hips];
+  };
+  const auto& first = steps[3];
+  const auto& last = steps[steps.size() - 4];
+  const double way = static_cast<double>((at(last["end"]) - at(first["start"])).norm());
+  EXPECT_NEAR(way / (last["end"].get<double>() - first["start"].get<double>()), 1.2, 0.1);
+  EXPECT_NEAR(first["speed"].get<double>(), 1.2, 0.1);
+  EXPECT_THAT(walk({"--goal", "0,12m", "--pace", "1.2m/s"}).err, Not(HasSubstr("walk-pace")));
+  const ToolRun near = walk({"--goal", "0,1m", "--pace", "4.3km/h", "--strict"});
+  EXPECT_EQ(near.exit_code, 1) << near.err;
+  EXPECT_THAT(near.err, HasSubstr("[walk-pace]"));
+}
+
 }  // namespace
 }  // namespace krok::test
