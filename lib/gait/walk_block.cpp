@@ -24,6 +24,8 @@ constexpr double kStaysFlat = 3;  // of the pitch at which a foot is flat
 // support: at 30 to 35 % of the cycle (Perry and Burnfield, "Gait Analysis", 2010).
 constexpr double kHeelRise = 0.4;
 constexpr double kMatching = 0.16, kMatchingInRun = 0.08;  // seconds, see Swing
+constexpr double kDrawnUp = 0.12;                          // seconds, of a foot in flight
+constexpr double kSoftReach = 0.05;                        // of the leg
 constexpr double kHeelRiseInRun = 0.5;                     // of the stance
 constexpr double kMoreRoll = 25 * kRadiansPerDegree;       // more than in the blend
 constexpr double kMaxPitch = 75 * kRadiansPerDegree;       // of a foot on its ball
@@ -248,7 +250,8 @@ Swing WalkBlock::make_swing(std::size_t step) const {
   const Stance& to = stance(step + 2);
   const FootSide side = parts_.side_of(step);
   const Quat signs = flat_foot(parts_.leg_of(step), parts_.plan.grounded[step]).orientation;
-  Swing swing(parts_.leg_of(step), leaves, now.strike, first < step ? kMatchingInRun : kMatching);
+  Swing swing(parts_.leg_of(step), leaves, now.strike,
+              steps[first].runs() ? kMatchingInRun : kMatching);
   Swing::Ends off, strike;
   const bool is_last = step + 1 == steps.size();
   off.spacing = std::min(kSpacing, (leaves - steps[first].start) / 3);
@@ -294,20 +297,27 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
   for (std::size_t i = 0; i < frames.poses.size(); ++i) {
     const double time = parts_.time_of(frames.first + static_cast<int>(i));
     auto& target = frames.target.emplace_back();
-    // A foot that has left the ground in flight goes no further from the hip than the leg reaches:
-    // the pelvis need not be lowered for it.
-    const auto within_reach = [&](FootPose foot, FootSide side) {
+    // A foot that left the ground at `off`, in flight, goes no further from the hip than the leg
+    // reaches: the pelvis need not be lowered for it. It may have been for the foot as it stood.
+    const auto within_reach = [&](FootPose foot, FootSide side, double off) {
       const Vec3& hip = frames.hips[i][index_of(side)];
       const Vec3 way = foot.foot.position - hip;
       const Vec3 usual = frames.blend[i][index_of(side)].foot.position - hip;
       const double longest = longest_reach(parts_.walker.leg(side), usual.norm());
-      if (way.norm() > longest) foot.foot.position = hip + longest / way.norm() * way;
+      // Softly, as the knee turns far for little where the leg is nearly straight.
+      const double soft = kSoftReach * parts_.walker.leg(side).length;
+      const double beyond = way.norm() - (longest - soft);
+      if (!(beyond > 0)) return foot;
+      const double reach = longest - soft * std::exp(-beyond / soft);
+      const double share = smoother_step((time - off) / kDrawnUp);
+      foot.foot.position -= share * (1 - reach / way.norm()) * way;
       return foot;
     };
     const FootPose& stance_blend = frames.blend[i][index_of(standing)];
     target[index_of(standing)] =
         next && time > next_leaves
-            ? within_reach(next->at(time, with_signs(step + 1, stance_blend)), standing)
+            ? within_reach(next->at(time, with_signs(step + 1, stance_blend)), standing,
+                           next_leaves)
             : stance(step + 1).at(time, stance_blend);
     const FootPose blend = with_signs(step, frames.blend[i][index_of(moving)]);
     FootPose& foot = target[index_of(moving)];
@@ -319,7 +329,7 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
       foot = swing.at(time, blend);
       const bool was_in_flight = leaves <= now.start;
       if (was_in_flight && time < std::midpoint(leaves, now.strike)) {
-        foot = within_reach(foot, moving);
+        foot = within_reach(foot, moving, leaves);
       }
       const auto points = sole_points(parts_.leg_of(step), foot);
       // Heel and ball: the tip of the toes rolls over the ground as the foot leaves.

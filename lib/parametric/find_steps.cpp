@@ -18,6 +18,7 @@ constexpr double kShortestRest = 0.1;  // seconds
 constexpr double kWeightShift = 1.5;   // seconds at most from the last rest to the off
 constexpr double kSettled = 0.2;       // seconds of a rest that belong to a start or a stop
 constexpr double kShortestStand = 0.5;
+constexpr double kLongestFlight = 0.3;  // seconds
 
 struct Span {
   double begin = 0, end = 0;  // seconds
@@ -66,7 +67,9 @@ std::vector<FoundStep> steps_between_strikes(const MotionKeys& keys, const CutOp
     const std::string off = off_of(runs ? strikes[i].side : step.swing);
     step.times = {start, start, end};
     int offs = 0;
+    bool flies = false;  // the swing foot leaves before the stance foot strikes
     for (const Keytime& key : keys.keytimes) {
+      flies = flies || (key.name == off && key.time <= start && key.time > start - kLongestFlight);
       if (key.name != off || key.time <= start || key.time >= end) continue;
       ++offs;
       step.times[1] = key.time;
@@ -75,8 +78,9 @@ std::vector<FoundStep> steps_between_strikes(const MotionKeys& keys, const CutOp
     if (strikes[i].side == step.swing) {
       step.fault = fmt::format("the {} foot strikes twice in a row", name_of(step.swing));
     } else if (offs != 1) {
-      step.fault =
-          fmt::format("{} {} between the strikes", offs == 0 ? "no" : "more than one", off);
+      step.fault = offs == 0 && flies ? R"(it is of a run ("steps": "runs" takes such steps))"
+                                      : fmt::format("{} {} between the strikes",
+                                                    offs == 0 ? "no" : "more than one", off);
     } else if (lasts < options.shortest || lasts > options.longest) {
       step.fault = fmt::format("{} s is too {}", readable(lasts, 3),
                                lasts < options.shortest ? "short" : "long");
