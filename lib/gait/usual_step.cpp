@@ -92,10 +92,11 @@ Result<double> step_length_at_speed(std::span<const StepLibrary> libraries, doub
     all.insert(all.end(), paces.begin(), paces.end());
   }
   const auto nearest = std::ranges::min_element(all, {}, off);
-  if (nearest != all.end() && off(*nearest) <= kAllowed * speed) return nearest->length;
   std::string range;
-  if (!all.empty()) {
+  if (nearest != all.end()) {
     const auto [slowest, fastest] = std::ranges::minmax(all, {}, &Pace::speed);
+    const bool between = slowest.speed() < speed && speed < fastest.speed();
+    if (between || off(*nearest) <= kAllowed * speed) return nearest->length;
     range = fmt::format(": those of the libraries go at {} to {} m/s", readable(slowest.speed(), 3),
                         readable(fastest.speed(), 3));
   }

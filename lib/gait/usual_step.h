@@ -15,7 +15,8 @@ namespace krok::gait {
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries);
 
 // Metres of the steps that go at `speed` (m/s, > 0) in the libraries of walks and runs: steps last
-// as long as those of examples about as long do. Code walk-speed if none is within 5 % of it.
+// as long as those of examples about as long do. Between a walk and a run, where no example goes at
+// that speed, those of the nearest. Code walk-speed if it is more than 5 % beyond all of them.
 Result<double> step_length_at_speed(std::span<const StepLibrary> libraries, double speed);
 
 }  // namespace krok::gait

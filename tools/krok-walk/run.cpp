@@ -241,7 +241,7 @@ double speed_of(const gait::StepReport& step, const std::vector<gait::GroundedPr
 // Warns of a pace that the steps nearest to its place do not go at: the mean of three, as they
 // begin and end a walk standing. Returns the number of them.
 int check_pace(const Options& options, const std::vector<double>& speeds, ToolContext& context) {
-  constexpr double kTolerance = 0.15;  // of the pace
+  constexpr double kTolerance = 0.1;  // of the pace
   const int count = static_cast<int>(speeds.size());
   int missed = 0;
   for (std::size_t p = 0; p < options.pace.size() && count > 0; ++p) {
@@ -260,12 +260,13 @@ int check_pace(const Options& options, const std::vector<double>& speeds, ToolCo
                          (along - double(before)) * (options.pace[after] - options.pace[before]);
     if (std::abs(speed - asked) <= kTolerance * asked) continue;
     ++missed;
-    context.warn("walk-pace",
-                 fmt::format("--pace asks for {} m/s, the steps there go at {} m/s",
-                             readable(asked, 3), readable(speed, 3)),
-                 count < 10
-                     ? "it takes some steps to get up to speed: give a longer way"
-                     : "steps in curves and on slopes are shorter; --speed makes them quicker");
+    context.warn(
+        "walk-pace",
+        fmt::format("--pace asks for {} m/s, the steps there go at {} m/s", readable(asked, 3),
+                    readable(speed, 3)),
+        count < 10
+            ? "it takes some steps to get up to speed: give a longer way"
+            : "give examples of this speed, or --speed; in curves and on slopes steps are shorter");
   }
   return missed;
 }
