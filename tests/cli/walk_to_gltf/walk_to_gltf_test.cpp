@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 using test::ToolRun;
 
-const std::string kStory = test::source_folder() + "/samples/walk_to_gltf";
+const std::string kWalkToGltf = test::source_folder() + "/samples/walk_to_gltf";
 
 class WalkToGltf : public test::FolderTest {
  protected:
@@ -35,14 +35,14 @@ class WalkToGltf : public test::FolderTest {
   }
   // A long capture whose name, and its folder's, have spaces, once for all tests.
   static Made long_capture() {
-    return made_once("long capture", kStory, [](const fs::path& folder) {
+    return made_once("long capture", kWalkToGltf, [](const fs::path& folder) {
       test::ToolOptions options;
       options.folder = folder.string();
       options.timeout = 600;
       return test::run(
           {"/bin/sh", "-c",
            "'" + test::make_walk() + "' --steps 40 --rate 120 -o 'my long take.bvh' && KROK_BIN='" +
-               test::tools_folder() + "' '" + kStory +
+               test::tools_folder() + "' '" + kWalkToGltf +
                "/run.sh' 'my long take.bvh' 'a folder/of mine'"},
           options);
     });
