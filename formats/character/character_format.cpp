@@ -17,6 +17,8 @@ using json::Given;
 using Eye = Character::Eye;
 using Expression = Character::Expression;
 using Part = Character::Part;
+using Range = Character::EyeRange;
+using Socket = Character::Socket;
 
 json::Kind<Vec3f> position() {
   return json::kind<Vec3f>(json::schema_of_numbers(3),
@@ -79,7 +81,26 @@ json::Object<Character> table() {
   json::Object<Eye> eye;
   eye.field("name", &Eye::name, json::name()).required();
   eye.field("joint", &Eye::joint, joint()).required();
-  eye.field("position", &Eye::position, position(), "metres").required().comment();
+  eye.field("position", &Eye::position, position(), "metres").required();
+  json::Object<Range> range("\"range\"");
+  for (const auto& [key, angle] : {std::pair{"in", &Range::in},
+                                   {"out", &Range::out},
+                                   {"up", &Range::up},
+                                   {"down", &Range::down}}) {
+    range.field(key, angle, json::single(0, 90), "degrees");
+  }
+  eye.field("range", &Eye::range, json::object(std::move(range)))
+      .written_if([](const Eye& of) { return of.range != Range(); })
+      .comment();
+  json::Object<Socket> socket;
+  socket.field("name", &Socket::name, json::name()).required();
+  socket.field("joint", &Socket::joint, joint()).required();
+  socket.field("offset", &Socket::offset, position(), "metres, in the joint's frame");
+  socket
+      .field("orientation", &Socket::orientation,
+             json::rotation().written([](const Quat& of) { return json::list_text(of); }),
+             "x, y, z, w in the joint's frame")
+      .comment();
   json::Object<Expression> expression;
   expression.field("name", &Expression::name, json::name()).required();
   expression.field("target", &Expression::target, json::text())
@@ -104,6 +125,8 @@ json::Object<Character> table() {
       .written_if(given(&Character::parts));
   file.field("eyes", &Character::eyes, named_list(std::move(eye), "eye {0}"))
       .written_if(given(&Character::eyes));
+  file.field("sockets", &Character::sockets, named_list(std::move(socket), "socket {0}"))
+      .written_if(given(&Character::sockets));
   file.field("morphs", &Character::morphs, json::path("a file path"))
       .written_if(given(&Character::morphs));
   file.field("expressions", &Character::expressions,

@@ -70,6 +70,11 @@ class Document {
   // Eye nodes as children of the joints from add_skeleton(). Code: gltf-structure.
   Status add_eyes(const Skeleton& skeleton, int skin, std::span<const Character::Eye> eyes);
 
+  // The same for sockets, and meshes below these or below joints. Code: gltf-structure.
+  Status add_sockets(const Skeleton& skeleton, int skin,
+                     std::span<const Character::Socket> sockets);
+  Status add_attached(int skin, std::span<const Attached> attached);
+
   struct MeshNode {
     int mesh = 0, node = 0;
   };
@@ -164,6 +169,9 @@ class Document {
                       Use use);
   std::vector<std::byte>& own_part();
   void use_extension(const char* name);  // (materials.cpp)
+  // A node below a joint of add_skeleton(), with a mark for the reader where it is no joint itself.
+  int add_below_joint(int skin, std::size_t joint, const std::string& name,
+                      const Transform& to_joint, const char* mark);
   // The whole file with its buffer views encoded (compress.cpp).
   Status write_compressed(OutputFile& file);
   // With as many bits as JointTrack has.
@@ -192,6 +200,7 @@ class Document {
   std::string json_;                  // with space reserved for the bounds
   std::vector<std::byte> unencoded_;  // the last bytes, fewer than one Base64 group
   std::set<std::string> node_names_;
+  std::map<std::string, int> sockets_;  // the nodes of add_sockets()
   std::map<std::string, int> materials_;
   std::map<const EncodedImage*, int> images_;
   std::map<std::pair<int, int>, int> textures_;  // by image and sampler

@@ -223,6 +223,9 @@ Status write_rig(const Model& model, std::span<const NamedTracks> clips,
       options.quantized ? PositionGrid::of(model.positions, *options.quantized) : PositionGrid();
   const int skin = document.add_skeleton(model.skeleton, clips, options.name, grid.to_model());
   if (Status status = document.add_eyes(model.skeleton, skin, options.eyes); !status) return status;
+  if (Status status = document.add_sockets(model.skeleton, skin, options.sockets); !status) {
+    return status;
+  }
   std::map<std::string, int> attributes;
   if (options.quantized) {
     Model stored = model;
@@ -238,6 +241,7 @@ Status write_rig(const Model& model, std::span<const NamedTracks> clips,
   const auto meshes = document.add_meshes(model, attributes, skin, mesh_name(options), true);
   if (!meshes) return meshes.error();
   Status status = add_morphs(document, model, attributes, *meshes, clips, options);
+  if (status) status = document.add_attached(skin, options.attached);
   return status ? document.write(file) : status;
 }
 

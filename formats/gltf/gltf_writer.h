@@ -26,6 +26,15 @@
 
 namespace krok::gltf {
 
+// A mesh that a joint carries, in the frame of a socket or of the joint.
+struct Attached {
+  std::string name;  // of the node; made unique
+  int joint = 0;     // of the skeleton
+  std::string
+      socket{};  // the node below which it is, one of WriteOptions::sockets; empty: the joint
+  const Model* mesh = nullptr;  // in its reference pose; its skeleton is not written
+};
+
 struct WriteOptions {
   bool binary = true;  // GLB; otherwise text with a data URI
   // Stored in asset.extras; its version goes into asset.generator.
@@ -39,6 +48,9 @@ struct WriteOptions {
   std::span<const Material> materials{};
   // Eye nodes as children of their joints, named like "left_eye"; write_rig only.
   std::span<const Character::Eye> eyes{};
+  // Sockets as nodes below their joints, and meshes below joints or sockets; write_rig only.
+  std::span<const Character::Socket> sockets{};
+  std::span<const Attached> attached{};
   // For write_rig: vertices as integers of 16 bits, directions of 8 (KHR_mesh_quantization).
   std::optional<Quantization> quantized{};
   // For a GLB: buffer views encoded by meshoptimizer (EXT_meshopt_compression), without loss but

@@ -528,7 +528,8 @@ Result<ParsedJson> parse_json(const Container& container) {
   for (const Json& node : entries_of(json, "nodes")) {
     result.lights.push_back(extension_of(node, "KHR_lights_punctual") != nullptr);
     const Json::json_pointer mark(std::string("/extras/") + kMark);
-    result.marked.push_back(node.is_object() && node.contains(mark) && node.at(mark) == kEye);
+    result.marked.push_back(node.is_object() && node.contains(mark) &&
+                            (node.at(mark) == kEye || node.at(mark) == kSocket));
     const Json* visibility = extension_of(node, kVisibility);
     result.hidden.push_back(visibility != nullptr && visibility->value("visible", Json()) == false);
   }

@@ -49,9 +49,10 @@ struct InstancedNode {
   std::map<std::string, int> attributes;  // accessors; -1 where they are not valid
 };
 
-// extras of nodes that Krok adds to name a joint as an eye: {"krok": "eye"}.
+// extras of nodes that Krok adds to name a joint as an eye, or a place at one: {"krok": "eye"}.
 inline constexpr const char* kMark = "krok";
 inline constexpr const char* kEye = "eye";
+inline constexpr const char* kSocket = "socket";
 
 // extras of animations: the rate of the frames that their keys are on, {"rate": 7}.
 inline constexpr const char* kRate = "rate";

@@ -6,8 +6,9 @@
 #include "core/text.h"
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/json_text_internal.h"
+#include "formats/gltf/mesh_shape_internal.h"
 
-// Writes materials, textures and eyes.
+// Writes materials, textures, eyes, sockets and what joints carry.
 
 namespace krok::gltf {
 
@@ -173,28 +174,75 @@ Result<int> Document::add_material(const std::string& name,
   return place->second;
 }
 
+int Document::add_below_joint(int skin, std::size_t joint, const std::string& name,
+                              const Transform& to_joint, const char* mark) {
+  const auto first =
+      static_cast<std::size_t>(gltf.skins[static_cast<std::size_t>(skin)].joints.front());
+  const Vec3f place = to_joint.position.cast<float>();
+  const Quatf turn = to_joint.orientation.cast<float>();
+  tinygltf::Node node;
+  node.name = unique_node_name(name);
+  if (!place.isZero(0)) node.translation = {place.x(), place.y(), place.z()};
+  if (!turn.vec().isZero(0)) node.rotation = {turn.x(), turn.y(), turn.z(), turn.w()};
+  if (mark != nullptr) node.extras = tinygltf::Value({{kMark, tinygltf::Value(std::string(mark))}});
+  const int index = static_cast<int>(gltf.nodes.size());
+  gltf.nodes[first + joint].children.push_back(index);
+  gltf.nodes.push_back(std::move(node));
+  return index;
+}
+
 Status Document::add_eyes(const Skeleton& skeleton, int skin,
                           std::span<const Character::Eye> eyes) {
-  const int first = gltf.skins[static_cast<std::size_t>(skin)].joints.front();
   for (const Character::Eye& eye : eyes) {
-    const auto found = std::ranges::find(skeleton.names, eye.joint);
-    if (found == skeleton.names.end()) {
+    // Turned by a motion, it is a joint.
+    if (skeleton.find(eye_joint_name(eye)) >= 0) continue;
+    const int joint = skeleton.find(eye.joint);
+    if (joint < 0) {
       return Error("gltf-structure", fmt::format("eye '{}' moves with the joint '{}', which the "
                                                  "skeleton has not",
                                                  shown(eye.name), shown(eye.joint)));
     }
-    const auto joint = static_cast<std::size_t>(found - skeleton.names.begin());
-    const Vec3f place =
-        (skeleton.reference[joint].inverse() * eye.position.cast<double>()).cast<float>();
-    tinygltf::Node node;
-    node.name = unique_node_name(eye.name + "_eye");
-    if (!place.isZero(0)) node.translation = {place.x(), place.y(), place.z()};
+    const auto j = static_cast<std::size_t>(joint);
+    const Vec3 place = skeleton.reference[j].inverse() * eye.position.cast<double>();
     // At a joint it only names that, and is no joint of the skeleton when the file is read.
-    if (place.norm() < 1e-6f)
-      node.extras = tinygltf::Value({{kMark, tinygltf::Value(std::string(kEye))}});
-    gltf.nodes[static_cast<std::size_t>(first) + joint].children.push_back(
-        static_cast<int>(gltf.nodes.size()));
-    gltf.nodes.push_back(std::move(node));
+    add_below_joint(skin, j, eye_joint_name(eye), {place, Quat::Identity()},
+                    place.cast<float>().norm() < 1e-6f ? kEye : nullptr);
+  }
+  return {};
+}
+
+Status Document::add_sockets(const Skeleton& skeleton, int skin,
+                             std::span<const Character::Socket> sockets) {
+  for (const Character::Socket& socket : sockets) {
+    const int joint = skeleton.find(socket.joint);
+    if (joint < 0) {
+      return Error("gltf-structure", fmt::format("socket '{}' is at the joint '{}', which the "
+                                                 "skeleton has not",
+                                                 shown(socket.name), shown(socket.joint)));
+    }
+    sockets_[socket.name] =
+        add_below_joint(skin, static_cast<std::size_t>(joint), socket.name,
+                        {socket.offset.cast<double>(), socket.orientation}, kSocket);
+  }
+  return {};
+}
+
+Status Document::add_attached(int skin, std::span<const Attached> attached) {
+  for (const Attached& thing : attached) {
+    const Model& mesh = *thing.mesh;
+    if (Status status = check_mesh(mesh); !status) return status;
+    const auto socket = sockets_.find(thing.socket);
+    const int parent = socket != sockets_.end()
+                           ? socket->second
+                           : gltf.skins[static_cast<std::size_t>(skin)]
+                                 .joints[static_cast<std::size_t>(thing.joint)];
+    const auto attributes = add_shape(*this, mesh, {mesh.positions, mesh.normals, mesh.tangents});
+    const auto meshes = add_meshes(mesh, attributes, -1, thing.name, true);
+    if (!meshes) return meshes.error();
+    for (const MeshNode& made : *meshes) {
+      std::erase(gltf.scenes[0].nodes, made.node);
+      gltf.nodes[static_cast<std::size_t>(parent)].children.push_back(made.node);
+    }
   }
   return {};
 }

@@ -20,13 +20,17 @@ struct Link {
 };
 
 // [vertices of the original]. Primitives have a range of the model's vertices, or all of them.
-Result<std::vector<Link>> links_of(const nodes::Evaluator& evaluator, const OriginalRig& original,
-                                   const WrittenRig& written) {
+Result<std::vector<Link>> links_of(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                                   const OriginalRig& original, const WrittenRig& written) {
   std::vector<Link> links(written.model.positions.size());
   std::uint32_t instance = 0;
   const Error other("gltf-mesh", "the written file does not have the triangles of the rig");
   for (const Model::Part& part : written.model.parts) {
     if (part.triangle_count == 0) continue;
+    while (instance < evaluator.instances().size() &&  // what joints carry
+           scene.nodes[at(evaluator.instances()[instance].node)].skin < 0) {
+      ++instance;
+    }
     if (instance == evaluator.instances().size()) return other;
     const nodes::Primitive& shape = evaluator.primitive(evaluator.instances()[instance]);
     if (shape.triangles.size() != part.triangle_count) return other;
@@ -60,7 +64,7 @@ Result<WrittenError> written_error(const std::string& path, const OriginalRig& o
   if (!scene) return scene.error();
   const auto evaluator = nodes::Evaluator::create(*scene);
   if (!evaluator) return evaluator.error();
-  const auto links = links_of(*evaluator, original, written);
+  const auto links = links_of(*scene, *evaluator, original, written);
   if (!links) return links.error();
   WrittenError worst;
   std::size_t next = 0;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/index.h"
 #include "core/nearest_name.h"
 #include "core/numbers.h"
@@ -44,6 +46,7 @@ struct File {
   double metres = 1;
   Goal::Kind kind = Goal::Kind::position;  // of the goal that is read
   std::vector<OtherMotion> others = {};
+  std::span<const Character::Socket> sockets = {};
 
   Result<int> joint_named(const Given& given, std::string_view name) const {
     const int joint = find_joint(name, skeleton, roles);
@@ -120,7 +123,7 @@ struct File {
     if (!goal.has("joint") && kind != Goal::Kind::balance) {
       return goal.structure(fmt::format("{} is missing \"joint\"", goal.what));
     }
-    if (!goal.has("name")) {
+    if (to.name.empty()) {
       to.name = kind == Goal::Kind::balance ? "balance" : skeleton.names[at(to.goal.joint)];
     }
     to.goal.axis = facing_axis(to.goal.joint, skeleton);
@@ -169,7 +172,24 @@ struct File {
                                          {"look-at", Goal::Kind::look_at},
                                          {"pole", Goal::Kind::pole},
                                          {"balance", Goal::Kind::balance}}));
-    goal.field("joint", in_goal(&Goal::joint), joint());
+    json::Kind<int> joint_or_socket = joint();
+    joint_or_socket.read = [this, read = joint_or_socket.read](const Given& given, void* to) {
+      const auto socket = std::ranges::find(sockets, given.value.text, &Character::Socket::name);
+      const int found = socket == sockets.end() ? -1 : skeleton.find(socket->joint);
+      if (found < 0) return read(given, to);
+      *static_cast<int*>(to) = found;
+      return Status();
+    };
+    goal.field("joint", in_goal(&Goal::joint), joint_or_socket);
+    goal.check([this](const Given& given, KeyedGoal& to) -> Status {
+      if (!given.has("joint")) return {};
+      const auto socket =
+          std::ranges::find(sockets, given.member("joint").value.text, &Character::Socket::name);
+      if (socket == sockets.end()) return {};
+      to.goal.point = socket->offset.cast<double>();
+      if (!given.has("name")) to.name = socket->name;
+      return {};
+    });
     goal.check([this](const Given& given, KeyedGoal& to) { return set_defaults(given, to); });
     goal.field("point", in_goal(&Goal::point), json::place(metres, kMaxNumber));
     goal.field("axis", in_goal(&Goal::axis), axis());
@@ -282,8 +302,10 @@ Vec3 facing_axis(int joint, const Skeleton& skeleton) {
   return skeleton.reference[at(joint)].orientation.normalized().conjugate() * Vec3::UnitZ();
 }
 
-Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles) {
+Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles,
+                      std::span<const Character::Socket> sockets) {
   File file{skeleton, roles};
+  file.sockets = sockets;
   auto goals = file.table().read_text(text, "goals");
   if (goals) goals->others = std::move(file.others);
   return goals;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "core/result.h"
 #include "ik/goal_motion.h"
 #include "roles/roles.h"
+#include "scene/character.h"
 #include "scene/skeleton.h"
 
 // Reader for goals of inverse kinematics (JSON, hand-written); see formats/goals/SPEC.md.
@@ -32,7 +34,9 @@ struct GoalFile {
 // the file gives no depth get default_depth(). Safe for untrusted input. Codes, each with line and
 // column: json-syntax, json-limit, goals-structure, goals-value, goals-time (times that do not
 // increase), goals-joint (no such joint), goals-path.
-Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles);
+// "joint" of a goal may be a socket, whose place is the goal's point unless the file gives one.
+Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles,
+                      std::span<const Character::Socket> sockets = {});
 
 // The JSON Schema of such files.
 std::string schema();

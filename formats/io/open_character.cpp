@@ -30,10 +30,11 @@ class Loader {
     if (!character) return std::move(character.error()).in_file(path_);
     loaded_.character = *std::move(character);
     for (const auto part : {&Loader::load_model, &Loader::load_materials, &Loader::assign_materials,
-                            &Loader::load_morphs, &Loader::check_eyes, &Loader::load_roles}) {
+                            &Loader::load_morphs, &Loader::check_joints, &Loader::load_roles}) {
       if (Status status = (this->*part)(); !status) return std::move(status.error()).in_file(path_);
     }
     loaded_.eyes = loaded_.character.eyes;
+    loaded_.sockets = loaded_.character.sockets;
     return std::move(loaded_);
   }
 
@@ -181,16 +182,24 @@ class Loader {
     return {};
   }
 
-  Status check_eyes() {
-    const std::vector<std::string>& joints = loaded_.model.skeleton.names;
-    for (const Character::Eye& eye : loaded_.character.eyes) {
-      if (std::ranges::find(joints, eye.joint) != joints.end()) continue;
-      return Error("character-joint",
-                   fmt::format("eye '{}' moves with the joint '{}', which the model does not have",
-                               shown(eye.name), shown(eye.joint)),
-                   nearest_hint(eye.joint, joints));
+  Status check_joints() {
+    const Character& character = loaded_.character;
+    for (const Character::Eye& eye : character.eyes) {
+      if (Status status = check_joint("eye", eye.name, eye.joint); !status) return status;
+    }
+    for (const Character::Socket& socket : character.sockets) {
+      if (Status status = check_joint("socket", socket.name, socket.joint); !status) return status;
     }
     return {};
+  }
+
+  Status check_joint(const char* what, const std::string& name, const std::string& joint) const {
+    const std::vector<std::string>& joints = loaded_.model.skeleton.names;
+    if (std::ranges::find(joints, joint) != joints.end()) return {};
+    return Error("character-joint",
+                 fmt::format("{} '{}' moves with the joint '{}', which the model does not have",
+                             what, shown(name), shown(joint)),
+                 nearest_hint(joint, joints));
   }
 
   Status load_roles() {

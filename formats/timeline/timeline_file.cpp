@@ -519,6 +519,117 @@ struct File {
         });
   }
 
+  // By name: weights of targets, or symbols.
+  template <typename T>
+  static json::Kind<std::vector<std::pair<std::string, T>>> by_name(json::Kind<T> value) {
+    using List = std::vector<std::pair<std::string, T>>;
+    return json::keyed<List>(value, "'{0}'", [](const Given& key, List& to) -> Result<T*> {
+      to.emplace_back(key.key, T());
+      return &to.back().second;
+    });
+  }
+
+  static json::Kind<std::vector<FaceItem::Shape>> shapes() {
+    using Weights = std::vector<std::pair<std::string, double>>;
+    return json::keyed<std::vector<FaceItem::Shape>>(
+        by_name(number(0, 1, "0 to 1")), "the shape of '{0}'",
+        [](const Given& key, std::vector<FaceItem::Shape>& to) -> Result<Weights*> {
+          const auto names = face::viseme_names();
+          if (std::ranges::find(names, key.key) == names.end()) {
+            return key.as({}).wrong(fmt::format("there is no viseme '{}'", shown(key.key)),
+                                    fmt::format("they are {}", fmt::join(names, ", ")));
+          }
+          to.push_back({std::string(key.key), {}});
+          return &to.back().weights;
+        });
+  }
+
+  json::Object<FaceItem> face_table() const {
+    using Kind = FaceItem::Kind;
+    constexpr std::pair<const char*, Kind> kKinds[] = {{"weights", Kind::weights},
+                                                       {"expression", Kind::expression},
+                                                       {"phonemes", Kind::phonemes},
+                                                       {"blinks", Kind::blinks}};
+    json::Object<FaceItem> item("an item of the face");
+    item.check([this, kKinds](const Given& given, FaceItem& to) -> Status {
+      to.where = place_of(given);
+      int found = 0;
+      for (const auto& [key, kind] : kKinds) {
+        if (given.has(key)) ++found, to.kind = kind;
+      }
+      if (found != 1) {
+        return given.wrong(
+            "an item of the face has one of \"weights\", \"expression\", "
+            "\"phonemes\" and \"blinks\"");
+      }
+      for (const auto& [key, kind] : {std::pair{"tier", Kind::phonemes},
+                                      {"alphabet", Kind::phonemes},
+                                      {"symbols", Kind::phonemes},
+                                      {"shapes", Kind::phonemes},
+                                      {"seed", Kind::blinks},
+                                      {"target", Kind::blinks}}) {
+        if (given.has(key) && kind != to.kind) {
+          return given.member(key).wrong(
+              fmt::format("\"{}\" is for {}", key, kind == Kind::blinks ? "blinks" : "phonemes"));
+        }
+      }
+      if (to.kind != Kind::blinks || given.has("target")) return {};
+      return given.wrong("blinks need a \"target\", which closes the lids");
+    });
+    item.field("weights", &FaceItem::file, name(), "path");
+    item.field("expression", &FaceItem::target, name());
+    item.field("phonemes", &FaceItem::file, name(), "path");
+    item.field(
+        "blinks", [](FaceItem& of) -> double& { return of.blinks.per_minute; },
+        number(0.1, 60, "0.1 to 60"), "per minute");
+    item.field(
+        "seed", [](FaceItem& of) -> std::uint64_t& { return of.blinks.seed; }, seed());
+    item.field("target", &FaceItem::target, name());
+    item.field("tier", &FaceItem::tier, name());
+    item.field("alphabet", &FaceItem::alphabet,
+               choice<face::Alphabet>({{"arpabet", face::Alphabet::arpabet},
+                                       {"ipa", face::Alphabet::ipa},
+                                       {"sampa", face::Alphabet::sampa}}));
+    item.field("symbols", &FaceItem::symbols, by_name(name()));
+    item.field("shapes", &FaceItem::shapes, shapes(), "by viseme, weights by target");
+    item.field("at", &FaceItem::at, time(), "of the result");
+    item.field("until", &FaceItem::until, time(), "of the result");
+    item.field("fade_in", &FaceItem::fade_in, fade());
+    item.field("fade_out", &FaceItem::fade_out, fade());
+    item.field("weight", &FaceItem::weight, weight());
+    item.field(
+        "mode", [](FaceItem& of) -> bool& { return of.additive; },
+        choice<bool>({{"override", false}, {"additive", true}}));
+    return item.comment();
+  }
+
+  static json::Kind<std::uint64_t> seed() {
+    return json::kind<std::uint64_t>(whole(0, 1'000'000'000).schema(),
+                                     [](const Given& given, std::uint64_t& to) -> Status {
+                                       int value = 0;
+                                       Status status = whole(0, 1'000'000'000).read(given, &value);
+                                       to = static_cast<std::uint64_t>(value);
+                                       return status;
+                                     });
+  }
+
+  // A point, or "ahead".
+  static json::Kind<GazeKey> gaze_target() {
+    return json::kind<GazeKey>(
+        json::schema_of_either({R"({"const": "ahead"})", json::vector(1e6).schema()}),
+        [](const Given& given, GazeKey& to) {
+          const bool ahead = given.value.kind == JsonKind::string && given.value.text == "ahead";
+          return ahead ? Status() : json::vector(1e6).read(given, &to.target.emplace());
+        });
+  }
+
+  static json::Object<GazeKey> gaze_table() {
+    json::Object<GazeKey> key("a key of the gaze");
+    key.field("at", &GazeKey::at, time(), "of the result").required();
+    key.field("target", gaze_target(), "metres, in the world, or ahead").required();
+    return key.comment();
+  }
+
   json::Object<Document> table() {
     const auto of_timeline = [](auto member) {
       return [member](Document & of) -> auto& {
@@ -535,9 +646,13 @@ struct File {
     file.field("sources", &Document::sources, sources(), "motions by name").required();
     file.field("base", of_timeline(&timeline::Timeline::base), entries(base_table())).required();
     file.field("layers", of_timeline(&timeline::Timeline::layers), entries(layer_table()));
-    file.check([this](const Given&, Document& to) {
+    file.field("character", &Document::character, name(), "path; for face and gaze");
+    file.field("face", &Document::face, entries(face_table()));
+    file.field("gaze", &Document::gaze, entries(gaze_table()));
+    file.check([this](const Given& given, Document& to) -> Status {
       to.timeline.rate = rate;
-      return Status();
+      if (to.face.empty() || !to.character.empty()) return {};
+      return given.member("face").wrong("a face needs a \"character\" with the expressions");
     });
     return file;
   }

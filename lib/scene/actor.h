@@ -20,8 +20,9 @@ struct Actor {
   Model model;                       // without vertices the skeleton alone
   std::vector<Material> materials;   // of the model's parts, with their images
   std::vector<Character::Eye> eyes;  // at joints of the model
-  MorphSet morphs;                   // of the model's vertices
-  std::vector<float> rest_weights;   // [targets] where no motion of the face is given
+  std::vector<Character::Socket> sockets;
+  MorphSet morphs;                  // of the model's vertices
+  std::vector<float> rest_weights;  // [targets] where no motion of the face is given
 
   struct Motion {
     std::string name;     // of the file or the animation; may be empty

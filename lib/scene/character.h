@@ -25,13 +25,32 @@ struct Character {
   };
   std::vector<Part> parts;  // names are unique
 
+  // How far an eye turns from straight ahead, degrees, 0 to 90. By default the means of 261 adults
+  // and children: Lee et al., Differences in eye movement range based on age and gaze direction
+  // (Eye 33, 2019).
+  struct EyeRange {
+    float in = 44.9f, out = 44.2f;  // towards the nose, and away from it
+    float up = 27.9f, down = 47.1f;
+    friend bool operator==(const EyeRange&, const EyeRange&) = default;
+  };
+
   // An eye position that moves with a joint.
   struct Eye {
     std::string name;                // "left"; unique, not empty
     std::string joint;               // of the model
     Vec3f position = Vec3f::Zero();  // metres, in the model's reference pose; +-kFurthest
+    EyeRange range = {};
   };
   std::vector<Eye> eyes;
+
+  // A place at a joint for things that it holds: socket_to_joint.
+  struct Socket {
+    std::string name;                     // "right_grip"; unique, not empty
+    std::string joint;                    // of the model
+    Vec3f offset = Vec3f::Zero();         // metres, in the joint's frame; +-kFurthest
+    Quat orientation = Quat::Identity();  // in the joint's frame; unit
+  };
+  std::vector<Socket> sockets;
 
   std::string morphs;  // morph targets of the model, a float EXR; empty for none
 
@@ -45,6 +64,9 @@ struct Character {
 
   std::string role_map;  // joint roles (formats/role_map); empty: found by joint names
 };
+
+// The node or joint of an eye that has no joint of its own: "left_eye".
+std::string eye_joint_name(const Character::Eye& eye);
 
 // Checks everything documented above that can be checked without reading the files. Code
 // character-value.

@@ -36,6 +36,7 @@
 #include "formats/role_map/role_map.h"
 #include "formats/sequences/sequences.h"
 #include "formats/steps/steps.h"
+#include "formats/textgrid/textgrid.h"
 #include "formats/timeline/timeline_file.h"
 #include "formats/weights/weights.h"
 #include "formats/zip/zip_archive.h"
@@ -293,6 +294,10 @@ void read_ragdoll(Bytes input) {
 void read_roles(Bytes input) {
   judge(role_map::read(text_of(input), "input.json", human()));
 }
+void read_textgrid(Bytes input) {
+  judge(textgrid::read(text_of(input), "input"));
+  judge(textgrid::read_intervals(text_of(input), "input", ""));
+}
 void read_weights(Bytes input) {
   static const std::vector<std::string> kTargets = {"smile", "blink, left", "time"};
   judge(weights::read(text_of(input), "input", kTargets));
@@ -330,6 +335,7 @@ constexpr Target kTargets[] = {
     {"role_map", read_roles},
     {"sequences", read_page<sequences::read>},
     {"steps", read_steps},
+    {"textgrid", read_textgrid},
     {"timeline", read_named_page<timeline_file::read>},
     {"weights", read_weights},
     {"zip", read_zip},

@@ -88,7 +88,10 @@ void declare_goals(CommandOptions& command, Options& o) {
               "+Z, y up; --goals for points in a joint's frame); repeatable");
   command.add("--look-at", o.looks, point_goal("--look-at", krok::ik::Goal::Kind::look_at),
               "The same for what faces forwards in the reference pose, which then points to the "
-              "place: head=0m,1.5m,4m@1s..3s");
+              "place: head=0m,1.5m,4m@1s..3s. eyes=...: the eyes jump there at the first time, "
+              "and the head follows with its share; eyes without a joint become joints");
+  command.add_option("--character IN.character", o.character,
+                     "Character whose sockets may be named instead of joints, and whose eyes turn");
   command.add("--fade", o.fade, seconds(),
               "Time in which --reach and --look-at take hold before, and let go after", "0.5s");
   add_map_option(command, o.map);
@@ -196,6 +199,8 @@ ToolSpec make_spec() {
        "goals keyed in time; limits from published ranges of motion"},
       {"krok-ik walk.anim --look-at head=2m,1.5m,3m@0s..2s --stiffness spine=0.9 -o look.anim",
        "the head turns to a place, mostly by the neck"},
+      {"krok-ik walk.anim --character hero.character --look-at eyes=2m,1.6m,3m@1s..2s -o look.anim",
+       "the eyes jump to a place and the head follows"},
       {"krok-ik walk.anim --plant --goals goals.json -o reach.anim --plot reach.svg",
        "feet that stay where they stand, then goals; a chart of what is missed"},
       {"krok-ik walk.anim --learn-limits run.anim --learn-limits dance.anim --save-limits "

@@ -27,7 +27,7 @@ struct Stiffness {
 };
 
 struct Options {
-  std::string input, map;
+  std::string input, map, character;
   std::string goals;                     // a goal file, or empty
   std::vector<PointGoal> points, looks;  // of --reach and --look-at
   double fade = 0;                       // seconds

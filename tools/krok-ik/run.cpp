@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <string>
@@ -16,10 +17,12 @@
 #include "formats/anim/anim.h"
 #include "formats/chart/chart_writer.h"
 #include "formats/goals/goals.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
+#include "ik/gaze.h"
 #include "ik/learn_limits.h"
 #include "retarget/stance.h"
 #include "tools/cli/file_name.h"
@@ -35,6 +38,7 @@ namespace {
 
 using krok::ik::Goal;
 
+constexpr const char* kTurnedEyes = "eyes and head turned to what is looked at";
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();  // breaks a line
 
 bool has_distance(Goal::Kind kind) {
@@ -190,6 +194,7 @@ class Run {
  private:
   Status check_outputs() const;
   Status read_motion();
+  Status read_character();
   Status read_limits();
   Status learn();
   Status read_goals();
@@ -197,6 +202,8 @@ class Run {
   Status raise_goals();
   Status set_stiffness();
   Status plant_first();
+  bool is_gaze(const PointGoal& point) const;
+  Status turn_eyes(Clip& clip);
   Result<int> finish_without_goals();
   void note_provenance(Clip& clip, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
@@ -209,9 +216,11 @@ class Run {
   RoleMap roles_;
   krok::ik::Limits limits_;
   std::vector<krok::ik::KeyedGoal> goals_;
+  Actor character_;     // empty without one
   OpenedGoals opened_;  // goals_ point to its motions
   krok::ik::Options solver_;
   Json planting_;
+  Json gaze_ = Json::array();
   std::string planting_line_;
 };
 
@@ -227,6 +236,58 @@ Status Run::read_motion() {
   roles_ = std::move(*roles);
   if (clip_.skeleton.empty()) {
     return Error("ik-empty", "the motion has no joints").in_file(options_.input);
+  }
+  return {};
+}
+
+Status Run::read_character() {
+  if (options_.character.empty()) return {};
+  auto actor = io::open_actor(options_.character, context_, {.with_motions = false});
+  if (!actor) return actor.error();
+  character_ = *std::move(actor);
+  return {};
+}
+
+bool Run::is_gaze(const PointGoal& point) const {
+  return point.kind == Goal::Kind::look_at && point.joint == "eyes" &&
+         clip_.skeleton.find("eyes") < 0;
+}
+
+// Last, as the head's own goals are what it looks ahead by.
+Status Run::turn_eyes(Clip& clip) {
+  std::vector<PointGoal> looks;
+  std::ranges::copy_if(options_.looks, std::back_inserter(looks),
+                       [this](const PointGoal& point) { return is_gaze(point); });
+  if (looks.empty()) return {};
+  const auto seconds = [&](const PointGoal& look, double time) {
+    return look.in_frames ? time / clip_.rate : time;
+  };
+  std::ranges::stable_sort(looks, {},
+                           [&](const PointGoal& look) { return seconds(look, look.from); });
+  std::vector<krok::ik::GazeTarget> targets;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    targets.push_back({seconds(looks[i], looks[i].from), looks[i].target});
+    const double end = seconds(looks[i], looks[i].to);
+    const bool follows = i + 1 < looks.size() && seconds(looks[i + 1], looks[i + 1].from) <= end;
+    if (!follows && end > targets.back().time) targets.push_back({end, {}});
+  }
+  const auto eyes = krok::ik::gaze_eyes(character_.eyes, character_.skeleton(), clip.skeleton);
+  if (!eyes) return Error(eyes.error()).in_file(options_.input);
+  auto made = krok::ik::apply_gaze(clip, *eyes, targets, roles_);
+  if (!made) return Error(made.error()).in_file(options_.input);
+  clip = std::move(made->clip);
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    const krok::ik::GazeFacts& facts = made->targets[k];
+    gaze_.push_back({{"time", targets[k].time},
+                     {"amplitude", facts.amplitude / kRadiansPerDegree},
+                     {"head", facts.head / kRadiansPerDegree},
+                     {"missed", facts.missed / kRadiansPerDegree}});
+    if (facts.reached) continue;
+    context_.warn("ik-gaze",
+                  fmt::format("the eyes miss what they look at from {} s by {:.1f} "
+                              "degrees: it is beyond the range of eyes and head, or "
+                              "gone too soon",
+                              readable(targets[k].time, 4), facts.missed / kRadiansPerDegree));
   }
   return {};
 }
@@ -278,7 +339,7 @@ Result<int> Run::joint_of(const std::string& option, const std::string& name) co
 
 Status Run::read_goals() {
   if (options_.goals.empty()) return {};
-  auto opened = open_goals(options_.goals, clip_.skeleton, roles_, context_);
+  auto opened = open_goals(options_.goals, clip_.skeleton, roles_, context_, character_.sockets);
   if (!opened) return opened.error();
   opened_ = std::move(*opened);
   goals_ = opened_.goals;
@@ -312,9 +373,14 @@ Status Run::add_points() {
   std::vector<PointGoal> points = options_.points;
   points.insert(points.end(), options_.looks.begin(), options_.looks.end());
   for (const PointGoal& point : points) {
-    const auto joint = joint_of(point.option, point.joint);
+    if (is_gaze(point)) continue;
+    const auto socket =
+        std::ranges::find(character_.sockets, point.joint, &Character::Socket::name);
+    const bool is_socket = socket != character_.sockets.end();
+    const auto joint = joint_of(point.option, is_socket ? socket->joint : point.joint);
     if (!joint) return joint.error();
     krok::ik::KeyedGoal goal;
+    if (is_socket) goal.goal.point = socket->offset.cast<double>();
     goal.name = clip_.skeleton.names[at(*joint)];
     goal.goal.kind = point.kind;
     goal.goal.joint = *joint;
@@ -390,18 +456,21 @@ void Run::note_provenance(Clip& clip, const std::string& line) const {
 }
 
 Result<int> Run::finish_without_goals() {
-  if (!options_.plant) {
+  if (!options_.changes_motion()) {
     if (Status status = write(nullptr); !status) return status.error();
     context_.report.result = limits_json(limits_, clip_.skeleton);
     context_.log(fmt::format("{}: {}", options_.write_limits, limits_summary(limits_)));
     return kExitDone;
   }
   Clip planted = clip_;
-  note_provenance(planted, {});
+  if (Status status = turn_eyes(planted); !status) return status.error();
+  note_provenance(planted, gaze_.empty() ? "" : kTurnedEyes);
   if (Status status = write(&planted); !status) return status.error();
   context_.report.result["frames"] = planted.frame_count();
-  context_.report.result["plant"] = std::move(planting_);
-  context_.log(fmt::format("{}: {}", context_.output, planting_line_));
+  if (options_.plant) context_.report.result["plant"] = std::move(planting_);
+  if (!gaze_.empty()) context_.report.result["gaze"] = std::move(gaze_);
+  context_.log(
+      fmt::format("{}: {}", context_.output, options_.plant ? planting_line_ : kTurnedEyes));
   return kExitDone;
 }
 
@@ -454,11 +523,15 @@ Status Run::check_outputs() const {
 Result<int> Run::run() {
   if (Status status = check_outputs(); !status) return status.error();
   solver_ = options_.solver;
-  for (const auto step : {&Run::read_motion, &Run::read_limits, &Run::read_goals, &Run::add_points,
-                          &Run::raise_goals, &Run::set_stiffness, &Run::plant_first}) {
+  for (const auto step :
+       {&Run::read_motion, &Run::read_character, &Run::read_limits, &Run::read_goals,
+        &Run::add_points, &Run::raise_goals, &Run::set_stiffness, &Run::plant_first}) {
     if (Status status = (this->*step)(); !status) return status.error();
   }
-  if (!options_.has_goals()) return finish_without_goals();
+  if (goals_.empty()) {
+    if (!options_.plot.empty()) return usage("--plot shows goals, of which eyes are none");
+    return finish_without_goals();
+  }
   krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
@@ -475,15 +548,19 @@ Result<int> Run::run() {
     missed.where.file = options_.input;
     context_.diagnose(std::move(missed));
   }
-  note_provenance(made->clip, "inverse kinematics: " + summary(outcome));
+  const std::string line = "inverse kinematics: " + summary(outcome);
+  Clip turned = made->clip;
+  if (Status status = turn_eyes(turned); !status) return status.error();
+  note_provenance(turned, line);
   std::string chart;
   if (!options_.plot.empty()) {
     auto svg = draw::to_svg(chart_of(outcome, name_of_input(options_.input)));
     if (!svg) return svg.error();
     chart = std::move(*svg);
   }
-  if (Status status = write(&made->clip, chart); !status) return status.error();
+  if (Status status = write(&turned, chart); !status) return status.error();
   context_.report.result = to_json(outcome);
+  if (!gaze_.empty()) context_.report.result["gaze"] = std::move(gaze_);
   if (options_.plant) {
     context_.report.result["plant"] = std::move(planting_);
     context_.log(fmt::format("{}: {}", context_.output, planting_line_));

@@ -141,6 +141,14 @@ void add_eyes(const Character& character, Description& out) {
   }
   out.add("eyes", std::move(lines));
   out.json["eyes"] = std::move(list);
+  lines.clear();
+  for (const Character::Socket& socket : character.sockets) {
+    lines.push_back(fmt::format("{} at {} m of {}", shown(socket.name), numbers_of(socket.offset),
+                                shown(socket.joint)));
+    out.json["sockets"].push_back(
+        {{"name", socket.name}, {"joint", socket.joint}, {"offset", json_of(socket.offset)}});
+  }
+  out.add("sockets", std::move(lines));
 }
 
 void add_expressions(const io::LoadedCharacter& loaded, Description& out) {

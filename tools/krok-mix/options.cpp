@@ -28,7 +28,9 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-mix", options, declare, nullptr, run);
   spec.summary = "Bakes a timeline of motions, transitions and layers to one motion";
-  spec.details = "Sequences, cross-fades, and layers for parts of the body.";
+  spec.details =
+      "Sequences, cross-fades, and layers for parts of the body; the face (expressions, speech, "
+      "blinks) as weights beside the motion, OUT.weights.csv; eyes that look at things.";
   spec.inputs = "IN.json";
   spec.writes = registry::Kind::anim;
   spec.examples = {
@@ -39,6 +41,11 @@ ToolSpec make_spec() {
       {"krok-mix wave.json -o wave.anim",
        "wave.json adds: \"layers\": [{\"mask\": [{\"below\": \"LeftShoulder\", \"soft\": "
        "2}], \"items\": [{\"source\": \"wave\", \"at\": \"1s\", \"fade_in\": \"0.3s\"}]}]"},
+      {"krok-mix talk.json -o talk.anim && krok-skin hero.character talk.anim --weights "
+       "talk.weights.csv -o talk.glb",
+       "talk.json adds: \"character\": \"hero.character\", \"face\": [{\"phonemes\": "
+       "\"talk.TextGrid\"}, {\"blinks\": 26, \"target\": \"blink\"}], \"gaze\": [{\"at\": \"1s\", "
+       "\"target\": [2, 1.6, 3]}]"},
       {"krok-mix 'stories/scene_*.json' --out-dir out", "all timelines matching a pattern"}};
   spec.batch = {{".json"}, always(".anim")};
   return spec;

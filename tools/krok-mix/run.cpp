@@ -13,12 +13,16 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
+#include "formats/csv/csv_writer.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/sequences/sequences.h"
 #include "formats/timeline/timeline_file.h"
 #include "timeline/mix.h"
+#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/krok-mix/face.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/plant_result.h"
 
@@ -144,8 +148,13 @@ void warn_of_pops(const timeline::Timeline& timeline, const Mixed& mixed, ToolCo
   }
 }
 
+// Beside the motion, for krok-skin --weights.
+std::string weights_path(const std::string& output) {
+  return cli::beside(output, ".weights.csv");
+}
+
 Status write_results(const Options& options, const TimelineSources& motions, Mixed& mixed,
-                     ToolContext& context) {
+                     const MorphWeights& face, ToolContext& context) {
   const auto keys_path = place_for_keys(mixed.keys, context.output);
   if (!keys_path) return keys_path.error();
   mixed.clip.provenance = context.provenance();
@@ -164,7 +173,29 @@ Status write_results(const Options& options, const TimelineSources& motions, Mix
       return file.write(keys::write(mixed.keys, mixed.clip.skeleton, mixed.clip.duration()));
     });
   }
+  if (status && !face.values.empty()) {
+    status = outputs.add(weights_path(context.output),
+                         [&](OutputFile& file) { return csv::write(face, file); });
+  }
   return status ? outputs.finish() : status;
+}
+
+// The file that the timeline names, or an empty one.
+Result<Actor> read_character(const timeline_file::Document& document, const Options& options,
+                             ToolContext& context) {
+  if (document.character.empty()) return Actor();
+  return io::open_actor(beside(options.input, document.character), context,
+                        {.with_morphs = true, .with_motions = false});
+}
+
+Json gaze_report(const std::vector<krok::ik::GazeFacts>& gaze) {
+  Json list = Json::array();
+  for (const krok::ik::GazeFacts& shift : gaze) {
+    list.push_back({{"amplitude", to_degrees(shift.amplitude)},
+                    {"head", to_degrees(shift.head)},
+                    {"missed", to_degrees(shift.missed)}});
+  }
+  return list;
 }
 
 Json layer_name(const timeline::Timeline& timeline, int layer) {
@@ -272,10 +303,29 @@ Result<int> run(const Options& options, ToolContext& context) {
     if (!planted) return planted.error();
     drift = *planted;
   }
-  if (Status status = write_results(options, *motions, *mixed, context); !status) {
+  const auto character = read_character(*document, options, context);
+  if (!character) return character.error();
+  const auto gaze = add_gaze(*document, *character, *roles, mixed->clip);
+  if (!gaze) return Error(gaze.error()).in_file(options.input);
+  MorphWeights face;
+  if (!document->face.empty()) {
+    auto made = face_of(*document, options.input, *character, mixed->clip, context);
+    if (!made) return made.error();
+    face = *std::move(made);
+    if (context.output == "-") {
+      return Error("usage", "the face's weights need a file beside the motion", "use -o OUT.anim");
+    }
+  }
+  if (Status status = write_results(options, *motions, *mixed, face, context); !status) {
     return status.error();
   }
   report(timeline, *mixed, context);
+  if (!gaze->empty()) context.report.result["gaze"] = gaze_report(*gaze);
+  if (!face.values.empty()) {
+    context.report.result["face"] = face.names;
+    context.log(fmt::format("{}: {} of the face", weights_path(context.output),
+                            counted(std::ssize(face.names), "target")));
+  }
   if (drift) {
     context.report.result["planted"] = to_json(*drift);
     context.log(text_of(*drift));

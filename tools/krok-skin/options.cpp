@@ -77,6 +77,13 @@ void declare_mesh(CommandOptions& command, Options& o) {
                   "weights follow the rotations of joints")
       .not_with("--as motion");
   add_twist_joints_option(command, o.twist);
+  command
+      .add_option("--attach PLACE=IN", o.attached,
+                  "For --as rig: attach the mesh of a file (.glb, .gltf, .model and others) to a "
+                  "socket of the character, or to a joint by name or role: right_hand=cup.glb. It "
+                  "becomes a node below the joint; the file's origin and axes are the socket's, or "
+                  "the joint's; repeatable")
+      .one_each_time();
   command.add("--up AXIS", o.up, up_axis<pc2::Up>({{"y", pc2::Up::y}, {"z", pc2::Up::z}}),
               "Up axis of a point cache: y as in the written OBJ and glTF files, or z as in "
               "Blender and 3ds Max",
@@ -158,6 +165,7 @@ Status check_for(As as, const Options& options) {
   if (as != As::rig && (options.reduce || options.quantize || options.compress || options.minify)) {
     return usage("--reduce, --quantize, --compress and --minify are for --as rig");
   }
+  if (as != As::rig && !options.attached.empty()) return usage("--attach is for --as rig");
   if (options.motions.size() < 2) return {};
   if (!rigged) {
     return usage("several motions are for --as rig and --as motion",
@@ -217,6 +225,8 @@ ToolSpec make_spec() {
        "two clips with expressions of their own, from walk.csv and talk.csv"},
       {"krok-skin body.model walk.anim --correctives body.correctives -o walk.glb",
        "joints that keep their volume, as morph targets with a weight at each frame"},
+      {"krok-skin hero.character walk.anim --attach right_grip=cup.glb -o hero.glb",
+       "a cup in the hand, at a socket of the character"},
       {"krok-skin body.model walk.anim --as pose --time 1.5s -o pose.glb", "one pose"},
       {"krok-skin body.model walk.anim --as baked -o baked.glb",
        "baked vertex animation, for viewers without skinning"},

@@ -31,6 +31,7 @@ struct Options {
   std::string morphs;                       // --morph, empty: none
   std::string weights;                      // --weights, empty: none
   std::string correctives;                  // --correctives, empty: none
+  std::vector<std::string> attached;        // --attach: PLACE=IN
   As as = As::automatic;                    // see what_to_write()
   SkinMethod method = SkinMethod::linear;   // always for --as rig
   std::optional<ClipTime> time;             // --as pose; empty: the start

@@ -203,6 +203,12 @@ Result<bool> write_rig(const Options& chosen, const Subject& subject, ToolContex
   const Status all = write_output(context, context.output, [&](OutputFile& file) -> Status {
     gltf::WriteOptions options = write_options(subject, context);
     options.eyes = subject.eyes;
+    options.sockets = subject.sockets;
+    std::vector<gltf::Attached> attached;
+    for (const Subject::Thing& thing : subject.things) {
+      attached.push_back({thing.name, thing.joint, thing.socket, &thing.model});
+    }
+    options.attached = attached;
     if (rig->morphs.target_count() > 0) options.morphs = &rig->morphs;
     if (subject.changes_shape()) options.weights = &subject.weights;
     options.quantized = rig->quantization;

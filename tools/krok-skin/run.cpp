@@ -42,6 +42,12 @@ Json result_of(const Subject& subject, int frames) {
   for (const Subject::Motion& other : subject.others) {
     result["clips"].push_back(clip_json(other.name, other.clip));
   }
+  for (const Subject::Thing& thing : subject.things) {
+    result["attached"].push_back(
+        {{"name", thing.name},
+         {"joint", subject.model.skeleton.names[static_cast<std::size_t>(thing.joint)]},
+         {"vertices", thing.model.vertex_count()}});
+  }
   if (subject.morphs.target_count() > 0) result["morph_targets"] = subject.morphs.names;
   return result;
 }

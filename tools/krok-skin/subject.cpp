@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "capture/unique_names.h"
+#include "core/nearest_name.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "correctives/correctives.h"
 #include "formats/correctives/correctives_format.h"
+#include "formats/goals/goals.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
@@ -16,9 +20,11 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
+#include "roles/roles.h"
 #include "skin/bind.h"
 #include "skin/twist_joints.h"
 #include "tools/cli/file_name.h"
+#include "tools/cli/usage.h"
 
 namespace krok::cli::skin {
 
@@ -33,7 +39,7 @@ class Loader {
   Result<Subject> load() {
     for (const auto step : {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights,
                             &Loader::read_clip, &Loader::take_weights, &Loader::take_part,
-                            &Loader::read_others, &Loader::add_correctives}) {
+                            &Loader::read_others, &Loader::add_correctives, &Loader::read_things}) {
       if (Status status = (this->*step)(); !status) return status.error();
     }
     return std::move(subject_);
@@ -52,6 +58,7 @@ class Loader {
     subject_.model = std::move(actor->model);
     subject_.materials = std::move(actor->materials);
     subject_.eyes = std::move(actor->eyes);
+    subject_.sockets = std::move(actor->sockets);
     subject_.morphs = std::move(actor->morphs);
     rest_weights_ = std::move(actor->rest_weights);
     if (Status status = add_twist_joints(options_.twist, subject_.model); !status) {
@@ -136,9 +143,11 @@ class Loader {
     auto bound = bind_to(std::move(subject_.model), clip.skeleton);
     if (!bound) return std::move(bound.error()).in_file(path);
     subject_.model = std::move(*bound);
-    std::erase_if(subject_.eyes, [&](const Character::Eye& eye) {  // whose joints were removed
-      return subject_.model.skeleton.find(eye.joint) < 0;
-    });
+    const auto is_removed = [&](const auto& one) {
+      return subject_.model.skeleton.find(one.joint) < 0;
+    };
+    std::erase_if(subject_.eyes, is_removed);
+    std::erase_if(subject_.sockets, is_removed);
     report_differences(clip, path);
     return {};
   }
@@ -256,6 +265,59 @@ class Loader {
       correctives.at(joints, row.last(added));
     }
     return all;
+  }
+
+  Status read_things() {
+    for (const std::string& text : options_.attached) {
+      const NamedPath given = named_path(text);
+      if (given.name.empty()) {
+        return usage(fmt::format("--attach '{}' names no joint or socket", shown(text)),
+                     "write right_hand=cup.glb");
+      }
+      Subject::Thing thing{clip_name_of(given.path), 0, {}, {}};
+      const auto socket = std::ranges::find(subject_.sockets, given.name, &Character::Socket::name);
+      const Skeleton& skeleton = subject_.model.skeleton;
+      if (socket != subject_.sockets.end()) {
+        thing.socket = socket->name;
+        thing.joint = skeleton.find(socket->joint);
+      } else {
+        thing.joint = goals::find_joint(given.name, skeleton, find_roles(skeleton));
+      }
+      if (thing.joint < 0) {
+        return Error("skin-attach",
+                     fmt::format("--attach {}: there is no socket or joint of that name or role",
+                                 shown(given.name)),
+                     nearest_hint(given.name, skeleton.names))
+            .in_file(options_.subject);
+      }
+      auto actor = io::open_actor(given.path, context_, {.with_motions = false});
+      if (!actor) return actor.error();
+      if (!actor->has_mesh()) {
+        return Error("skin-attach", "has no mesh to attach").in_file(given.path);
+      }
+      thing.model = std::move(actor->model);
+      take_materials(std::move(actor->materials), thing);
+      subject_.things.push_back(std::move(thing));
+    }
+    return {};
+  }
+
+  // Adds a thing's materials to the subject's, under names that are not taken.
+  void take_materials(std::vector<Material> materials, Subject::Thing& thing) {
+    const auto is_taken = [&](const std::string& name) {
+      return find_material(subject_.materials, name) != nullptr ||
+             std::ranges::any_of(subject_.model.parts,
+                                 [&](const Model::Part& part) { return part.material == name; });
+    };
+    std::map<std::string, std::string> renamed;
+    for (Material& material : materials) {
+      std::string name = material.name;
+      for (int i = 2; is_taken(name); ++i) name = fmt::format("{}_{}", material.name, i);
+      renamed[material.name] = name;
+      material.name = std::move(name);
+      subject_.materials.push_back(std::move(material));
+    }
+    for (Model::Part& part : thing.model.parts) part.material = renamed[part.material];
   }
 
   std::string clip_name(std::size_t motion) const {

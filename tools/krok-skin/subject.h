@@ -25,6 +25,16 @@ struct Subject {
 
   std::vector<Material> materials;   // of the model's parts; for characters
   std::vector<Character::Eye> eyes;  // at joints of the model; for characters
+  std::vector<Character::Socket> sockets;
+
+  // A mesh that a joint carries.
+  struct Thing {
+    std::string name;    // of its file, without ending
+    int joint = 0;       // of the model
+    std::string socket;  // of `sockets`; empty: in the joint's frame
+    Model model;         // its materials are in `materials`
+  };
+  std::vector<Thing> things;
 
   struct Motion {
     std::string name;
@@ -51,7 +61,7 @@ struct Subject {
 };
 
 // Reads the input files. Codes: those of their readers, of bind_to() and chosen_range(),
-// skin-empty-model, skin-morphs.
+// skin-empty-model, skin-morphs, skin-attach.
 Result<Subject> load(const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::skin

@@ -38,10 +38,11 @@ Status open_other(const std::string& goal_path, const goals::OtherMotion& other,
 }  // namespace
 
 Result<OpenedGoals> open_goals(const std::string& path, const Skeleton& skeleton,
-                               const RoleMap& roles, ToolContext& context) {
+                               const RoleMap& roles, ToolContext& context,
+                               std::span<const Character::Socket> sockets) {
   const auto file = context.open_input(path);
   if (!file) return file.error();
-  auto read = goals::read(file->text(), skeleton, roles);
+  auto read = goals::read(file->text(), skeleton, roles, sockets);
   if (!read) return std::move(read).error().in_file(path);
   OpenedGoals opened;
   opened.goals = std::move(read->goals);

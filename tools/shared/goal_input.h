@@ -1,11 +1,13 @@
 #pragma once
 
 #include <deque>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "ik/goal_motion.h"
 #include "roles/roles.h"
+#include "scene/character.h"
 #include "tools/cli/tool.h"
 
 // Goal files, for the tools that read them.
@@ -23,6 +25,7 @@ struct OpenedGoals {
 // Codes: those of goals::read() and of reading motions; goals-joint for a joint that another motion
 // has not.
 Result<OpenedGoals> open_goals(const std::string& path, const Skeleton& skeleton,
-                               const RoleMap& roles, ToolContext& context);
+                               const RoleMap& roles, ToolContext& context,
+                               std::span<const Character::Socket> sockets = {});
 
 }  // namespace krok::cli
