@@ -76,18 +76,19 @@ void unwrap(std::vector<double>& angles) {
   for (double& angle : angles) angle -= whole;
 }
 
-// Angles that follow `measured` by their weights, and zero weakly: the least sum of
+using Turn = std::complex<double>;  // an angle in a plane, as a unit number
+
+// Turns that follow `measured` by their weights, and none weakly: the least sum of
 // weight |z - measured|^2 + smoothness |steps of z|^2 + pull |z - 1|^2 over unit complex numbers,
 // of which the lengths are left free, so that the system is linear.
-std::vector<double> angles_over_time(std::span<const double> measured,
-                                     std::span<const double> weights, double smoothness,
-                                     double pull) {
+std::vector<Turn> turns_over_time(std::span<const Turn> measured, std::span<const double> weights,
+                                  double smoothness, double pull) {
   const std::size_t n = measured.size();
   std::vector<double> upper(n, 0);
-  std::vector<std::complex<double>> z(n);
+  std::vector<Turn> z(n);
   for (std::size_t t = 0; t < n; ++t) {
     double diagonal = weights[t] + pull + (t > 0 ? smoothness : 0) + (t + 1 < n ? smoothness : 0);
-    z[t] = std::polar(weights[t], measured[t]) + pull;
+    z[t] = weights[t] * measured[t] + pull;
     if (t > 0) {
       diagonal -= smoothness * upper[t - 1];
       z[t] += smoothness * z[t - 1];
@@ -95,12 +96,22 @@ std::vector<double> angles_over_time(std::span<const double> measured,
     upper[t] = smoothness / diagonal;
     z[t] /= diagonal;
   }
-  std::vector<double> angles(n);
-  for (std::size_t t = n; t-- > 0;) {
-    if (t + 1 < n) z[t] += upper[t] * z[t + 1];
-    angles[t] = std::arg(z[t]);
+  for (std::size_t t = n; t-- > 1;) z[t - 1] += upper[t - 1] * z[t];
+  for (Turn& turn : z) {
+    const double length = std::sqrt(std::norm(turn));
+    turn = length > 0 ? turn / length : Turn(1);
   }
-  return angles;
+  return z;
+}
+
+// Half of a turn, at most a quarter turn: a quaternion's w, and its vector along the axis.
+Turn half_of(const Turn& turn) {
+  if (turn.real() >= 0) {
+    const double cosine = std::sqrt(0.5 * (1 + turn.real()));
+    return {cosine, 0.5 * turn.imag() / cosine};
+  }
+  const double sine = std::copysign(std::sqrt(0.5 * (1 - turn.real())), turn.imag());
+  return {0.5 * turn.imag() / sine, sine};
 }
 
 class Solver {
@@ -360,10 +371,14 @@ class Solver {
     return largest > 1e-7;
   }
 
-  // Turns a joint with one target about its bone.
-  void twist(std::size_t j, std::size_t frame, double angle) {
+  // Turns a joint with one target about its bone, `axis`.
+  void twist(std::size_t j, std::size_t frame, const Vec3& axis, const Turn& by) {
     Quat& turn = turns_[j * frames_ + frame];
-    turn = (turn * Quat(Eigen::AngleAxisd(angle, bone(j)))).normalized();
+    const Turn half = half_of(by);
+    Quat rotation;
+    rotation.w() = half.real();
+    rotation.vec() = half.imag() * axis;
+    turn = (turn * rotation).normalized();
   }
   Vec3 bone(std::size_t j) const { return shapes_[j][0].stableNormalized(); }
 
@@ -396,26 +411,30 @@ class Solver {
     hinge -= hinge.dot(bone(u)) * bone(u);
     if (hinge.norm() < 1e-9) return;
     hinge.normalize();
-    std::vector<double> angles(frames_), weights(frames_), clear(frames_);
+    const Vec3 along_bone = bone(u), across = along_bone.cross(hinge);
+    std::vector<Turn> measured(frames_, Turn(1));
+    std::vector<double> weights(frames_), clear(frames_);
     for (std::size_t f = 0; f < frames_; ++f) {
       const Vec3 along = way(u, at(lower), f), beyond = way(at(lower), at(end), f);
       const double size = along.norm() * beyond.norm();
       if (size < 1e-8) continue;
       const Vec3 normal = along.cross(beyond);
       const Vec3 local = turns_[u * frames_ + f].conjugate() * normal;
-      angles[f] = std::atan2(bone(u).dot(hinge.cross(local)), hinge.dot(local));
+      const Turn turn(hinge.dot(local), across.dot(local));
+      const double length = std::sqrt(std::norm(turn));
+      if (length > 0) measured[f] = turn / length;
       weights[f] = normal.squaredNorm() / (size * size);
       clear[f] = weights[f] * smoother_step(2 * std::sqrt(weights[f]) - 0.5);
     }
     // A limb that is nearly straight may be bent the other way: it follows frames that are clearly
     // bent.
     const double steps = 0.05 * input_.rate, smoothness = 0.003 * steps * steps;
-    auto found = angles_over_time(angles, clear, smoothness, 1e-4);
+    auto found = turns_over_time(measured, clear, smoothness, 1e-4);
     for (std::size_t f = 0; f < frames_; ++f) {
-      if (std::cos(angles[f] - found[f]) < 0) angles[f] += kPi;
+      if ((measured[f] * std::conj(found[f])).real() < 0) measured[f] = -measured[f];
     }
-    found = angles_over_time(angles, weights, smoothness, 1e-5);
-    for (std::size_t f = 0; f < frames_; ++f) twist(u, f, found[f]);
+    found = turns_over_time(measured, weights, smoothness, 1e-5);
+    for (std::size_t f = 0; f < frames_; ++f) twist(u, f, along_bone, found[f]);
     twisted_[u] = true;
   }
 
@@ -461,16 +480,18 @@ class Solver {
       if (links.empty() || parents_[links.back()] < 0) continue;
       std::ranges::reverse(links);
       std::vector<double> angles(frames_);
+      const Vec3 last = bone(links.back());
       for (std::size_t f = 0; f < frames_; ++f) {
-        angles[f] = twist_about(bone(links.back()), turns_[links.back() * frames_ + f].conjugate() *
-                                                        turns_[end * frames_ + f]);
+        angles[f] = twist_about(
+            last, turns_[links.back() * frames_ + f].conjugate() * turns_[end * frames_ + f]);
       }
       unwrap(angles);
       for (std::size_t i = 0; i < links.size(); ++i) {
         const double share = share_of(links[i], i, links.size());
         if (share > 0) twisted_[links[i]] = true;
+        const Vec3 axis = bone(links[i]);
         for (std::size_t f = 0; share > 0 && f < frames_; ++f) {
-          twist(links[i], f, share * angles[f]);
+          twist(links[i], f, axis, std::polar(1.0, share * angles[f]));
         }
       }
     }
