@@ -22,6 +22,8 @@ namespace krok::npy {
 
 namespace {
 
+constexpr double kFarOff = 0.02;  // metres, of joints with bones of constant length
+
 constexpr std::size_t kMaxSamples = 200;
 
 constexpr std::initializer_list<const char*> kPositionNames = {
@@ -246,6 +248,20 @@ class Reader {
                        "most {} mm; noise {} mm{}",
                        millimetres(found.rms), millimetres(found.largest), millimetres(found.noise),
                        found.smoothed ? ", smoothed" : ""));
+    const std::vector<std::string>& names = capture_.clip.skeleton.names;
+    if (found.root_at_body) {
+      report(Severity::warning, "npy-root",
+             fmt::format("'{}' is not a joint of the body, which moves away from it: it is put "
+                         "where '{}' is",
+                         shown(names[0]), shown(names[1])));
+    }
+    if (found.rms > std::max(kFarOff, 3 * found.noise)) {
+      report(Severity::warning, "npy-fit",
+             fmt::format("joints are {} mm from the file's (RMS), '{}' at most: {} mm in frame {}",
+                         millimetres(found.rms), shown(names[at(found.largest_joint)]),
+                         millimetres(found.largest), found.largest_frame),
+             "is --skeleton the right one?");
+    }
     if (found.length_variation > 0.1) {
       report(Severity::warning, "npy-bones",
              fmt::format("the bones change their lengths by {}%: their mean is used",

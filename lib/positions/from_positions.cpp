@@ -17,6 +17,7 @@ namespace krok {
 namespace {
 
 constexpr double kNoLength = 1e-5;  // metres: a bone without a direction
+constexpr double kNoNoise = 2e-4;   // metres
 constexpr std::size_t kGrain = 256;
 constexpr std::size_t kFramesOfShape = 2000;
 
@@ -159,22 +160,40 @@ class Solver {
     return std::span(measured_).subspan(joint * frames_, frames_);
   }
 
+  // A root that stays behind while the body moves, as one at the origin does, has no bone to it: it
+  // is put where its only child is.
+  void put_root_at_body() {
+    constexpr double kMoves = 0.004;  // standard deviation, of the body's extent, beyond noise
+    if (joints_ < 3 || frames_ < 2 || children_[0].size() != 1) return;
+    const auto child = at(children_[0][0]);
+    double sum = 0, squares = 0;
+    for (std::size_t f = 0; f < frames_; ++f) {
+      const double length = way(0, child, f).norm();
+      sum += length;
+      squares += length * length;
+    }
+    const auto count = static_cast<double>(frames_);
+    Eigen::AlignedBox3d body;
+    for (std::size_t j = 1; j < joints_; ++j) body.extend(measured_[j * frames_]);
+    const double variance = squares / count - sum / count * (sum / count);
+    const double of_noise = 4 * (noise_[0] * noise_[0] + noise_[child] * noise_[child]);
+    if (!(variance > std::pow(kMoves * body.diagonal().norm(), 2) + of_noise)) return;
+    std::ranges::copy(measured_of(child), measured_.begin());
+    noise_[0] = noise_[child];
+    result_.root_at_body = true;
+  }
+
   void find_noise() {
     noise_ = noise_of(parents_, measured_);
+    put_root_at_body();
     double squares = 0, worst = 0;
     for (const double n : noise_) {
       squares += n * n / static_cast<double>(joints_);
       worst = std::max(worst, n);
     }
     result_.noise = std::sqrt(squares);
-    if (!input_.smooth || worst == 0) return;
-    std::vector<char> changed(joints_, 0);
-    parallel_for(joints_, 1, input_.jobs, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = begin; j < end; ++j) {
-        changed[j] = smooth_track(measured_of(j), noise_[j], input_.rate) ? 1 : 0;
-      }
-    });
-    result_.smoothed = std::ranges::find(changed, 1) != changed.end();
+    if (!input_.smooth || worst < kNoNoise) return;
+    result_.smoothed = smooth_tracks(noise_, input_.rate, input_.jobs, measured_);
     for (std::size_t j = 0; j < joints_ && result_.smoothed; ++j) {
       const double trust = std::max(noise_[j] / result_.noise, 0.1);
       weights_[j] = 1 / (trust * trust);
@@ -515,6 +534,7 @@ class Solver {
         clip.positions[to] = placed_[from].cast<float>();
         clip.orientations[to] =
             (turns_[from] * input_.skeleton.reference[j].orientation).normalized().cast<float>();
+        if (j == 0 && result_.root_at_body) continue;
         const double off = (placed_[from] - input_.positions[to]).norm();
         squares += off * off;
         if (off <= result_.largest) continue;
@@ -531,7 +551,9 @@ class Solver {
     double bones = 0;
     for (std::size_t j = 0; j < joints_ && frames_ > 0; ++j) {
       const double length = offsets_[j].norm();
-      if (parents_[j] < 0 || length < kNoLength) continue;
+      if (parents_[j] < 0 || length < kNoLength || (parents_[j] == 0 && result_.root_at_body)) {
+        continue;
+      }
       double squares = 0;
       for (std::size_t f = 0; f < frames_; ++f) {
         const Vec3 here =

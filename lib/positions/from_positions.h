@@ -19,9 +19,9 @@
 // - Upper arms and upper legs are twisted so that elbow and knee bend about their hinges. Where the
 //   limb is straight the twist is carried over from before and after, by least squares over time.
 // - A joint without children keeps its rotation relative to its parent.
-// - White noise shows in the bone lengths, which would otherwise not change. Each joint is smoothed
-//   by as much as its noise exceeds what its own movement explains (Whittaker 1923); positions
-//   without noise are not changed.
+// - White noise shows in the bone lengths, which would otherwise not change. It is removed from all
+//   joints together, as far as their common movement does not explain it
+//   (filter/series_denoiser.h); positions without noise are not changed.
 
 namespace krok {
 
@@ -41,6 +41,9 @@ struct PoseFromPositions {
   Clip clip;
   double noise = 0;  // standard deviation of a coordinate, metres: root mean square of the joints
   bool smoothed = false;
+  // Whether the root was elsewhere than the body, which moved away from it (as one at the origin):
+  // it is at the place of its child then, and not counted below.
+  bool root_at_body = false;
   // Distance of joints in the clip to `positions`, metres.
   double rms = 0, largest = 0;
   int largest_joint = 0, largest_frame = 0;
@@ -56,7 +59,9 @@ PoseFromPositions from_positions(const PositionsToPose& input);
 // differences of bone lengths. `tracks`: [joints x frames]. 0 for fewer than 5 frames.
 std::vector<double> noise_of(std::span<const int> parents, std::span<const Vec3> tracks);
 
-// Smooths a track of a joint with that noise; returns whether it changed.
-bool smooth_track(std::span<Vec3> track, double noise, double rate);
+// Removes that noise from the tracks of all joints together by filter::without_noise(), between the
+// frames at which a joint jumps to another place, as after a rest pose. Returns whether anything
+// changed.
+bool smooth_tracks(std::span<const double> noise, double rate, int jobs, std::span<Vec3> tracks);
 
 }  // namespace krok

@@ -1,54 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filter/series_denoiser.h"
 #include "positions/from_positions.h"
 
 namespace krok {
-
-namespace {
-
-// Of the second differences over a step, summed over the coordinates.
-double mean_square_difference(std::span<const Vec3> track, std::size_t step) {
-  double sum = 0;
-  for (std::size_t t = step; t + step < track.size(); ++t) {
-    sum += (track[t - step] - 2 * track[t] + track[t + step]).squaredNorm();
-  }
-  return sum / static_cast<double>(track.size() - 2 * step);
-}
-
-// The least x of |x - track|^2 + weight |second differences of x|^2: a system with five diagonals.
-void smooth_by(double weight, std::span<Vec3> track) {
-  const std::size_t n = track.size();
-  std::vector<double> pivots(n), first(n), second(n);
-  const auto row = [&](std::size_t i, std::size_t k) {  // element (i, i - k) of the system
-    double sum = k == 0 ? 1 : 0;
-    for (std::size_t d = i < 2 ? 0 : i - 2; d <= i && d + 2 < n; ++d) {
-      constexpr double kDifference[] = {1, -2, 1};
-      if (i - k >= d && i - d <= 2) sum += weight * kDifference[i - d] * kDifference[i - k - d];
-    }
-    return sum;
-  };
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i > 1) second[i] = row(i, 2) / pivots[i - 2];
-    if (i > 0) {
-      first[i] = row(i, 1);
-      if (i > 1) first[i] -= second[i] * pivots[i - 2] * first[i - 1];
-      first[i] /= pivots[i - 1];
-    }
-    pivots[i] = row(i, 0);
-    if (i > 0) pivots[i] -= first[i] * first[i] * pivots[i - 1];
-    if (i > 1) pivots[i] -= second[i] * second[i] * pivots[i - 2];
-    if (i > 0) track[i] -= first[i] * track[i - 1];
-    if (i > 1) track[i] -= second[i] * track[i - 2];
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    track[i] /= pivots[i];
-    if (i + 1 < n) track[i] -= first[i + 1] * track[i + 1];
-    if (i + 2 < n) track[i] -= second[i + 2] * track[i + 2];
-  }
-}
-
-}  // namespace
 
 std::vector<double> noise_of(std::span<const int> parents, std::span<const Vec3> tracks) {
   const std::size_t joints = parents.size(), frames = joints == 0 ? 0 : tracks.size() / joints;
@@ -99,38 +55,55 @@ std::vector<std::size_t> jumps_of(std::span<const Vec3> track, double noise) {
   return jumps;
 }
 
-bool smooth_part(std::span<Vec3> track, double noise, double rate) {
-  if (track.size() < 5) return false;
-  // How much the movement accelerates, over as long a step as shows it beyond the noise.
-  const double of_noise = 3 * 6 * noise * noise;
-  const std::size_t longest =
-      std::clamp<std::size_t>(static_cast<std::size_t>(0.2 * rate), 1, track.size() / 4);
-  std::size_t step = 1;
-  double square = mean_square_difference(track, step);
-  while (2 * step <= longest && square < 3 * of_noise) {
-    step *= 2;
-    square = mean_square_difference(track, step);
+// The frames [begin, end) of all joints with noise.
+bool smooth_part(std::size_t begin, std::size_t end, std::span<const double> noise, double rate,
+                 int jobs, std::span<Vec3> tracks) {
+  constexpr std::size_t kFewest = 5;
+  const std::size_t joints = noise.size(), frames = tracks.size() / joints;
+  std::vector<std::size_t> noisy;
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (noise[j] > 0) noisy.push_back(j);
   }
-  const auto k = static_cast<double>(step);
-  // Random steps of velocity, seen over k of them.
-  const double steps = std::max(square - of_noise, 0.05 * of_noise) * 3 / (k * (2 * k * k + 1));
-  const double weight = std::min(3 * noise * noise / steps, 1e8);
-  if (weight < 1e-4) return false;
-  smooth_by(weight, track);
+  if (end - begin < kFewest || noisy.empty()) return false;
+  const auto rows = static_cast<Eigen::Index>(end - begin);
+  Eigen::MatrixXd series(rows, 3 * std::ssize(noisy));
+  const auto of = [&](std::size_t i, Eigen::Index t) -> Vec3& {
+    return tracks[noisy[i] * frames + begin + static_cast<std::size_t>(t)];
+  };
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    for (Eigen::Index t = 0; t < rows; ++t) {
+      series.block<1, 3>(t, 3 * static_cast<Eigen::Index>(i)) =
+          (of(i, t) / noise[noisy[i]]).transpose();
+    }
+  }
+  const Eigen::MatrixXd smooth = filter::without_noise(series, rate, jobs);
+  for (std::size_t i = 0; i < noisy.size(); ++i) {
+    for (Eigen::Index t = 0; t < rows; ++t) {
+      of(i, t) =
+          noise[noisy[i]] * smooth.block<1, 3>(t, 3 * static_cast<Eigen::Index>(i)).transpose();
+    }
+  }
   return true;
 }
 
 }  // namespace
 
-bool smooth_track(std::span<Vec3> track, double noise, double rate) {
-  if (track.size() < 5 || !(noise > 0)) return false;
+bool smooth_tracks(std::span<const double> noise, double rate, int jobs, std::span<Vec3> tracks) {
+  const std::size_t joints = noise.size(), frames = joints == 0 ? 0 : tracks.size() / joints;
+  std::vector<std::size_t> ends;
+  for (std::size_t j = 0; j < joints; ++j) {
+    const auto jumps = jumps_of(tracks.subspan(j * frames, frames), noise[j]);
+    ends.insert(ends.end(), jumps.begin(), jumps.end());
+  }
+  ends.push_back(frames);
+  std::ranges::sort(ends);
   bool changed = false;
   std::size_t begin = 0;
-  for (const std::size_t end : jumps_of(track, noise)) {
-    changed = smooth_part(track.subspan(begin, end - begin), noise, rate) || changed;
+  for (const std::size_t end : ends) {
+    changed = smooth_part(begin, end, noise, rate, jobs, tracks) || changed;
     begin = end;
   }
-  return smooth_part(track.subspan(begin), noise, rate) || changed;
+  return changed;
 }
 
 }  // namespace krok

@@ -35,7 +35,7 @@ ALLOWED = {
                         "lib/rbf", "lib/terrain"},
     "lib/fit": {"lib/core", "lib/rbf"},
     "lib/ik": BASE | {"lib/roles", "lib/motion", "lib/timeline"},
-    "lib/positions": BASE | {"lib/roles"},
+    "lib/positions": BASE | {"lib/roles", "lib/filter"},
     "lib/ragdoll": BASE | {"lib/roles", "lib/ik", "lib/motion", "lib/timeline"},
     "lib/retarget": BASE | {"lib/roles", "lib/contacts", "lib/ik", "lib/motion"},
     "lib/skin": BASE,

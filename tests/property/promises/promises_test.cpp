@@ -512,8 +512,6 @@ TEST(Promises, SpringsFollowUniformMotion) {
 // positions/from_positions.h: "positions without noise are not changed".
 TEST(Promises, PositionsWithoutNoiseStay) {
   for (const auto& [name, clip] : people()) {
-    // The hips as root: others are no bones, for their lengths change.
-    if (name != "rig 0" && name != "rig 3") continue;
     PositionsToPose input;
     input.skeleton = clip.skeleton;
     input.roles = find_roles(clip.skeleton);
@@ -523,7 +521,34 @@ TEST(Promises, PositionsWithoutNoiseStay) {
     input.rate = clip.rate;
     const PoseFromPositions found = from_positions(input);
     EXPECT_FALSE(found.smoothed) << name;
-    EXPECT_LT(found.rms, 2e-4) << name;
+    // The root of rig 2 goes along under hips that bob a little, which counts as a bone.
+    EXPECT_LT(found.rms, name == "rig 2" ? 1e-3 : 2e-4) << name;
+  }
+}
+
+// The body is found whatever the root does, and the root is then told to be no joint of it.
+TEST(Promises, ARootThatStaysBehindIsNoBone) {
+  for (const auto& [name, clip] : people()) {
+    if (name != "rig 0") continue;
+    const std::size_t joints = clip.skeleton.names.size();
+    PositionsToPose input;
+    input.skeleton.add("Origin", Skeleton::kNoParent, {});
+    for (std::size_t j = 0; j < joints; ++j) {
+      input.skeleton.add(clip.skeleton.names[j], clip.skeleton.parents[j] + 1,
+                         clip.skeleton.reference[j]);
+    }
+    input.roles = find_roles(input.skeleton);
+    std::vector<Vec3> positions;
+    for (std::size_t i = 0; i < clip.positions.size(); ++i) {
+      if (i % joints == 0) positions.push_back(Vec3::Zero());
+      positions.push_back(clip.positions[i].cast<double>());
+    }
+    input.positions = positions;
+    input.rate = clip.rate;
+    const PoseFromPositions found = from_positions(input);
+    EXPECT_TRUE(found.root_at_body);
+    EXPECT_LT(found.rms, 2e-4);
+    EXPECT_LT((found.clip.frame_positions(9)[0] - found.clip.frame_positions(9)[1]).norm(), 1e-6F);
   }
 }
 
