@@ -37,6 +37,7 @@ struct Limb {
   std::vector<Vec3> axes;  // in the world
   std::vector<std::vector<double>> examples;
   std::vector<std::vector<double>> ranges;  // degrees, of held-out poses
+  std::vector<double> shown;                // degrees, of show.anim
 };
 
 std::vector<Limb> limbs_of(const Skeleton& skeleton) {
@@ -50,16 +51,19 @@ std::vector<Limb> limbs_of(const Skeleton& skeleton) {
   return {{"LeftForeArm",
            {fore.cross(forward).normalized()},
            {{30}, {60}, {90}, {115}, {135}},
-           {{3, 135}}},
+           {{3, 135}},
+           {120}},
           {"LeftLeg",
            {shin.cross(Vec3(-forward)).normalized()},
            {{30}, {60}, {90}, {115}, {135}},
-           {{3, 135}}},
+           {{3, 135}},
+           {120}},
           {"LeftArm",
            {upper.cross(forward).normalized(), upper.cross(Vec3(-up)).normalized()},
            {{60, 0}, {-30, 40}, {60, 80}, {-10, 80}, {30, 45}},
-           {{-30, 60}, {3, 80}}},
-          {"LeftHand", {fore}, {{50}, {90}, {120}, {137}, {150}}, {{3, 150}}}};
+           {{-30, 60}, {3, 80}},
+           {20, 70}},
+          {"LeftHand", {fore}, {{50}, {90}, {120}, {137}, {150}}, {{3, 150}}, {150}}};
 }
 
 void turn(const Skeleton& skeleton, int joint, const Vec3& rotation, std::vector<Transform>& pose) {
@@ -159,6 +163,8 @@ Result<int> run(ToolContext& context, const std::string& body) {
       "  \"joints\": [";
   std::mt19937 random(46);
   int frame = 1;
+  std::vector<std::vector<Transform>> shown;
+  std::string joints;
   const std::vector<Limb> limbs = limbs_of(model.skeleton);
   for (const Limb& limb : limbs) {
     const int joint = model.skeleton.find(limb.joint);
@@ -171,13 +177,20 @@ Result<int> run(ToolContext& context, const std::string& body) {
         sculpt.degrees.push_back(range[0] + share * (range[1] - range[0]));
       }
     }
-    for (std::size_t i = 0; i < sculpts.size(); ++i) {
+    const auto pose_at = [&](const std::vector<double>& degrees) {
       Vec3 rotation = Vec3::Zero();
       for (std::size_t a = 0; a < limb.axes.size(); ++a) {
-        rotation += limb.axes[a] * (sculpts[i].degrees[a] * kRadiansPerDegree);
+        rotation += limb.axes[a] * (degrees[a] * kRadiansPerDegree);
       }
       std::vector<Transform> pose = model.skeleton.reference;
       turn(model.skeleton, joint, rotation, pose);
+      return pose;
+    };
+    shown.push_back(pose_at(limb.shown));
+    const Vec3 place = model.skeleton.reference[static_cast<std::size_t>(joint)].position;
+    joints += fmt::format("{},{:.6f},{:.6f},{:.6f}\n", limb.joint, place.x(), place.y(), place.z());
+    for (std::size_t i = 0; i < sculpts.size(); ++i) {
+      std::vector<Transform> pose = pose_at(sculpts[i].degrees);
       std::vector<Vec3f> shape = sculpted(model, binding, posed, pose, groups);
       std::vector<Vec3f> normals(shape.size());
       moved_normals(model.triangles, model.positions, model.normals, shape, normals);
@@ -195,13 +208,21 @@ Result<int> run(ToolContext& context, const std::string& body) {
     text += entries(sculpts, examples, sculpts.size(), frame) + "]}";
   }
   text += "\n  ]\n}\n";
-  Clip clip;
-  clip.skeleton = model.skeleton;
-  clip.rate = 1;
-  clip.resize(static_cast<int>(poses.size()));
-  for (std::size_t f = 0; f < poses.size(); ++f) clip.set_pose(static_cast<int>(f), poses[f]);
-  Status status = outputs.add((folder / "poses.anim").string(),
-                              [&](OutputFile& file) { return anim::write(clip, {}, file); });
+  const auto write_motion = [&](const char* name, const std::vector<std::vector<Transform>>& of) {
+    Clip clip;
+    clip.skeleton = model.skeleton;
+    clip.rate = 1;
+    clip.resize(static_cast<int>(of.size()));
+    for (std::size_t f = 0; f < of.size(); ++f) clip.set_pose(static_cast<int>(f), of[f]);
+    return outputs.add((folder / name).string(),
+                       [&](OutputFile& file) { return anim::write(clip, {}, file); });
+  };
+  Status status = write_motion("poses.anim", poses);
+  if (status) status = write_motion("show.anim", shown);
+  if (status) {
+    status = outputs.add((folder / "joints.csv").string(),
+                         [&](OutputFile& file) { return file.write(joints); });
+  }
   if (status) {
     status = outputs.add(context.output, [&](OutputFile& file) { return file.write(text); });
   }
@@ -220,8 +241,10 @@ int main(int argc, char** argv) {
   spec.name = "make-sculpts";
   spec.summary = "Generates poses of a body's joints with shapes that keep its volume";
   spec.inputs = "BODY.model";
-  spec.examples = {{"make-sculpts body.model -o correctives.json",
-                    "a description for krok-fit, poses.anim and sculpts/*.obj beside it"}};
+  spec.examples = {
+      {"make-sculpts body.model -o correctives.json",
+       "a description for krok-fit; beside it poses.anim and sculpts/*.obj, show.anim with "
+       "one more pose of each joint, and joints.csv with the places of the joints"}};
   spec.declare = [&](CommandOptions& command) {
     command.add_option("body IN.model", body, "A body from krok-body").required();
   };
