@@ -22,6 +22,7 @@
 #include "motion/cut.h"
 #include "roles/roles.h"
 #include "skin/bind.h"
+#include "skin/reference_pose.h"
 #include "skin/twist_joints.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/usage.h"
@@ -64,6 +65,7 @@ class Loader {
     if (Status status = add_twist_joints(options_.twist, subject_.model); !status) {
       return std::move(status.error()).in_file(options_.subject);
     }
+    context_.diagnose_in(options_.subject, reference_pose_faults(subject_.model));
     if (!subject_.model.triangles.empty()) return {};
     return Error("skin-empty-model", "the model has no triangles",
                  "create a model with a mesh with krok-body")
