@@ -12,9 +12,8 @@ namespace krok {
 // all. Bones shorter than 2 % of the skeleton's extent do not count. Inside is a generalised
 // winding number of at least 1/4 either way (Jacobson, Kavan, Sorkine-Hornung, Robust
 // Inside-Outside Segmentation Using Generalized Winding Numbers, SIGGRAPH 2013), so that meshes may
-// have holes; no warning where three
-// quarters are outside of a mesh that is not closed, such as one of
-// sheets.
+// have holes; no warning where three quarters are outside of a mesh that is not closed, such as
+// one of sheets.
 Diagnostics reference_pose_faults(const Model& model);
 
 }  // namespace krok
