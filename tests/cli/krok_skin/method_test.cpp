@@ -37,7 +37,7 @@ class SkinMethods : public CliTest {
   }
 };
 
-TEST_F(SkinMethods, AreThreeOfWhichLinearBlendIsTheDefault) {
+TEST_F(SkinMethods, DifferAndLinearBlendIsTheDefault) {
   const std::string linear = pose("linear"), dual = pose("dual-quaternion"), rigid = pose("rigid");
   EXPECT_EQ(difference(linear, pose("")), 0);
   EXPECT_EQ(difference(linear, dual), 1);
@@ -46,7 +46,7 @@ TEST_F(SkinMethods, AreThreeOfWhichLinearBlendIsTheDefault) {
 }
 
 TEST_F(SkinMethods, EveryFormOfOutputFollowsThem) {
-  for (const std::string method : {"linear", "dual-quaternion", "rigid"}) {
+  for (const std::string method : {"linear", "dual-quaternion", "spherical", "rigid"}) {
     const std::string expected = pose(method);
     ASSERT_EQ(tool("krok-skin", {"in.model", "in.anim", "--as", "frames", "--method", method, "-o",
                                  "f.glb", "-j", "2"})
@@ -79,7 +79,7 @@ TEST_F(SkinMethods, ARigHasNone) {
 TEST_F(SkinMethods, AWordThatIsNoneIsAnsweredWithTheWords) {
   const ToolRun run = tool("krok-skin", {"in.model", "in.anim", "--method", "dq", "-o", "x.glb"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("'dq' is not linear, dual-quaternion or rigid"), std::string::npos)
+  EXPECT_NE(run.err.find("'dq' is not linear, dual-quaternion, spherical or rigid"), std::string::npos)
       << run.err;
 }
 
