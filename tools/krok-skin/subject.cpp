@@ -62,10 +62,10 @@ class Loader {
     subject_.sockets = std::move(actor->sockets);
     subject_.morphs = std::move(actor->morphs);
     rest_weights_ = std::move(actor->rest_weights);
+    context_.diagnose_in(options_.subject, reference_pose_faults(subject_.model));
     if (Status status = add_twist_joints(options_.twist, subject_.model); !status) {
       return std::move(status.error()).in_file(options_.subject);
     }
-    context_.diagnose_in(options_.subject, reference_pose_faults(subject_.model));
     if (!subject_.model.triangles.empty()) return {};
     return Error("skin-empty-model", "the model has no triangles",
                  "create a model with a mesh with krok-body")
