@@ -24,7 +24,7 @@ const std::vector<Character::Eye> kEyes = {{"left", "Head", Vec3f(0.031f, 1.63f,
 
 Clip standing(double seconds) {
   Clip clip;
-  clip.skeleton = test::human_skeleton();
+  clip.skeleton = krok::test::human_skeleton();
   clip.rate = kRate;
   clip.resize(static_cast<int>(seconds * kRate) + 1);
   for (int f = 0; f < clip.frame_count(); ++f) clip.set_pose(f, clip.skeleton.reference);
