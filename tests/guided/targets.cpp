@@ -15,6 +15,8 @@
 #include "formats/cam/cam.h"
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/character/character_format.h"
+#include "formats/correctives/corrective_poses.h"
+#include "formats/correctives/correctives_format.h"
 #include "formats/csv/table.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/goals/goals.h"
@@ -313,6 +315,8 @@ constexpr Target kTargets[] = {
     {"cam", read_cam},
     {"camera_keys", read_page<camera_keys::read>},
     {"character", read_page<character_file::read>},
+    {"corrective_poses", read_page<corrective_poses::read>},
+    {"correctives", read_page<correctives_file::read>},
     {"csv", read_csv},
     {"exr", read_exr},
     {"gltf", read_gltf},
