@@ -153,7 +153,7 @@ void LeastSquares::list_columns(const Tree& tree, const Options& options) {
   const auto rows = at(tree.rows);
   stride_ = rows;
   constexpr std::size_t kManyRows = 64;  // below, both are quick
-  by_columns_ = rows > std::max(columns_.size(), kManyRows);
+  by_columns_ = !selective_ && rows > std::max(columns_.size(), kManyRows);
   entries_.resize(columns_.size() * stride_);
   for (auto* list : {&errors_, &tried_, &right_side_, &multipliers_}) list->assign(rows, 0.0);
 }
@@ -239,7 +239,7 @@ void LeastSquares::hold(std::size_t column) {
 
 // The step for the columns that are not fixed: turn = pull + W J^T (J W J^T + damping)^-1 (e - J
 // pull), where what fixed ones do is taken off the error.
-void LeastSquares::solve_step(double damping) {
+void LeastSquares::solve_step(const Tree& tree, double damping) {
   right_side_ = errors_;
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     const Column& column = columns_[c];
@@ -250,6 +250,7 @@ void LeastSquares::solve_step(double damping) {
       right_side_[at(r)] -= known * entry[r];
     }
   }
+  if (selective_) return solve_selectively(tree, damping);
   if (by_columns_) return solve_by_columns(damping);
   working_.solve(damping, right_side_.data(), multipliers_.data());
   for (std::size_t c = 0; c < columns_.size(); ++c) {
@@ -372,10 +373,10 @@ void LeastSquares::find_step(const Tree& tree, double damping) {
   // Each round fixes what would pass a limit. More than two gain nothing: what a last solution
   // still takes beyond a limit is clamped as the step is taken, and fixed in the next one.
   for (int round = 0; round < 2; ++round) {
-    solve_step(damping);
+    solve_step(tree, damping);
     if (!fix_at_limits(tree)) return;
   }
-  solve_step(damping);
+  solve_step(tree, damping);
 }
 
 void LeastSquares::take_step(Tree& tree, double scale) const {
@@ -405,7 +406,7 @@ int LeastSquares::descend(Tree& tree, const Options& options, int most, double s
     fill_columns(tree);
     // Less from step to step, so that it does not keep goals from being met exactly.
     pull_part_ *= 0.5;
-    find_step(tree, factor * (0.5 * error_ + kBias));
+    find_step(tree, factor * (selective_ ? 1.0 : 0.5 * error_ + kBias));
     double largest = 0;
     for (const Turning& turning : turnings_) largest = std::max(largest, turn_of(turning).norm());
     keep(tree, kept_);
@@ -414,20 +415,21 @@ int LeastSquares::descend(Tree& tree, const Options& options, int most, double s
     if (!(error < error_)) {
       restore(tree, kept_);
       tree.forward();
-      factor *= 8;
+      factor = selective_ ? 0.1 * std::min(1.0, factor) : 8 * factor;
       if (++slow >= kSlowSteps) break;
       continue;
     }
     slow = error > (1 - slow_part) * error_ ? slow + 1 : 0;
     error_ = error;
     std::swap(errors_, tried_);
-    factor = std::max(1e-3, factor * 0.25);
+    factor = selective_ ? 4 * factor : std::max(1e-3, factor * 0.25);
     if (tree.reached(errors_, options) || slow >= kSlowSteps) break;
   }
   return iteration;
 }
 
 int LeastSquares::solve(Tree& tree, const Options& options, int& starts) {
+  selective_ = options.method == Method::selectively_damped;
   list_columns(tree, options);
   starts = 1;
   int iterations = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Eigenvalues>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,7 +32,7 @@ class NormalEquations {
   std::vector<double> factor_;  // scratch
 };
 
-// Method::least_squares; keeps its memory from solve to solve.
+// Method::least_squares and selectively_damped; keeps its memory from solve to solve.
 class LeastSquares {
  public:
   // From the tree's pose, and from further starts, towards the goals. Returns the iterations made;
@@ -70,8 +71,12 @@ class LeastSquares {
   void list_columns(const Tree& tree, const Options& options);
   void fill_columns(Tree& tree);
   void find_step(const Tree& tree, double damping);
-  void solve_step(double damping);
+  // `damping`: of selective steps how far their limits are trusted, 1 as published.
+  void solve_step(const Tree& tree, double damping);
   void solve_by_columns(double damping);
+  void solve_selectively(const Tree& tree, double trust);
+  double largest_turn() const;
+  double moved_apart(const Tree& tree) const;
   void hold(std::size_t column);
   bool fix_at_limits(const Tree& tree);
   bool fix_hinge(const ChainJoint& joint, Turning& turning);
@@ -85,11 +90,16 @@ class LeastSquares {
   std::vector<Turning> turnings_;
   std::vector<double> entries_;  // [columns x rows]
   std::size_t stride_ = 0;
+  bool selective_ = false;         // Method::selectively_damped
   bool by_columns_ = false;        // the equations are over columns
   std::vector<std::size_t> free_;  // columns of them
   NormalEquations equations_, working_;
   std::vector<double> errors_, tried_, right_side_, multipliers_;
   PoseState kept_, best_, first_;
+  // Of selective steps, scaled by the roots of weights: [columns].
+  Eigen::VectorXd step_, sum_;
+  Eigen::MatrixXd square_;  // [rows x rows]
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
   double pull_part_ = 0;  // of the way to the start pose
   double error_ = 0;
 };

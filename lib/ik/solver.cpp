@@ -199,6 +199,7 @@ Result<const Outcome*> Solver::solve(std::span<const Goal> goals,
   s.tree.collect(goals, s.limits, s.options, joint_to_world);
   switch (s.options.method) {
     case Method::least_squares:
+    case Method::selectively_damped:
       outcome.iterations = s.least_squares.solve(s.tree, s.options, outcome.starts);
       break;
     case Method::ccd:

@@ -20,6 +20,12 @@ enum class Method : unsigned char {
   // is fixed there and the others are solved anew, so that the pose is within them after every
   // step. What the goals leave open (the null space, Liegeois 1977) pulls towards the start pose.
   least_squares,
+  // Selectively damped least squares (Buss and Kim, "Selectively damped least squares for inverse
+  // kinematics", 2005): each singular vector of the derivatives is damped by itself, by how far it
+  // would move the effectors for what it brings them nearer. A joint's three turns count as one, so
+  // that how it is oriented does not matter; their largest step shrinks while the error grows.
+  // Goals, limits, pull and starts are those of least_squares. For motions in and out of reach.
+  selectively_damped,
   // Cyclic coordinate descent (Wang and Chen 1991): from the end effectors up, each joint turns the
   // line from it to the effector onto the line to the goal. Where several goals hang on a joint it
   // turns by their weighted mean. Poles and balance are left to least squares.
@@ -37,11 +43,12 @@ struct Options {
   double distance = 1e-4;  // metres
   double angle = 1e-3;     // radians
 
-  // Most sweeps (ccd) or steps (least_squares) from one start.
+  // Most sweeps (ccd) or steps (both kinds of least squares) from one start.
   int iterations = 60;
 
-  // Further starts of least_squares for goals that are not reached: the same sequence on every run.
-  // Each one's joints are turned at random within their limits. The best result is kept.
+  // Further starts of both kinds of least squares for goals that are not reached: the same sequence
+  // on every run. Each one's joints are turned at random within their limits. The best result is
+  // kept.
   int restarts = 0;
   std::uint64_t seed = 1;
 

@@ -128,9 +128,11 @@ void declare_solver(CommandOptions& command, Options& o) {
   command.group("Solver");
   command.add("--solver METHOD", o.solver.method,
               choice<krok::ik::Method>({{"least-squares", krok::ik::Method::least_squares},
+                                        {"sdls", krok::ik::Method::selectively_damped},
                                         {"ccd", krok::ik::Method::ccd},
                                         {"two-bone", krok::ik::Method::two_bone}}),
-              "least-squares: all goals at once; ccd: joint by joint; two-bone: the joint's parent "
+              "least-squares: all goals at once; sdls: the same, damped selectively, for goals in "
+              "and out of reach; ccd: joint by joint; two-bone: the joint's parent "
               "and grandparent in closed form",
               "least-squares");
   command.add("--stiffness", o.stiffness,

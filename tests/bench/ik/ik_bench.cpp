@@ -63,11 +63,13 @@ std::vector<std::vector<double>> random_angles(const Arm& arm) {
   return all;
 }
 
-void run_krok(const Arm& arm, const std::vector<std::vector<double>>& poses) {
+void run_krok(const Arm& arm, const Solving& solving,
+              const std::vector<std::vector<double>>& poses) {
   const ArmJoints joints = joints_of(arm);
   ik::Options options;
+  options.method = solving.method;
   options.distance = options.angle = kTolerance;
-  options.iterations = 50;
+  options.iterations = solving.iterations;
   options.restarts = 150;
   auto solver = ik::Solver::create(joints.parents, joints.limits, options);
   Scores scores;
@@ -101,7 +103,7 @@ void run_krok(const Arm& arm, const std::vector<std::vector<double>>& poses) {
     scores.starts += (*outcome)->starts;
     results.push_back(end);
   }
-  scores.print("krok");
+  scores.print(solving.name);
   std::printf("  limits exceeded by %.1e rad at most; hash of the results %s\n", worst_excess,
               hex(xxh3(std::as_bytes(std::span(results)))).c_str());
 }
@@ -150,7 +152,7 @@ void arms() {
   for (const Arm& arm : {puma_560(), lbr_iiwa_14()}) {
     std::printf("%s, %d poses\n", arm.name.c_str(), kPoses);
     const auto poses = random_angles(arm);
-    run_krok(arm, poses);
+    for (const Solving& solving : kSolvings) run_krok(arm, solving, poses);
 #ifdef KROK_HAS_KDL
     run_kdl(arm, poses);
 #else
@@ -161,10 +163,11 @@ void arms() {
 
 }  // namespace krok::bench
 
-// All parts, or the one that is named: arms, limbs, bodies.
+// All parts, or the one that is named: arms, singular, limbs, bodies.
 int main(int argc, char** argv) {
   const std::string part = argc > 1 ? argv[1] : "";
   if (part.empty() || part == "arms") krok::bench::arms();
+  if (part.empty() || part == "singular") krok::bench::near_singular();
   if (part.empty() || part == "limbs") krok::bench::two_bones();
   if (part.empty() || part == "bodies") krok::bench::whole_bodies();
   return 0;
