@@ -81,11 +81,13 @@ class ActionPoser {
     return (solved.end - target).norm();
   }
 
-  // The foot where `sole` (joint_to_world of the ankle) has it.
+  // The foot where `sole` (joint_to_world of the ankle) has it; the knee bends ahead of the leg.
   void stand(World& local, bool other, const Transform& sole) const {
     const LegJoints& joints = leg(other);
+    const Vec3 line = sole.position - world(local)[at(joints.upper)].position;
+    const Vec3 knee = line.cross(Vec3(Vec3::UnitX())).normalized();
     bring(local, joints.upper, joints.lower, joints.foot, Vec3::UnitX(), sole.position,
-          sole.orientation * Vec3(0.1 * (other ? -sign_ : sign_), 0, 1));
+          knee + Vec3(0.1 * (other ? -sign_ : sign_), 0, 0));
     const World now = world(local);
     local[at(joints.foot)].orientation =
         now[at(joints.lower)].orientation.conjugate() * sole.orientation;

@@ -61,7 +61,7 @@ class MotionReader {
   Status read_motions() {
     for (const ExampleEntry& entry : description_.examples) {
       std::vector<std::string> paths = {place_of(entry.clip)};
-      if (entry.automatic && has_wildcards(entry.clip)) {
+      if (has_wildcards(entry.clip)) {
         auto found = find_files(paths.front());
         if (!found) return found.error();
         paths = *std::move(found);

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
+#include "math/types.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli::synth {
@@ -20,6 +22,10 @@ struct Options {
   bool extrapolate = false;
   bool strict = false;
   bool plant = false;
+  std::string after;         // a motion that is continued
+  bool in_sequence = false;  // all rows in one motion
+  double transition = 0;     // seconds
+  std::optional<Vec3> place;
   double rate = 0;  // 0: the library's
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };

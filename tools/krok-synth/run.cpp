@@ -10,6 +10,8 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_role_map.h"
 #include "formats/keys/keys.h"
 #include "formats/steps/steps.h"
 #include "math/types.h"
@@ -17,6 +19,7 @@
 #include "roles/roles.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-synth/asked_parameters.h"
+#include "tools/krok-synth/sequence.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/plant_result.h"
@@ -25,8 +28,10 @@ namespace krok::cli::synth {
 
 namespace {
 
-constexpr int kPlantings = 4;    // attempts to meet what is asked with planted feet
-constexpr int kCorrections = 4;  // two are enough near the library; far outside more are needed
+constexpr int kPlantings = 4;     // attempts to meet what is asked with planted feet
+constexpr int kAttempts = 6;      // to come to a place
+constexpr double kPlaced = 1e-4;  // metres from it that are near enough
+constexpr int kCorrections = 4;   // two are enough near the library; far outside more are needed
 
 struct Motion {
   std::string path;
@@ -163,6 +168,110 @@ Status make_all(const parametric::Synthesiser& synthesiser, const Options& optio
   return {};
 }
 
+// What comes before the motions, and how they are put behind it.
+struct Before {
+  Clip clip;
+  MotionKeys keys;
+};
+
+Result<Before> read_before(const Options& options, const parametric::Library& library,
+                           ToolContext& context) {
+  auto clip = io::open_motion(options.after, context);
+  if (!clip) return clip.error();
+  if (Status status = parametric::same_skeleton(library.skeleton, clip->skeleton); !status) {
+    Error error = std::move(status).error();
+    error.hint = "krok-retarget transfers a motion to the library's skeleton";
+    return std::move(error).in_file(options.after);
+  }
+  const io::FindRoles find_roles = [&](const Skeleton&) -> Result<RoleMap> {
+    return parametric::roles_of(library);
+  };
+  auto keys = choose_keys(KeysChoice::automatic, options.after, base_name(options.after), *clip,
+                          find_roles, context);
+  if (!keys) return keys.error();
+  return Before{std::move(*clip), keys->value_or(MotionKeys())};
+}
+
+// All motions as one, behind `before` (may be null), with planted feet where that is asked for.
+Result<Sequence> sequence_of(const Options& options, const parametric::Library& library,
+                             const Before* before, const std::vector<Motion>& motions,
+                             std::optional<PlantDrift>& drift, ToolContext& context) {
+  std::vector<SequencePart> parts;
+  if (before) parts.push_back({options.after, &before->clip, &before->keys});
+  for (const Motion& motion : motions) {
+    parts.push_back({motion.path, &motion.made.clip, &motion.made.keys});
+  }
+  const RoleMap roles = parametric::roles_of(library);
+  auto made = in_sequence(parts, options.transition, roles, context);
+  if (!made || !options.plant) return made;
+  auto planted = plant_result(made->clip, made->keys, roles, context);
+  if (!planted) return planted.error();
+  drift = *planted;
+  return made;
+}
+
+Result<PointMiss> miss_in(const parametric::Library& library, const Sequence& whole,
+                          const Motion& last, const Vec3& place) {
+  const auto point = measured_point(library);
+  if (!point) return point.error();
+  const double time = whole.starts.back() + last.keytimes[static_cast<std::size_t>(point->keytime)];
+  return miss_of(library, *point, whole.clip, time, place);
+}
+
+// Finds the parameters with which the measured point comes to the place where the sequence leads;
+// each attempt is measured on the whole.
+Status aim_at_place(const parametric::Synthesiser& synthesiser, const Options& options,
+                    const Before& before, Motion& motion, ToolContext& context) {
+  const parametric::Library& library = synthesiser.library();
+  const auto point = measured_point(library);
+  if (!point) return point.error();
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::optional<PlantDrift> drift;
+    const auto made = sequence_of(options, library, &before, {motion}, drift, context);
+    if (!made) return made.error();
+    const auto miss = miss_in(library, *made, motion, *options.place);
+    if (!miss) return miss.error();
+    if ((miss->at - *options.place).norm() < kPlaced) break;
+    for (std::size_t i = 0; i < 3; ++i) motion.asked[point->parameters[i]] += miss->change[i];
+    std::vector<Motion> one = {std::move(motion)};
+    if (Status status = make_all(synthesiser, options, one, context); !status) return status;
+    motion = std::move(one.front());
+  }
+  return {};
+}
+
+// One motion of all, with what it is in the report.
+Result<Sequence> join_all(const parametric::Synthesiser& synthesiser, const Options& options,
+                          std::vector<Motion>& motions, ToolContext& context) {
+  const parametric::Library& library = synthesiser.library();
+  std::optional<Before> before;
+  Json report;
+  if (!options.after.empty()) {
+    auto read = read_before(options, library, context);
+    if (!read) return read.error();
+    before = *std::move(read);
+  }
+  if (options.place) {
+    Status status = aim_at_place(synthesiser, options, *before, motions.front(), context);
+    if (!status) return status.error();
+  }
+  std::optional<PlantDrift> drift;
+  auto made = sequence_of(options, library, before ? &*before : nullptr, motions, drift, context);
+  if (!made) return made;
+  report["starts"] = made->starts;
+  report["duration"] = made->clip.duration();
+  if (drift) report["planted"] = to_json(*drift);
+  if (options.place) {
+    const auto miss = miss_in(library, *made, motions.front(), *options.place);
+    if (!miss) return miss.error();
+    const double missed = (miss->at - *options.place).norm();
+    report["missed"] = missed;
+    context.log(fmt::format("the place is missed by {} mm", readable(1e3 * missed, 3)));
+  }
+  context.report.result["sequence"] = std::move(report);
+  return made;
+}
+
 Status write_all(const Options& options, std::vector<Motion>& motions, ToolContext& context) {
   OutputSet outputs(context);
   for (Motion& motion : motions) {
@@ -256,7 +365,10 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto parameters = parameters_of(*steps);
   std::vector<Motion> motions;
   if (options.table.empty()) {
-    auto point = parse_settings(options.set, parameters, context);
+    std::vector<double> means;
+    for (const NamedParameter& parameter : parameters) means.push_back(parameter.mean);
+    auto point = options.place ? Result<std::vector<double>>(std::move(means))
+                               : parse_settings(options.set, parameters, context);
     if (!point) return point.error();
     motions.push_back({.path = context.output, .asked = *std::move(point)});
   } else {
@@ -271,9 +383,21 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!synthesiser) return Error(synthesiser.error()).in_file(options.library);
   if (Status status = make_all(*synthesiser, options, motions, context); !status)
     return status.error();
-  if (Status status = write_all(options, motions, context); !status) return status.error();
-  report(parameters, motions, context);
+  std::optional<Sequence> whole;
+  if (options.in_sequence || !options.after.empty()) {
+    auto made = join_all(*synthesiser, options, motions, context);
+    if (!made) return made.error();
+    whole = *std::move(made);
+  }
   const int misses = warn_of_misses(steps->library, parameters, motions, options, context);
+  report(parameters, motions, context);
+  if (whole) {
+    motions.resize(1);
+    motions[0].path = context.output;
+    motions[0].made.clip = std::move(whole->clip);
+    motions[0].made.keys = std::move(whole->keys);
+  }
+  if (Status status = write_all(options, motions, context); !status) return status.error();
   return options.strict && misses > 0 ? kExitNo : kExitDone;
 }
 
