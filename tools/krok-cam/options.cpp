@@ -132,6 +132,11 @@ void declare_movement(CommandOptions& command, Options& o) {
       .add("--rate", o.rate, rate(),
            "Frame rate of the result; default: that of the keys' file or of the scene's keys")
       .not_with(kFilms);
+  command
+      .add("--interpolation", o.interpolation, interpolation(),
+           "Between all keys of a keys' file, in place of what it says: linear, or hermite with a "
+           "tension (0, smooth, to 1, which stops at each key)")
+      .not_with(kFilms);
   command.add_option("--camera NAME", o.camera, "Camera of a scene, by name or index")
       .not_with(kFilms);
 }

@@ -9,6 +9,7 @@
 #include "formats/cam/cam.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/interpolation_choice.h"
 
 namespace krok::cli::cam {
 
@@ -36,9 +37,10 @@ struct Options {
   // Framing.
   Framing frame = Framing::full;
   double margin = 0;
-  std::optional<double> distance;  // metres
-  double fov = 0;                  // radians
-  std::optional<double> lens;      // millimetres
+  std::optional<double> distance;              // metres
+  std::optional<Interpolation> interpolation;  // of all keys
+  double fov = 0;                              // radians
+  std::optional<double> lens;                  // millimetres
   double aspect = 0;
   // Movement.
   std::optional<double> smooth, dead_zone;  // seconds, metres

@@ -118,11 +118,22 @@ Status refuse_camera(const Options& options) {
   return Error("usage", "--camera is for scenes").in_file(options.input);
 }
 
+Status refuse_interpolation(const Options& options) {
+  if (!options.interpolation) return {};
+  return Error("usage", "--interpolation is for keys").in_file(options.input);
+}
+
 Result<Shot> from_keys(const Options& options, const InputFile& file) {
   if (Status status = refuse_film(options, "keys"); !status) return status.error();
   if (Status status = refuse_camera(options); !status) return status.error();
   auto keys = camera_keys::read(file.text());
   if (!keys) return std::move(keys).error().in_file(file.path());
+  if (options.interpolation) {
+    for (CameraKey& key : keys->camera.keys) {
+      key.between = options.interpolation->hermite ? Between::smooth : Between::linear;
+      key.tension = options.interpolation->tension;
+    }
+  }
   auto track = make_track(keys->camera, options.rate.value_or(keys->rate));
   if (!track) return std::move(track).error().in_file(file.path());
   Shot shot;
@@ -137,6 +148,7 @@ Result<Shot> from_cam(const Options& options, const InputFile& file) {
   if (Status status = refuse_film(options, "a camera"); !status) return status.error();
   if (Status status = refuse_camera(options); !status) return status.error();
   if (options.rate) return Error("usage", "--rate is for keys and scenes").in_file(options.input);
+  if (Status status = refuse_interpolation(options); !status) return status.error();
   auto track = krok::cam::read(file.bytes());
   if (!track) return std::move(track).error().in_file(file.path());
   Shot shot;
@@ -146,6 +158,7 @@ Result<Shot> from_cam(const Options& options, const InputFile& file) {
 }
 
 Result<Shot> from_scene(const Options& options, const InputFile& file, ToolContext& context) {
+  if (Status status = refuse_interpolation(options); !status) return status.error();
   if (Status status = refuse_film(options, "a scene"); !status) return status.error();
   auto track = read_scene_camera(file, options.camera, options.rate, context);
   if (!track) return std::move(track).error();

@@ -128,6 +128,12 @@ void declare_timing(CommandOptions& command, Options& o) {
   command.add("--rate", o.resample, rate(),
               "Frame rate of the result. Frames are interpolated: for a lower rate, --filter "
               "butterworth first removes what it cannot hold");
+  command
+      .add("--interpolation", o.interpolation, interpolation(),
+           "Between frames: linear, or hermite with a tension (0, smooth, to 1, which stops at "
+           "each frame): cubics and squad, for motions of few frames",
+           "linear")
+      .only_with({"--rate", "--playback-speed", "--sequences"});
 }
 
 void declare_joining(CommandOptions& command, Options& o) {

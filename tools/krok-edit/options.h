@@ -13,6 +13,7 @@
 #include "motion/travel.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/interpolation_choice.h"
 
 namespace krok::cli::edit {
 
@@ -58,6 +59,7 @@ struct Options {
   // 4. timing
   double speed = 1;
   std::optional<double> resample;
+  Interpolation interpolation;  // of frames between frames
   // 5. append
   std::vector<std::string> append;
   ClipTime append_blend;

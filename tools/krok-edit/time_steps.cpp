@@ -12,6 +12,7 @@
 #include "motion/retime.h"
 #include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/steps.h"
+#include "tracks/retime_on_curves.h"
 
 namespace krok::cli::edit {
 
@@ -257,8 +258,10 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
   if (!options.resample && edit.speed == 1) return {};
   const int frames = edit.clip.frame_count();
   const double old_rate = edit.clip.rate, old_duration = edit.clip.duration();
-  auto retimed =
-      retime(edit.clip, rate, edit.speed, edit.loop ? LastFrame::kept : LastFrame::within);
+  const Interpolation& how = options.interpolation;
+  auto retimed = how.hermite ? retime_on_curves(edit.clip, rate, edit.speed, how.tension, edit.loop)
+                             : retime(edit.clip, rate, edit.speed,
+                                      edit.loop ? LastFrame::kept : LastFrame::within);
   if (!retimed) return retimed.error();
   edit.clip = std::move(*retimed);
   if (auto& removed = edit.clip.provenance.removed_root_motion) {
@@ -279,6 +282,10 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
   if (options.resample) {
     line += fmt::format("{}resampled from {} to {} fps", line.empty() ? "" : ", ",
                         readable(old_rate), readable(rate));
+  }
+  if (how.hermite) {
+    metrics["tension"] = how.tension;
+    line += fmt::format(", along Hermite curves of tension {}", readable(how.tension));
   }
   edit.note("timing", std::move(metrics), std::move(line));
   return {};

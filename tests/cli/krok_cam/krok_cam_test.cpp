@@ -77,6 +77,23 @@ TEST_F(KrokCam, GoesThroughItsKeys) {
   EXPECT_EQ(result_of({keys_, "--rate", "60", "-o", path("fast.cam")})["frames"], 121);
 }
 
+TEST_F(KrokCam, InterpolatesAllKeysAsAsked) {
+  result_of({keys_, "--interpolation", "linear", "-o", path("straight.cam")});
+  const CameraTrack straight = track_at("straight.cam");
+  EXPECT_LT((straight.positions[15] - Vec3f(1.5f, 1.7f, 3.5f)).norm(), 1e-5f);
+  result_of({keys_, "--interpolation", "hermite:1", "-o", path("stops.cam")});
+  const CameraTrack stops = track_at("stops.cam");
+  // By the source's formula with no velocity at the keys: 3t^2 - 2t^3.
+  const Vec3f wanted = Vec3f(0, 1.6f, 4) + 0.104f * Vec3f(3, 0.2f, -1);
+  EXPECT_LT((stops.positions[6] - wanted).norm(), 1e-5f);
+  EXPECT_EQ(cam({keys_, "--interpolation", "cubic", "-o", path("x.cam")}).exit_code, 2);
+  const ToolRun film =
+      cam({walk_, "--follow", "hips", "--interpolation", "linear", "-o", path("x.cam")});
+  EXPECT_EQ(film.exit_code, 2);
+  EXPECT_EQ(cam({path("stops.cam"), "--interpolation", "linear", "-o", path("x.cam")}).exit_code,
+            2);
+}
+
 TEST_F(KrokCam, AMistakeInTheKeysIsToldWithItsPlace) {
   std::string wrong = kKeys;
   wrong.replace(wrong.find("\"time\": 1"), 9, "\"time\": 0");

@@ -310,6 +310,36 @@ TEST_F(KrokEdit, TimingAndTheOrderOfSteps) {
                                           "loop", "travel", "scale", "place"));
 }
 
+// Few frames of a walk, brought back to its rate: curves come nearer to it than straight lines.
+TEST_F(KrokEdit, InterpolatesOnCurvesWhereAsked) {
+  write("walk.anim", walk());
+  const Clip whole = walk(), few = edited({"--rate", "10"});
+  write("few.anim", few);
+  const auto error_of = [&](const char* how) {
+    const ToolRun done =
+        edit({"few.anim", "-o", "many.anim", "--rate", "60", "--interpolation", how});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    const Clip many = read("many.anim");
+    float largest = 0;
+    for (int f = 12; f + 12 < many.frame_count(); ++f) {
+      for (int j = 0; j < many.joint_count(); ++j) {
+        const auto joint = static_cast<std::size_t>(j);
+        largest = std::max(
+            largest, (many.frame_positions(f)[joint] - whole.frame_positions(f)[joint]).norm());
+      }
+    }
+    return largest;
+  };
+  EXPECT_LT(error_of("hermite"), 0.6F * error_of("linear"));
+  EXPECT_GT(error_of("hermite:1"), error_of("hermite"));
+  for (const char* wrong : {"cubic", "hermite:2", "hermite:", "linear:0.5"}) {
+    EXPECT_EQ(
+        edit({"few.anim", "-o", "x.anim", "--rate", "60", "--interpolation", wrong}).exit_code, 2);
+  }
+  EXPECT_EQ(edit({"few.anim", "-o", "x.anim", "--mirror", "--interpolation", "hermite"}).exit_code,
+            2);
+}
+
 TEST_F(KrokEdit, KeepsAndExtendsProvenance) {
   write("walk.anim", walk());
   const Provenance made = edited({"--from", "1s", "--mirror"}).provenance;

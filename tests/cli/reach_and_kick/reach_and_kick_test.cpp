@@ -83,18 +83,21 @@ void ReachAndKick::hand_errs_twenty_times_less(const fs::path& out) {
     return static_cast<double>(state >> 11) * 0x1p-53;
   };
   for (int i = 0; i < 1000; ++i) {
-    points += std::to_string(0.101 + 0.298 * unit()) + "," + std::to_string(0.96 + 0.28 * unit()) +
-              "," + std::to_string(0.541 + 0.15 * unit()) + "\n";
+    points += std::to_string(0.105 + 0.28 * unit()) + "," + std::to_string(0.975 + 0.26 * unit()) +
+              "," + std::to_string(0.545 + 0.125 * unit()) + "\n";
   }
+  fs::create_directory(out / "many");
   ASSERT_TRUE(write_file((out / "thousand.csv").string(), points).ok());
   double mean[2] = {0, 0}, largest[2] = {0, 0};
   for (const int refined : {0, 1}) {
-    const ToolRun run = run_tool(
-        "krok-synth", {(out / (refined ? "reaches.steps" : "unrefined.steps")).string(), "--points",
-                       (out / "thousand.csv").string(), "--in-sequence", "--rate", "10", "-o",
-                       (out / "all_points.anim").string(), "--json", "-q"});
+    const ToolRun run =
+        run_tool("krok-synth", {(out / (refined ? "reaches.steps" : "unrefined.steps")).string(),
+                                "--points", (out / "thousand.csv").string(), "-o",
+                                (out / "many" / "point.anim").string(), "--json", "-q"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    for (const json& motion : json::parse(run.out)["result"]["motions"]) {
+    const json motions = json::parse(run.out)["result"]["motions"];
+    ASSERT_EQ(motions.size(), 1000u);
+    for (const json& motion : motions) {
       double square = 0;
       for (const char* name : {"across", "up", "along"}) {
         const double off =
