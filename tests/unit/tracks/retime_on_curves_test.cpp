@@ -12,7 +12,7 @@
 namespace krok {
 namespace {
 
-Skeleton two_joints() {
+Skeleton hips_and_chest() {
   Skeleton skeleton;
   skeleton.add("Hips", Skeleton::kNoParent, {Vec3(0, 1, 0), Quat::Identity()});
   skeleton.add("Chest", 0, {Vec3(0, 1.5, 0), Quat::Identity()});
@@ -21,9 +21,9 @@ Skeleton two_joints() {
 
 // The hips go along a parabola, the chest turns about x by one: what Catmull and Rom's
 // curves reproduce, as differences over two intervals are exact velocities of it.
-Clip quadratic(int frames, double rate) {
+Clip on_parabola(int frames, double rate) {
   Clip clip;
-  clip.skeleton = two_joints();
+  clip.skeleton = hips_and_chest();
   clip.rate = rate;
   clip.resize(frames);
   for (int f = 0; f < frames; ++f) {
@@ -36,7 +36,7 @@ Clip quadratic(int frames, double rate) {
 }
 
 TEST(RetimeOnCurves, QuadraticsAreExactAwayFromTheEnds) {
-  const Clip few = quadratic(11, 5);
+  const Clip few = on_parabola(11, 5);
   const auto many = retime_on_curves(few, 60, 1, 0, false);
   ASSERT_TRUE(many.ok());
   ASSERT_EQ(many->frame_count(), 121);
@@ -50,7 +50,7 @@ TEST(RetimeOnCurves, QuadraticsAreExactAwayFromTheEnds) {
 }
 
 TEST(RetimeOnCurves, FramesStayAndFullTensionStopsAtThem) {
-  const Clip few = quadratic(6, 4);
+  const Clip few = on_parabola(6, 4);
   for (const double tension : {0.0, 0.5, 1.0}) {
     const auto many = retime_on_curves(few, 400, 1, tension, false);
     ASSERT_TRUE(many.ok());
@@ -65,7 +65,7 @@ TEST(RetimeOnCurves, FramesStayAndFullTensionStopsAtThem) {
 }
 
 TEST(RetimeOnCurves, SpeedAndKeptEndsAreThoseOfRetime) {
-  const Clip clip = quadratic(11, 10);
+  const Clip clip = on_parabola(11, 10);
   const auto faster = retime_on_curves(clip, 30, 2, 0, false);
   ASSERT_TRUE(faster.ok());
   EXPECT_EQ(faster->frame_count(), 16);
@@ -78,7 +78,7 @@ TEST(RetimeOnCurves, SpeedAndKeptEndsAreThoseOfRetime) {
   EXPECT_FALSE(retime_on_curves(clip, 30, 0, 0, false).ok());
   EXPECT_FALSE(retime_on_curves(clip, 30, 1, 2, false).ok());
   Clip none;
-  none.skeleton = two_joints();
+  none.skeleton = hips_and_chest();
   none.rate = 30;
   EXPECT_TRUE(retime_on_curves(none, 60, 1, 0, false).ok());
 }
