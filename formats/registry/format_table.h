@@ -35,6 +35,8 @@
       .read_actor = read_character)                                                               \
   ROW(ragdoll, own, "ragdoll.json", "Krok bodies and joints (.ragdoll.json)",                     \
       is_json<kRagdollSchema>)                                                                    \
+  ROW(correctives, own, "correctives", "Krok shapes by pose (.correctives)",                      \
+      is_json<kCorrectivesSchema>)                                                                \
   ROW(gltf, gltf, "gltf", "a glTF file (.gltf)", is_gltf, .read_scene = read_gltf)                \
   ROW(npy, capture, "npy", "an array of numpy (.npy)", starts<"\x93NUMPY">,                       \
       .open_capture = open_arrays)                                                                \

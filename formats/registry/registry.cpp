@@ -67,6 +67,7 @@ bool has_in_head(std::string_view text, std::string_view word) {
 constexpr std::string_view kMaterialSchema = "\"krok.material/";
 constexpr std::string_view kCharacterSchema = "\"krok.character/";
 constexpr std::string_view kRagdollSchema = "\"krok.ragdoll/";
+constexpr std::string_view kCorrectivesSchema = "\"krok.correctives/";
 
 template <const std::string_view& schema>
 bool is_json(std::string_view text) {

@@ -23,6 +23,7 @@ Result<Description> describe_cam(const InputFile& file, ToolContext& context);
 Result<Description> describe_steps(const InputFile& file, ToolContext& context);
 // Bodies and joints; without their skeleton.
 Result<Description> describe_ragdoll(const InputFile& file, ToolContext& context);
+Result<Description> describe_correctives(const InputFile& file, ToolContext& context);
 Result<Description> describe_material(const InputFile& file, ToolContext& context);
 // A character with the files that it refers to; joint roles are its own unless `how` has a role
 // map.

@@ -36,6 +36,8 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       return describe_character(file, how, context);
     case Kind::ragdoll:
       return describe_ragdoll(file, context);
+    case Kind::correctives:
+      return describe_correctives(file, context);
     case Kind::bvh:
       return describe_bvh(file, how, context);
     case Kind::asf:
@@ -45,14 +47,14 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       break;
   }
   if (io::is_motion(file)) return describe_motion(file, how, context);
-  return Error(
-      "info-kind",
-      "is " + std::string(registry::describe_content(file.bytes())) +
-          ", which krok-info cannot read",
-      "supported are .anim, .model, .cam, .steps, .material, .character, .ragdoll.json, .bvh, "
-      ".asf, .amc, .glb and .gltf files, and characters in .fbx, .dae, .smd, .ms3d, .3ds, .ase, "
-      ".md5mesh and "
-      ".md5anim files");
+  return Error("info-kind",
+               "is " + std::string(registry::describe_content(file.bytes())) +
+                   ", which krok-info cannot read",
+               "supported are .anim, .model, .cam, .steps, .material, .character, .ragdoll.json, "
+               ".correctives, .bvh, .asf, .amc, .glb and .gltf files, and characters in .fbx, "
+               ".dae, .smd, .ms3d, .3ds, .ase, "
+               ".md5mesh and "
+               ".md5anim files");
 }
 
 Result<Description> describe_path(const std::string& path, const SkeletonOptions& how,

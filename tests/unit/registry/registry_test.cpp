@@ -36,6 +36,7 @@ TEST(Registry, ContentTellsTheKind) {
             Kind::material);
   EXPECT_EQ(kind_of_content(bytes_of("\n{ \"schema\":\"krok.character/1\"}")), Kind::character);
   EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.ragdoll/1\"}")), Kind::ragdoll);
+  EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.correctives/1\"}")), Kind::correctives);
   EXPECT_EQ(kind_of_content(bytes_of("{\"schema\": \"krok.timeline/1\"}")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("{\"a\":1}")), Kind::unknown);
   EXPECT_EQ(kind_of_content(bytes_of("HIER")), Kind::unknown);
