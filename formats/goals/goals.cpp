@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "formats/json/fields.h"
 #include "motion/ground_frame.h"
+#include "roles/body_frame.h"
 
 namespace krok::goals {
 
@@ -126,7 +127,7 @@ struct File {
     if (to.name.empty()) {
       to.name = kind == Goal::Kind::balance ? "balance" : skeleton.names[at(to.goal.joint)];
     }
-    to.goal.axis = facing_axis(to.goal.joint, skeleton);
+    to.goal.axis = facing_axis(to.goal.joint, skeleton, roles);
     if (kind == Goal::Kind::balance) {
       if (!goal.has("support")) to.support_joints = foot_joints(skeleton, roles);
     } else {
@@ -298,8 +299,9 @@ int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles) {
   return 0;
 }
 
-Vec3 facing_axis(int joint, const Skeleton& skeleton) {
-  return skeleton.reference[at(joint)].orientation.normalized().conjugate() * Vec3::UnitZ();
+Vec3 facing_axis(int joint, const Skeleton& skeleton, const RoleMap& roles) {
+  return skeleton.reference[at(joint)].orientation.normalized().conjugate() *
+         (body_frame(skeleton, roles) * Vec3::UnitZ());
 }
 
 Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const RoleMap& roles,

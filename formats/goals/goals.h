@@ -49,7 +49,7 @@ int find_joint(std::string_view name, const Skeleton& skeleton, const RoleMap& r
 // and joints above it.
 int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles);
 
-// The direction in a joint's frame that faces forwards (+Z) in the reference pose.
-Vec3 facing_axis(int joint, const Skeleton& skeleton);
+// The direction in a joint's frame that is ahead of the body in the reference pose (body_frame()).
+Vec3 facing_axis(int joint, const Skeleton& skeleton, const RoleMap& roles);
 
 }  // namespace krok::goals

@@ -12,6 +12,7 @@
 #include "core/text.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
+#include "roles/body_frame.h"
 #include "roles/eyes.h"
 
 namespace krok::ik {
@@ -69,7 +70,8 @@ class Gazer {
     neck_joints_ = neck >= 0 ? subtree(skeleton, neck) : std::vector<std::uint8_t>();
     if (neck == head_ || neck < 0 || neck_joints_[at(head_)] == 0) neck_joints_.clear();
     neck_ = neck;
-    from_head_ = skeleton.reference[at(head_)].orientation.normalized().conjugate();
+    const Quat faces = facing_skeleton(clip, roles).reference[at(head_)].orientation;
+    from_head_ = faces.normalized().conjugate() * body_frame(skeleton, roles);
   }
 
   Status check() const {
@@ -95,23 +97,25 @@ class Gazer {
   }
 
  private:
-  // The skeleton with the eyes that are to be added, which face +Z in the reference pose.
+  // The skeleton with the eyes that are to be added, of which +Z is ahead and +X left.
   void add_joints() {
     Clip& clip = result_.clip;
     clip.skeleton = clip_.skeleton;
     clip.rate = clip_.rate;
     clip.provenance = clip_.provenance;
+    // Left, up and ahead of the head in the reference pose.
+    const Quat axes = clip.skeleton.reference[at(head_)].orientation.normalized() * from_head_;
     for (GazeEye& eye : eyes_) {
       if (eye.joint < 0) {
         const Vec3 place = clip.skeleton.reference[at(eye.carrier)] * eye.place;
-        eye.joint = clip.skeleton.add(eye.name, eye.carrier, {place, Quat::Identity()});
+        eye.joint = clip.skeleton.add(eye.name, eye.carrier, {place, axes});
       }
-      const Vec3 in_head = clip.skeleton.reference[at(eye.joint)].position -
-                           clip.skeleton.reference[at(head_)].position;
+      const Vec3 in_head = axes.conjugate() * Vec3(clip.skeleton.reference[at(eye.joint)].position -
+                                                   clip.skeleton.reference[at(head_)].position);
       sides_.push_back(in_head.x() < 0 ? -1 : 1);
       locals_.push_back(clip.skeleton.reference_local(eye.joint));
       axes_.push_back(clip.skeleton.reference[at(eye.joint)].orientation.conjugate() *
-                      Vec3::UnitZ());
+                      (axes * Vec3::UnitZ()));
     }
     clip.resize(clip_.frame_count());
     for (int frame = 0; frame < clip_.frame_count(); ++frame) {
@@ -238,11 +242,11 @@ class Gazer {
   std::span<const GazeTarget> targets_;
   int head_ = -1, neck_ = -1;
   std::vector<std::uint8_t> head_joints_, neck_joints_;  // 1: moves with it
-  Quat from_head_ =
-      Quat::Identity();            // from a frame that faces +Z to the head's, if it is unturned
-  std::vector<double> sides_;      // [eyes] 1: left
-  std::vector<Transform> locals_;  // [eyes] in the parent, in the reference pose
-  std::vector<Vec3> axes_;         // [eyes] that look ahead, in the eye's frame
+  Quat body_ = Quat::Identity();                         // body_frame()
+  Quat from_head_ = Quat::Identity();  // from left, up and ahead of the head to its own frame
+  std::vector<double> sides_;          // [eyes] 1: left
+  std::vector<Transform> locals_;      // [eyes] in the parent, in the reference pose
+  std::vector<Vec3> axes_;             // [eyes] that look ahead, in the eye's frame
   GazeMotion result_;
   // Of the frame: the pose, the head before it is turned, and the shift.
   std::vector<Transform> pose_;

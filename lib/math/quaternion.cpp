@@ -55,12 +55,8 @@ Quat from_rotation_vector(const Vec3& v) {
 }
 
 Quat shortest_arc(const Vec3& from, const Vec3& to) {
-  // Scaled where squares would overflow or vanish.
-  const auto length_of = [](const Vec3& v) {
-    const double square = v.squaredNorm();
-    return square > 1e-200 && square < 1e200 ? std::sqrt(square) : v.stableNorm();
-  };
-  const double from_length = length_of(from), to_length = length_of(to);
+  const double from_length = from.stableNorm();
+  const double to_length = to.stableNorm();
   if (!(from_length > 0) || !(to_length > 0)) return Quat::Identity();
   const Vec3 a = from / from_length;
   const Vec3 b = to / to_length;

@@ -25,6 +25,7 @@
 #include "ik/gaze.h"
 #include "ik/learn_limits.h"
 #include "retarget/stance.h"
+#include "roles/body_frame.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
@@ -339,7 +340,8 @@ Result<int> Run::joint_of(const std::string& option, const std::string& name) co
 
 Status Run::read_goals() {
   if (options_.goals.empty()) return {};
-  auto opened = open_goals(options_.goals, clip_.skeleton, roles_, context_, character_.sockets);
+  auto opened = open_goals(options_.goals, facing_skeleton(clip_, roles_), roles_, context_,
+                           character_.sockets);
   if (!opened) return opened.error();
   opened_ = std::move(*opened);
   goals_ = opened_.goals;
@@ -384,7 +386,7 @@ Status Run::add_points() {
     goal.name = clip_.skeleton.names[at(*joint)];
     goal.goal.kind = point.kind;
     goal.goal.joint = *joint;
-    goal.goal.axis = goals::facing_axis(*joint, clip_.skeleton);
+    goal.goal.axis = goals::facing_axis(*joint, facing_skeleton(clip_, roles_), roles_);
     goal.goal.depth = goals::default_depth(*joint, clip_.skeleton, roles_);
     krok::ik::GoalKey key;
     key.target = point.target;

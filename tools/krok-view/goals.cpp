@@ -1,4 +1,5 @@
 #include "tools/krok-view/goals.h"
+#include "roles/body_frame.h"
 
 #include <algorithm>
 #include <limits>
@@ -136,7 +137,7 @@ class GoalViewer {
 Result<std::vector<draw::ViewedGoal>> viewed_goals(const std::string& path, const Clip& clip,
                                                    ToolContext& context) {
   const RoleMap roles = find_roles(clip.skeleton);
-  const auto opened = open_goals(path, clip.skeleton, roles, context);
+  const auto opened = open_goals(path, facing_skeleton(clip, roles), roles, context);
   if (!opened) return opened.error();
   std::vector<draw::ViewedGoal> all;
   if (clip.frame_count() == 0) return all;

@@ -69,6 +69,35 @@ Vec2 in_head(const Clip& clip, int frame, const char* eye) {
   return {std::atan2(way.x(), way.z()) / kDegree, std::asin(way.y()) / kDegree};
 }
 
+// Captures keep reference poses that lie on their side: up +X and left +Z there, which is no other
+// motion.
+TEST(Gaze, DoesNotDependOnHowTheReferencePoseLies) {
+  const Clip clip = standing(3);
+  const Quat laid(Mat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}});  // the reference pose's axes
+  Clip lying = clip;
+  for (Transform& joint : lying.skeleton.reference) joint.position = laid * joint.position;
+  for (auto& turn : lying.orientations) turn = turn * laid.conjugate().cast<float>();
+  ASSERT_TRUE(check(lying).ok());
+  std::vector<Character::Eye> eyes = kEyes;
+  for (Character::Eye& eye : eyes) eye.position = laid.cast<float>() * eye.position;
+  const Vec3 point = target_at(35 * kDegree, 10 * kDegree);
+  const GazeMotion made = gaze(clip, {{1.0, point}});
+  const GazeMotion same = gaze(lying, {{1.0, point}}, eyes);
+  const int last = clip.frame_count() - 1;
+  EXPECT_LT(miss(same.clip, last, "left_eye", point), 0.01 * kDegree);
+  EXPECT_GT(head_angle(made.clip, last), 5 * kDegree);
+  for (const int frame : {0, 210, 260, last}) {
+    EXPECT_LT(angle_between(orientation(made.clip, frame, "Head"),
+                            orientation(same.clip, frame, "Head") * laid),
+              1e-5)
+        << frame;
+    EXPECT_LT(angle_between(orientation(made.clip, frame, "left_eye"),
+                            orientation(same.clip, frame, "left_eye")),
+              1e-5)
+        << frame;
+  }
+}
+
 TEST(Gaze, TheHeadsShareIsThatOfTheTable) {
   // Freedman and Sparks 1997: nothing up to 20 degrees; at 90 the eyes are at 35.
   EXPECT_EQ(head_share(0), 0);

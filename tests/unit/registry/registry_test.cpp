@@ -136,7 +136,8 @@ TEST(Registry, AdviceIsGivenWhereThereIsSome) {
   EXPECT_EQ(advice(Kind::anim, Kind::model), "krok-body makes a model for a motion");
   EXPECT_NE(advice(Kind::model, Kind::anim), "");
   EXPECT_EQ(advice(Kind::anim, Kind::anim), "");
-  EXPECT_EQ(advice(Kind::unknown, Kind::anim), "");
+  EXPECT_NE(advice(Kind::unknown, Kind::anim), "");
+  EXPECT_EQ(advice(Kind::unknown, Kind::cam), "");
 }
 
 }  // namespace
