@@ -171,7 +171,9 @@ Result<VisemeTrack> VisemeTrack::create(std::span<const Phoneme> phonemes, Alpha
       return wrong(
           "face-phoneme",
           fmt::format("'{}' is no symbol of {}", shown(phoneme.label), alphabet_name(alphabet)),
-          "name its alphabet (arpabet, ipa, sampa), or map it in \"symbols\"");
+          "a symbol that is wrong misleads the guess of the alphabet: name it (arpabet, ipa, "
+          "sampa), or "
+          "map the symbol in \"symbols\"");
     }
     if (phoneme.start > now + 1e-9) add(now, phoneme.start, kRest);
     now = phoneme.end;

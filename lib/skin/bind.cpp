@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "core/numbers.h"
@@ -100,12 +101,33 @@ Result<Model> bind_to(Model model, const Skeleton& skeleton) {
   return model;
 }
 
+namespace {
+
+// Whether a joint at the root moves away from it, as hips do below a root at the origin.
+bool leaves_root(const Clip& motion, int joint) {
+  constexpr float kFar = 0.1F;  // metres
+  const int parent = motion.skeleton.parents[static_cast<std::size_t>(joint)];
+  if (parent < 0 || motion.skeleton.parents[static_cast<std::size_t>(parent)] >= 0) return false;
+  float least = std::numeric_limits<float>::infinity(), most = 0;
+  for (int f = 0; f < motion.frame_count(); ++f) {
+    const auto places = motion.frame_positions(f);
+    const float length =
+        (places[static_cast<std::size_t>(joint)] - places[static_cast<std::size_t>(parent)]).norm();
+    least = std::min(least, length);
+    most = std::max(most, length);
+  }
+  return most - least > kFar;
+}
+
+}  // namespace
+
 Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
   double largest_length = 0, largest_turn = 0;
   int length_joint = 0, turn_joint = 0;
   for (int j = 0; j < model.joint_count(); ++j) {
-    // The position of the root does not distort a mesh.
-    if (model.parents[j] == Skeleton::kNoParent) continue;
+    // The position of the root does not distort a mesh, nor that of a body below a root that stays
+    // behind.
+    if (model.parents[j] == Skeleton::kNoParent || leaves_root(motion, j)) continue;
     const Vec3 wanted = model.reference_local(j).position;
     const Vec3 found = nearest_place(motion, j, wanted);
     const double length = std::abs(wanted.norm() - found.norm());

@@ -229,6 +229,8 @@ Json joint_json(const JointCorrective& joint, const std::vector<PoseError>& erro
   return json;
 }
 
+constexpr double kFarSculpt = 0.3;  // metres: more than muscles and folds of skin move
+
 void log_joint(const JointCorrective& joint, const std::vector<PoseError>& errors, int refined,
                ToolContext& context) {
   const auto mm = [](double metres) { return readable(metres * 1e3, 3); };
@@ -245,6 +247,21 @@ void log_joint(const JointCorrective& joint, const std::vector<PoseError>& error
       mm(group.corrected), readable(100 * group.share(), 3), mm(group.skinned),
       mm(group.worst->corrected.largest), group.worst->name, group.worst->corrected.vertex);
   context.log(text);
+  for (const PoseError& error : errors) {
+    if (error.skinned.largest < kFarSculpt) continue;
+    context.warn("fit-sculpt",
+                 fmt::format("{}: the sculpt of {} is up to {} m from the skinned mesh",
+                             joint.joint, error.name, readable(error.skinned.largest, 3)),
+                 "a shape is in metres, and where its pose stands");
+    break;
+  }
+  if (held_out.count > 0 && group.corrected > group.skinned) {
+    context.warn("fit-worse",
+                 fmt::format("{}: held-out poses are further from their sculpts than without "
+                             "correctives",
+                             joint.joint),
+                 "give examples nearer to them, or --refine");
+  }
 }
 
 }  // namespace

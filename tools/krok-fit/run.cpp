@@ -195,6 +195,10 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
 
 Result<int> run(const Options& options, ToolContext& context) {
   if (describes_poses(options.library)) return run_correctives(options, context);
+  std::error_code unknown;
+  if (options.library != "-" && !std::filesystem::exists(options.library, unknown)) {
+    return Error("file-missing", "no such file", "check the path").in_file(options.library);
+  }
   Status kind = check_output_kind(context.output, "-o", registry::Kind::steps);
   if (!kind) return kind.error();
   auto input = read_library(options.library, options.keep_going, context);

@@ -75,10 +75,16 @@ class FaceMaker {
     return face::item_of(std::move(curves));
   }
 
+  // The mistake is told at its place in the timeline, with the file's name.
+  static Error missing(const std::string& path, Error error) {
+    error.message = fmt::format("{}: {}", shown(path), error.message);
+    return error;
+  }
+
   Result<face::Item> curves(const FaceItem& given) {
     const std::string path = below(folder_, given.file);
     const auto file = context_.open_input(path);
-    if (!file) return file.error();
+    if (!file) return missing(path, file.error());
     auto weights = weights::read(file->text(), path, targets_);
     if (!weights) return weights.error();
     return face::item_of(std::move(weights->curves));
@@ -139,7 +145,7 @@ class FaceMaker {
   Result<face::Item> speech(const FaceItem& given) {
     const std::string path = below(folder_, given.file);
     const auto file = context_.open_input(path);
-    if (!file) return file.error();
+    if (!file) return missing(path, file.error());
     auto intervals = textgrid::read_intervals(file->text(), path, given.tier);
     if (!intervals) return intervals.error();
     std::vector<face::Phoneme> phonemes;
