@@ -79,7 +79,8 @@ TEST_F(SkinMethods, ARigHasNone) {
 TEST_F(SkinMethods, AWordThatIsNoneIsAnsweredWithTheWords) {
   const ToolRun run = tool("krok-skin", {"in.model", "in.anim", "--method", "dq", "-o", "x.glb"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_NE(run.err.find("'dq' is not linear, dual-quaternion, spherical or rigid"), std::string::npos)
+  EXPECT_NE(run.err.find("'dq' is not linear, dual-quaternion, spherical or rigid"),
+            std::string::npos)
       << run.err;
 }
 
