@@ -126,7 +126,7 @@ TEST_F(KrokKeys, EventsAsATable) {
       std::getline(row, event, ',');
       std::getline(row, time, ',');
       EXPECT_EQ(file, name);
-      EXPECT_EQ(event, key["name"]);
+      EXPECT_EQ(event, key["name"].get<std::string>());
       EXPECT_NEAR(std::stod(time), key["time"].get<double>(), 1e-6);
     }
   }
