@@ -39,9 +39,12 @@ def main():
             faults.append(f"{name}: no JSON Schema: {fault.message}")
             continue
         validator = Draft202012Validator(schema)
-        validators[schema["properties"]["schema"]["const"]] = validator
+        named = schema["properties"]["schema"]["const"]
+        validators[named] = validator
         page = path.parent / "SPEC.md"
-        examples = EXAMPLE.findall(page.read_text(encoding="utf-8"))
+        # A page may be of several formats.
+        examples = [example for example in EXAMPLE.findall(page.read_text(encoding="utf-8"))
+                    if f'"{named}"' in example]
         if not examples:
             faults.append(f"{page.relative_to(root)}: has no example")
         for number, example in enumerate(examples, 1):
