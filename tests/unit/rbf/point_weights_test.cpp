@@ -31,8 +31,10 @@ TEST(PointWeights, AreTheSolversAtAnyPoint) {
       for (const double smoothing : {0.0, 0.01, 3.0}) {
         const auto found = point_weights(d, examples, kernel, smoothing, asked);
         ASSERT_TRUE(found.ok()) << found.error().message;
-        const auto solver =
-            WeightSolver::create(d, examples, {.kernel = kernel, .smoothing = smoothing});
+        SolverOptions options;
+        options.kernel = kernel;
+        options.smoothing = smoothing;
+        const auto solver = WeightSolver::create(d, examples, options);
         ASSERT_TRUE(solver.ok()) << solver.error().message;
         for (std::size_t p = 0; p < 5; ++p) {
           const auto point = std::span(asked).subspan(p * at(d), at(d));
