@@ -176,7 +176,7 @@ void CorrectiveWeights::at(std::span<const Transform> joint_to_world,
                          std::span(values).first(examples));
     for (std::size_t i = 1; i < examples; ++i) {
       weights[next++] = static_cast<float>(
-          std::clamp(values[i], Correctives::kLeastWeight, Correctives::kMostWeight));
+          std::clamp(values[i], Correctives::kMinWeight, Correctives::kMaxWeight));
     }
   }
 }

@@ -57,7 +57,7 @@ struct JointCorrective {
 
 struct Correctives {
   // Weights outside of it are clamped, far from all examples.
-  static constexpr double kLeastWeight = -1, kMostWeight = 2;
+  static constexpr double kMinWeight = -1, kMaxWeight = 2;
 
   int vertex_count = 0;                      // of the model
   SkinMethod method = SkinMethod::linear;    // that they correct

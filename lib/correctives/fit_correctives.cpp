@@ -15,7 +15,7 @@ namespace krok {
 
 namespace {
 
-constexpr double kLeastOffset = 1e-5;  // metres
+constexpr double kMinOffset = 1e-5;  // metres
 constexpr double kLeastNormal = 1e-3;
 constexpr double kLeastRotation = 0.1;  // see swing_and_twist()
 constexpr double kDamping = 3e-4;       // added to squared singular values
@@ -253,7 +253,7 @@ class JointFit {
     made_.vertices.clear();
     for (std::size_t v = 0; v < model_.positions.size(); ++v) {
       const bool moves = std::ranges::any_of(examples(), [&](const Pose& pose) {
-        return pose.rest.positions[v].norm() > kLeastOffset ||
+        return pose.rest.positions[v].norm() > kMinOffset ||
                (!pose.rest.normals.empty() && !pose.sculpt->normals.empty() &&
                 pose.rest.normals[v].norm() > kLeastNormal);
       });
@@ -288,7 +288,7 @@ class JointFit {
       skinned.push_back(skin_.positions(*pose.sculpt, model_.positions));
       corrected.push_back(skin_.positions(*pose.sculpt, shape));
       for (std::size_t v = 0; v < counts.size(); ++v) {
-        if ((skinned.back()[v] - pose.sculpt->positions[v]).norm() > kLeastOffset) counts[v] = 1;
+        if ((skinned.back()[v] - pose.sculpt->positions[v]).norm() > kMinOffset) counts[v] = 1;
       }
     }
     for (std::size_t p = 0; p < poses_.size(); ++p) {

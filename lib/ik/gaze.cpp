@@ -20,8 +20,8 @@ namespace krok::ik {
 namespace {
 
 constexpr double kEyeOnly = 20, kTableEnd = 90, kEyesAtEnd = 35;  // degrees
-constexpr double kMostOfRange = 0.95;  // of the eyes' range that is used before the head helps
-constexpr double kMostHead = 70 * kRadiansPerDegree;
+constexpr double kMaxOfRange = 0.95;  // of the eyes' range that is used before the head helps
+constexpr double kMaxHead = 70 * kRadiansPerDegree;
 // Head movements of 10 to 60 degrees take about 0.3 to 0.6 s.
 constexpr double kHeadTime = 0.3, kHeadTimePerRadian = 0.3;
 constexpr double kOneMillimetre = 1e-3;
@@ -155,9 +155,9 @@ class Gazer {
     const double height = std::max(1e-3, to.y() > 0 ? up : down);
     const double range =
         across < 1e-9 ? side : across / std::hypot(to.x() / std::max(1e-3, side), to.y() / height);
-    const double needed = amplitude - kMostOfRange * range * kRadiansPerDegree;
+    const double needed = amplitude - kMaxOfRange * range * kRadiansPerDegree;
     const double angle = std::max(needed, head_share(amplitude));
-    return way * (std::min({angle, kMostHead, amplitude}) / amplitude);
+    return way * (std::min({angle, kMaxHead, amplitude}) / amplitude);
   }
 
   void turn(int frame) {

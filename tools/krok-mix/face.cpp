@@ -75,7 +75,7 @@ class FaceMaker {
     return face::item_of(std::move(curves));
   }
 
-  // The mistake is told at its place in the timeline, with the file's name.
+  // The error has its place in the timeline and the file's name.
   static Error missing(const std::string& path, Error error) {
     error.message = fmt::format("{}: {}", shown(path), error.message);
     return error;

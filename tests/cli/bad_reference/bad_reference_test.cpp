@@ -1,5 +1,5 @@
-// If this fails, a bad reference pose goes unnoticed, or samples/bad_reference/README.md tells
-// figures that its script does not print.
+// If this fails, a bad reference pose goes unnoticed, or samples/bad_reference/README.md has
+// numbers that its script does not print.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // If these fail, the blending story no longer holds: motions blended by keytimes slide about as
 // much as those blended by the clock, feet strike elsewhere than at the weighted keytimes, or
-// samples/blend_walks/README.md tells figures that its script does not print.
+// samples/blend_walks/README.md has numbers that its script does not print.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -61,17 +61,18 @@ TEST_F(Face, SpeechExpressionsAndBlinksBecomeWeights) {
 }
 
 TEST_F(Face, MistakesAreToldWithTheirPlace) {
-  const auto told = [&](const std::string& rest) {
+  const auto error_of = [&](const std::string& rest) {
     timeline(rest);
     return tool("krok-mix", {"t.json", "-o", "x.anim"}, 2).err;
   };
-  EXPECT_THAT(told(R"("face": [{"phonemes": "talk.csv"}])"),
+  EXPECT_THAT(error_of(R"("face": [{"phonemes": "talk.csv"}])"),
               AllOf(HasSubstr("t.json:2:"), HasSubstr("[timeline-shape]")));
-  EXPECT_THAT(told(R"("face": [{"expression": "grin"}])"), HasSubstr("[timeline-target]"));
-  EXPECT_THAT(told(R"("face": [{"expression": "lids", "seed": 3}])"), HasSubstr("is for blinks"));
-  EXPECT_THAT(told(R"("face": [{"blinks": 20}])"), HasSubstr("need a \"target\""));
+  EXPECT_THAT(error_of(R"("face": [{"expression": "grin"}])"), HasSubstr("[timeline-target]"));
+  EXPECT_THAT(error_of(R"("face": [{"expression": "lids", "seed": 3}])"),
+              HasSubstr("is for blinks"));
+  EXPECT_THAT(error_of(R"("face": [{"blinks": 20}])"), HasSubstr("need a \"target\""));
   put("talk.csv", "start,end,label\n0.1,0.2,M\n0.2,0.4,QQ\n");
-  EXPECT_THAT(told(R"("face": [{"phonemes": "talk.csv", "alphabet": "arpabet",
+  EXPECT_THAT(error_of(R"("face": [{"phonemes": "talk.csv", "alphabet": "arpabet",
                         "shapes": {"PP": {"lips": 1}}}])"),
               AllOf(HasSubstr("talk.csv:3:"), HasSubstr("[face-phoneme]")));
   EXPECT_FALSE(std::filesystem::exists(path("x.anim")));

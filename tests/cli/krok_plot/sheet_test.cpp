@@ -267,7 +267,7 @@ TEST_F(KrokPlotSheet, TakesOneFrameAndNoFrames) {
 }
 
 // A sheet of a folder was a ribbon of 30,000 pixels, refused after all had been drawn.
-// From one side at four times, unless told otherwise.
+// From one side at four times, unless options say otherwise.
 TEST_F(KrokPlotSheet, ManyMotionsAreAGridOfASizeThatFits) {
   std::vector<std::string> inputs(30, kWalk);
   inputs.insert(inputs.end(), {"--sheet", path("all.png"), "--body", "none"});

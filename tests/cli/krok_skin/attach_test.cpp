@@ -92,15 +92,15 @@ TEST_F(SkinAttach, NodesAreBelowTheJointAndPaintIsItsOwn) {
 }
 
 TEST_F(SkinAttach, MistakesAreTold) {
-  const auto told = [&](const std::vector<std::string>& more) {
+  const auto error_of = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = {"held.character", "in.anim", "-o", "x.glb"};
     all.insert(all.end(), more.begin(), more.end());
     return tool("krok-skin", all, 2).err;
   };
-  EXPECT_TRUE(has_code(told({"--attach", "Tail=axes.gltf"}), "skin-attach"));
-  EXPECT_TRUE(has_code(told({"--attach", "axes.gltf"}), "usage"));
-  EXPECT_TRUE(has_code(told({"--attach", "grip=in.anim"}), "skin-attach"));
-  EXPECT_TRUE(has_code(told({"--attach", "grip=axes.gltf", "--as", "pose"}), "usage"));
+  EXPECT_TRUE(has_code(error_of({"--attach", "Tail=axes.gltf"}), "skin-attach"));
+  EXPECT_TRUE(has_code(error_of({"--attach", "axes.gltf"}), "usage"));
+  EXPECT_TRUE(has_code(error_of({"--attach", "grip=in.anim"}), "skin-attach"));
+  EXPECT_TRUE(has_code(error_of({"--attach", "grip=axes.gltf", "--as", "pose"}), "usage"));
 }
 
 }  // namespace

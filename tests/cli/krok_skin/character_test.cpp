@@ -43,9 +43,9 @@ TEST_F(SkinCharacter, MinifyLeavesOutWhatNothingUses) {
   EXPECT_TRUE(has_coordinates("whole.gltf"));
   EXPECT_FALSE(has_coordinates("small.gltf"));
   EXPECT_FALSE(gltf("small.gltf")["asset"].contains("extras"));
-  const std::string told = tool("krok-diff", {"whole.gltf", "small.gltf"}, 1).out;
-  EXPECT_NE(told.find("positions: equal"), std::string::npos) << told;
-  EXPECT_NE(told.find("texture coordinates"), std::string::npos) << told;
+  const std::string output = tool("krok-diff", {"whole.gltf", "small.gltf"}, 1).out;
+  EXPECT_NE(output.find("positions: equal"), std::string::npos) << output;
+  EXPECT_NE(output.find("texture coordinates"), std::string::npos) << output;
   tool("krok-skin", {"hero.character", "in.anim", "--minify", "-o", "hero.gltf"});
   EXPECT_TRUE(has_coordinates("hero.gltf"));
 }

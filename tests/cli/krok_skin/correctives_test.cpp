@@ -75,7 +75,7 @@ TEST_F(SkinCorrectives, AreFittedAndWritten) {
 
 TEST_F(SkinCorrectives, MistakesAreToldWithTheirPlace) {
   const std::string good = description("LeftUpLeg");
-  const auto told = [&](const std::string& from, const std::string& to) {
+  const auto error_of = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     text.replace(text.find(from), from.size(), to);
     put("fit.json", text);
@@ -83,9 +83,9 @@ TEST_F(SkinCorrectives, MistakesAreToldWithTheirPlace) {
     EXPECT_EQ(run.exit_code, 2);
     return run.err;
   };
-  EXPECT_NE(told("\"frame\": 7", "\"frame\": 70").find("fit.json:3:"), std::string::npos);
-  EXPECT_NE(told("LeftUpLeg", "Nobody").find("fit.json:2:"), std::string::npos);
-  EXPECT_TRUE(has_code(told("s_0007.obj", "s_0099.obj"), "file-missing"));
+  EXPECT_NE(error_of("\"frame\": 7", "\"frame\": 70").find("fit.json:3:"), std::string::npos);
+  EXPECT_NE(error_of("LeftUpLeg", "Nobody").find("fit.json:2:"), std::string::npos);
+  EXPECT_TRUE(has_code(error_of("s_0007.obj", "s_0099.obj"), "file-missing"));
   put("fit.json", good);
   EXPECT_EQ(tool("krok-fit", {"fit.json", "-o", "in.steps"}).exit_code, 2);
   EXPECT_EQ(tool("krok-fit", {"fit.json", "--kernel", "linear", "-o", "a.correctives"}).exit_code,

@@ -1,5 +1,5 @@
 // If these fail, the story of golden files no longer holds: a changed build passes, an equal one
-// fails, or samples/mesh_regression/README.md tells figures that its script does not print.
+// fails, or samples/mesh_regression/README.md has numbers that its script does not print.
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // If this fails, correctives miss the sculpt or the volume by more than they may, or
-// samples/shapes_by_pose/README.md tells figures that its script does not print.
+// samples/shapes_by_pose/README.md has numbers that its script does not print.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

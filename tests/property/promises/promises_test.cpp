@@ -526,7 +526,7 @@ TEST(Promises, PositionsWithoutNoiseStay) {
   }
 }
 
-// The body is found whatever the root does, and the root is then told to be no joint of it.
+// The body is found whatever the root does, and the root is reported as no joint of it.
 TEST(Promises, ARootThatStaysBehindIsNoBone) {
   for (const auto& [name, clip] : people()) {
     if (name != "rig 0") continue;

@@ -89,7 +89,7 @@ TEST(TextGrid, LongAndShortFormsInThreeEncodings) {
 
 TEST(TextGrid, MistakesAreToldWithTheirPlace) {
   const struct {
-    const char *from, *to, *told;
+    const char *from, *to, *place;
   } kMistakes[] = {{"ooTextFile", "ooFile", "textgrid-kind 1:13"},
                    {"\"TextGrid\"", "\"Pitch 1\"", "textgrid-kind 2:16"},
                    {"size = 2", "size = \"2\"", "textgrid-structure 7:8"},
@@ -101,7 +101,7 @@ TEST(TextGrid, MistakesAreToldWithTheirPlace) {
   for (const auto& mistake : kMistakes) {
     const auto grid = read(test::replaced(kLong, mistake.from, mistake.to), "a.TextGrid");
     ASSERT_FALSE(grid.ok()) << mistake.from;
-    EXPECT_EQ(test::place_of(grid.error()), mistake.told);
+    EXPECT_EQ(test::place_of(grid.error()), mistake.place);
     EXPECT_EQ(grid.error().where.file, "a.TextGrid");
   }
 }
