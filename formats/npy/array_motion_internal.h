@@ -38,6 +38,10 @@ struct ArrayFile {
   // set.
   Result<std::vector<double>> numbers(const std::string& array,
                                       std::vector<std::size_t>& shape) const;
+  Result<std::vector<double>> numbers(const std::string& array,
+                                      std::vector<std::size_t>&& shape) const {
+    return numbers(array, shape);
+  }
   // A single number; empty if there is none of the names.
   Result<std::optional<double>> number(std::initializer_list<const char*> names) const;
 };

@@ -199,21 +199,24 @@ class Reader {
     if (!conversion) return conversion.error();
     capture_.clip.provenance.conversions = describe_conversions(conventions, options_);
     for (Transform& joint : motion_.skeleton.reference) joint = conversion->reference(joint);
+    Mat3 axes;
+    for (int i = 0; i < 3; ++i) {
+      axes.col(i) = conversion->pose({Vec3::Unit(i), Quat::Identity()}).position;
+    }
     for (std::size_t i = 0; i < motion_.positions.size(); ++i) {
-      Transform joint{motion_.positions[i],
-                      capture_.has_rotations ? motion_.orientations[i] : Quat::Identity()};
-      joint = conversion->pose(joint);
-      if (!is_near(joint.position)) {
+      motion_.positions[i] = axes * motion_.positions[i];
+      if (!is_near(motion_.positions[i])) {
         Error error("npy-value", "a joint is over 1e9 m away", "set the unit with --unit");
         error.joint = motion_.skeleton.names[i % joints];
         error.frame = static_cast<std::int64_t>(i / joints);
         return error;
       }
-      motion_.positions[i] = joint.position;
-      if (capture_.has_rotations) motion_.orientations[i] = joint.orientation;
+    }
+    for (Quat& turn : motion_.orientations) {
+      turn = conversion->pose({Vec3::Zero(), turn}).orientation;
     }
     for (Contact& contact : motion_.keys.contacts) {
-      contact.place = conversion->pose({contact.place, Quat::Identity()}).position;
+      contact.place = axes * contact.place;
     }
     return {};
   }

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <string_view>
 
@@ -176,60 +175,44 @@ Number number_at(const std::byte* place, bool swapped) {
   return std::bit_cast<Number>(bytes);
 }
 
-double from_half(std::uint16_t half) {
-  const int exponent = (half >> 10) & 31, fraction = half & 1023;
-  double size = 0;
-  if (exponent == 31) {
-    size = fraction == 0 ? std::numeric_limits<double>::infinity()
-                         : std::numeric_limits<double>::quiet_NaN();
-  } else {
-    size = std::ldexp(exponent == 0 ? fraction : fraction + 1024, std::max(exponent, 1) - 25);
+struct Half {
+  std::uint16_t bits;
+  explicit operator double() const {
+    const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
+    double size =
+        std::ldexp(exponent == 0 ? fraction : fraction + 1024, std::max(exponent, 1) - 25);
+    if (exponent == 31) size = fraction == 0 ? HUGE_VAL : std::nan("");
+    return (bits & 0x8000) != 0 ? -size : size;
   }
-  return (half & 0x8000) != 0 ? -size : size;
-}
+};
 
-double value_at(const Array& array, std::size_t index) {
-  const std::byte* place = array.data.data() + index * array.item_size;
-  const bool swapped = array.big_endian;
-  switch (array.element) {
-    case Element::boolean:
-      return std::to_integer<int>(*place) != 0 ? 1 : 0;
-    case Element::integer:
-      if (array.item_size == 1) return number_at<std::int8_t>(place, swapped);
-      if (array.item_size == 2) return number_at<std::int16_t>(place, swapped);
-      if (array.item_size == 4) return number_at<std::int32_t>(place, swapped);
-      return static_cast<double>(number_at<std::int64_t>(place, swapped));
-    case Element::natural:
-      if (array.item_size == 1) return number_at<std::uint8_t>(place, swapped);
-      if (array.item_size == 2) return number_at<std::uint16_t>(place, swapped);
-      if (array.item_size == 4) return number_at<std::uint32_t>(place, swapped);
-      return static_cast<double>(number_at<std::uint64_t>(place, swapped));
-    case Element::real:
-      if (array.item_size == 2) return from_half(number_at<std::uint16_t>(place, swapped));
-      if (array.item_size == 4) return number_at<float>(place, swapped);
-      return number_at<double>(place, swapped);
-    case Element::text:
-    case Element::bytes:
-      break;
-  }
-  return 0;
-}
-
-// Calls take(i) with the places in the file of the elements, row by row.
+// Calls take(place) with the elements from `first` on, `count` of them, row by row.
 template <typename Take>
-void in_row_order(const Array& array, const Take& take) {
-  const std::size_t count = array.count();
+void in_row_order(const Array& array, std::size_t first, std::size_t count, const Take& take) {
+  if (count == 0) return;
+  const std::byte* const data = array.data.data();
   if (!array.column_major) {
-    for (std::size_t i = 0; i < count; ++i) take(i);
+    for (std::size_t i = first; i < first + count; ++i) take(data + i * array.item_size);
     return;
   }
   std::vector<std::size_t> index(array.shape.size(), 0);
+  for (std::size_t d = index.size(), rest = first; d-- > 0; rest /= array.shape[d]) {
+    index[d] = rest % array.shape[d];
+  }
   for (std::size_t i = 0; i < count; ++i) {
     std::size_t place = 0;
     for (std::size_t d = index.size(); d-- > 0;) place = place * array.shape[d] + index[d];
-    take(place);
+    take(data + place * array.item_size);
     for (std::size_t d = index.size(); d-- > 0 && ++index[d] == array.shape[d];) index[d] = 0;
   }
+}
+
+template <typename Number>
+void add_numbers(const Array& array, std::size_t first, std::vector<double>& values) {
+  double* value = values.data();
+  in_row_order(array, first, values.size(), [&](const std::byte* place) {
+    *value++ = static_cast<double>(number_at<Number>(place, array.big_endian));
+  });
 }
 
 std::string type_of(const Array& array) {
@@ -257,19 +240,28 @@ std::size_t Array::count() const {
   return std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
 }
 
-std::vector<double> Array::numbers() const {
-  std::vector<double> values;
-  if (!is_number()) return values;
-  values.reserve(count());
-  in_row_order(*this, [&](std::size_t i) { values.push_back(value_at(*this, i)); });
+std::vector<double> Array::numbers(std::size_t first, std::size_t most) const {
+  if (!is_number()) return {};
+  std::vector<double> values(std::min(most, count() - first));
+  using Add = void (*)(const Array&, std::size_t, std::vector<double>&);
+  // For boolean, integer, natural and real elements of 1, 2, 4 and 8 bytes.
+  constexpr Add kAdd[][4] = {{add_numbers<std::uint8_t>},
+                             {add_numbers<std::int8_t>, add_numbers<std::int16_t>,
+                              add_numbers<std::int32_t>, add_numbers<std::int64_t>},
+                             {add_numbers<std::uint8_t>, add_numbers<std::uint16_t>,
+                              add_numbers<std::uint32_t>, add_numbers<std::uint64_t>},
+                             {nullptr, add_numbers<Half>, add_numbers<float>, add_numbers<double>}};
+  kAdd[static_cast<std::size_t>(element)][std::countr_zero(item_size)](*this, first, values);
+  if (element == Element::boolean) {
+    for (double& value : values) value = value != 0 ? 1 : 0;
+  }
   return values;
 }
 
 std::vector<std::string> Array::texts() const {
   std::vector<std::string> texts;
   if (is_number()) return texts;
-  in_row_order(*this, [&](std::size_t i) {
-    const std::byte* place = data.data() + i * item_size;
+  in_row_order(*this, 0, count(), [&](const std::byte* place) {
     std::string& text = texts.emplace_back();
     if (element == Element::bytes) {
       text.assign(reinterpret_cast<const char*>(place), item_size);

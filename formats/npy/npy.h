@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -30,8 +31,10 @@ struct Array {
 
   std::size_t count() const;
   bool is_number() const { return element != Element::text && element != Element::bytes; }
-  // All values, row by row (the last index changes first); text has none.
-  std::vector<double> numbers() const;
+  // Values row by row (the last index changes first), at most so many from `first` on, which is at
+  // most count(); text has none.
+  std::vector<double> numbers(std::size_t first = 0,
+                              std::size_t most = std::numeric_limits<std::size_t>::max()) const;
   // All texts as UTF-8; empty for numbers.
   std::vector<std::string> texts() const;
 };

@@ -50,8 +50,7 @@ Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion) {
   const std::size_t frames = motion.positions.size() / motion.skeleton.names.size();
   std::vector<int> joints;
   if (file.arrays.has("contact_joints")) {
-    std::vector<std::size_t> shape = {0};
-    const auto given = file.numbers("contact_joints", shape);
+    const auto given = file.numbers("contact_joints", {0});
     if (!given) return given.error();
     for (const double joint : *given) {
       if (!(joint >= 0 && joint < static_cast<double>(motion.skeleton.joint_count()))) {
@@ -66,8 +65,7 @@ Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion) {
     }
   }
   if (joints.empty()) return {};
-  std::vector<std::size_t> shape = {frames, joints.size()};
-  const auto down = file.numbers(name, shape);
+  const auto down = file.numbers(name, {frames, joints.size()});
   if (!down) return down.error();
   for (std::size_t c = 0; c < joints.size(); ++c) {
     if (joints[c] >= 0) add_runs(*down, c, joints.size(), joints[c], rate, motion);
@@ -82,16 +80,14 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
   ArrayMotion motion;
   motion.is_krok = true;
   Skeleton& skeleton = motion.skeleton;
-  std::vector<std::size_t> parents_shape = {0};
-  const auto parents = file.numbers("parents", parents_shape);
+  const auto parents = file.numbers("parents", {0});
   if (!parents) return parents.error();
   const std::size_t joints = parents->size();
   std::vector<std::size_t> places_shape = {0, joints, 3};
   const auto places = file.numbers("positions", places_shape);
   if (!places) return places.error();
   const std::size_t frames = places_shape[0];
-  std::vector<std::size_t> turns_shape = {frames, joints, 4};
-  const auto turns = file.numbers("quaternions", turns_shape);
+  const auto turns = file.numbers("quaternions", {frames, joints, 4});
   if (!turns) return turns.error();
   std::vector<std::string> names;
   if (file.arrays.has("names")) {
@@ -99,24 +95,15 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
     if (!read) return read.error();
     names = read->texts();
   }
-  std::vector<double> ends(joints, 0), rest_places, rest_turns;
-  if (file.arrays.has("end_sites")) {
-    std::vector<std::size_t> shape = {joints};
-    auto read = file.numbers("end_sites", shape);
-    if (!read) return read.error();
-    ends = *std::move(read);
-  }
+  const auto ends = file.arrays.has("end_sites") ? file.numbers("end_sites", {joints})
+                                                 : std::vector<double>(joints, 0);
+  if (!ends) return ends.error();
   // Without a reference pose, the first frame.
   const bool has_rest = file.arrays.has("reference_positions");
-  std::vector<std::size_t> rest_shape = {joints, 3}, rest_turns_shape = {joints, 4};
-  if (has_rest) {
-    auto read = file.numbers("reference_positions", rest_shape);
-    if (!read) return read.error();
-    rest_places = *std::move(read);
-    auto read_turns = file.numbers("reference_quaternions", rest_turns_shape);
-    if (!read_turns) return read_turns.error();
-    rest_turns = *std::move(read_turns);
-  }
+  const auto rest_places = has_rest ? file.numbers("reference_positions", {joints, 3}) : places;
+  if (!rest_places) return rest_places.error();
+  const auto rest_turns = has_rest ? file.numbers("reference_quaternions", {joints, 4}) : turns;
+  if (!rest_turns) return rest_turns.error();
   if (names.empty()) {
     for (std::size_t j = 0; j < joints; ++j) names.push_back(fmt::format("joint_{}", j));
   }
@@ -132,10 +119,10 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
                                "children, and the first joint has none, -1",
                                parent, j));
     }
-    const auto turn = quaternion_at(has_rest ? rest_turns : *turns, j);
+    const auto turn = quaternion_at(*rest_turns, j);
     if (!turn) return turn.error();
-    skeleton.add(names[j], static_cast<int>(parent),
-                 {vector_at(has_rest ? rest_places : *places, j), *turn}, ends[j] > 0.5);
+    skeleton.add(names[j], static_cast<int>(parent), {vector_at(*rest_places, j), *turn},
+                 (*ends)[j] > 0.5);
   }
   if (Status status = check(skeleton); !status) return status.error();
   for (std::size_t i = 0; i < frames * joints; ++i) {

@@ -45,8 +45,10 @@ bool fill_gaps(std::vector<double>& values, std::size_t frames) {
 std::string advice_on_axes(std::span<const std::size_t> shape) {
   const auto three = std::ranges::find(shape, 3U);
   if (shape.size() == 2 && shape[1] % 3 == 0) {
-    return fmt::format("x, y, z of {} joints in a row? then a.reshape(-1, {}, 3)", shape[1] / 3,
-                       shape[1] / 3);
+    return fmt::format(
+        "positions of {} joints in a row? then a.reshape(-1, {}, 3); rotation vectors "
+        "of SMPL are read from an .npz as \"poses\", with \"trans\"",
+        shape[1] / 3, shape[1] / 3);
   }
   if (three == shape.end()) return "save the array with the axes frames, joints, x y z";
   const std::ptrdiff_t axis = three - shape.begin();
@@ -86,10 +88,11 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
     arranged.error().message += fmt::format("; the shape is {}", text);
     return arranged.error();
   }
-  std::vector<double> values = array->numbers();
+  const std::size_t size = frames * columns * 3;
+  int wanted = 0;
   if (shape.size() == 4) {
     motion.motions = shape[0];
-    const int wanted = file.options.motion.value_or(0);
+    wanted = file.options.motion.value_or(0);
     if (wanted < 0 || at(wanted) >= motion.motions) {
       return Error("npy-shape", fmt::format("there is no motion {} among {}", wanted, shape[0]),
                    "motions are counted from 0");
@@ -99,11 +102,8 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
           "npy-motion", fmt::format("the file holds {} motions, the first is used", shape[0]),
           "krok-import --clip NUMBER takes another, --clip all writes all"));
     }
-    const std::size_t size = frames * columns * 3;
-    values.erase(values.begin() + static_cast<std::ptrdiff_t>((at(wanted) + 1) * size),
-                 values.end());
-    values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at(wanted) * size));
   }
+  std::vector<double> values = array->numbers(at(wanted) * size, size);
   const auto wrong = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
   if (wrong != values.end()) {
     const auto place = static_cast<std::size_t>(wrong - values.begin());
@@ -123,9 +123,14 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
     error.hint.clear();
     motion.diagnostics.push_back(error);
   }
-  std::vector<Vec3> places(frames * columns);
-  for (std::size_t i = 0; i < places.size(); ++i) places[i] = Vec3(&values[3 * i]);
-  motion.positions = places_of(*arranged, places, columns);
+  motion.positions.reserve(frames * arranged->columns.size());
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (const std::vector<int>& from : arranged->columns) {
+      Vec3 sum = Vec3::Zero();
+      for (const int column : from) sum += Vec3(&values[3 * (f * columns + at(column))]);
+      motion.positions.emplace_back(sum / static_cast<double>(from.size()));
+    }
+  }
   motion.skeleton = std::move(arranged->skeleton);
   motion.roles = std::move(arranged->roles);
   motion.columns = std::move(arranged->columns);
@@ -145,8 +150,7 @@ Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string
                              motion->skeleton.names[j], rotations),
                  kSkeletonHint);
   }
-  std::vector<std::size_t> shape = {frames, joints, 3, 3};
-  const auto values = file.numbers(rotations, shape);
+  const auto values = file.numbers(rotations, {frames, joints, 3, 3});
   if (!values) return values.error();
   motion->orientations.resize(frames * joints);
   for (std::size_t f = 0; f < frames; ++f) {

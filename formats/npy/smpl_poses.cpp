@@ -173,8 +173,7 @@ Result<ArrayMotion> read_smpl(const ArrayFile& file) {
   motion.roles = std::move(arranged->roles);
   std::vector<Vec3> roots(frames, Vec3::Zero());
   if (const auto name = file.find({"trans", "smpl_trans", "transl"}); !name.empty()) {
-    std::vector<std::size_t> shape = {frames, 3};
-    const auto moved = file.numbers(name, shape);
+    const auto moved = file.numbers(name, {frames, 3});
     if (!moved) return moved.error();
     for (std::size_t f = 0; f < frames; ++f) roots[f] = Vec3(&(*moved)[3 * f]);
   }

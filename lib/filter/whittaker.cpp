@@ -42,18 +42,26 @@ Whittaker::Whittaker(int size, double lambda, std::span<const double> weights)
   }
 }
 
-void Whittaker::smooth(std::span<double> series) const {
+void Whittaker::smooth(std::span<double> values, std::size_t series) const {
   const std::size_t size = inverse_.size();
   if (size < 3) return;
+  const auto scale = [&](std::size_t i, double by) {
+    for (std::size_t s = 0; s < series; ++s) values[i * series + s] *= by;
+  };
+  const auto subtract = [&](std::size_t i, std::size_t other, double times) {
+    double* const to = &values[i * series];
+    const double* const from = &values[other * series];
+    for (std::size_t s = 0; s < series; ++s) to[s] -= times * from[s];
+  };
   for (std::size_t i = 0; i < size; ++i) {
-    if (!weights_.empty()) series[i] *= weights_[i];
-    if (i > 0) series[i] -= lower1_[i - 1] * series[i - 1];
-    if (i > 1) series[i] -= lower2_[i - 2] * series[i - 2];
+    if (!weights_.empty()) scale(i, weights_[i]);
+    if (i > 0) subtract(i, i - 1, lower1_[i - 1]);
+    if (i > 1) subtract(i, i - 2, lower2_[i - 2]);
   }
   for (std::size_t i = size; i-- > 0;) {
-    series[i] *= inverse_[i];
-    if (i + 1 < size) series[i] -= lower1_[i] * series[i + 1];
-    if (i + 2 < size) series[i] -= lower2_[i] * series[i + 2];
+    scale(i, inverse_[i]);
+    if (i + 1 < size) subtract(i, i + 1, lower1_[i]);
+    if (i + 2 < size) subtract(i, i + 2, lower2_[i]);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -16,8 +17,9 @@ class Whittaker {
   // `lambda` > 0, finite. `weights`: one for each value, >= 0, at least two above 0; empty: all 1.
   Whittaker(int size, double lambda, std::span<const double> weights = {});
 
-  // In place, of `size` values. Fewer than three values are unchanged.
-  void smooth(std::span<double> series) const;
+  // In place, of `size` values each of so many series, of which the first values come first. Fewer
+  // than three values are unchanged.
+  void smooth(std::span<double> values, std::size_t series = 1) const;
 
   // Degrees of freedom: the trace of the matrix that smooths, for weights of 1. From its
   // eigenvalues in the cosine basis, within 1 of the exact trace.

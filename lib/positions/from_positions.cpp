@@ -1,10 +1,13 @@
 #include "positions/from_positions.h"
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
+#include <ranges>
+#include <utility>
 
 #include "core/index.h"
 #include "core/parallel.h"
@@ -18,6 +21,9 @@ namespace {
 
 constexpr double kNoLength = 1e-5;  // metres: a bone without a direction
 constexpr double kNoNoise = 2e-4;   // metres
+constexpr int kMaxSteps = 4;
+constexpr double kNoMisfit = 1e-11;  // square metres, of all joints together
+constexpr double kDamping = 10;      // levers of three misfits turn freely
 constexpr std::size_t kGrain = 256;
 constexpr std::size_t kFramesOfShape = 2000;
 
@@ -80,16 +86,17 @@ void unwrap(std::vector<double>& angles) {
 using Turn = std::complex<double>;  // an angle in a plane, as a unit number
 
 // Turns that follow `measured` by their weights, and none weakly: the least sum of
-// weight |z - measured|^2 + smoothness |steps of z|^2 + pull |z - 1|^2 over unit complex numbers,
-// of which the lengths are left free, so that the system is linear.
-std::vector<Turn> turns_over_time(std::span<const Turn> measured, std::span<const double> weights,
-                                  double smoothness, double pull) {
+// weight |z - measured|^2 + smoothness |steps of z base|^2 + pull |z - 1|^2 over unit complex
+// numbers, of which the lengths are left free, so that the system is linear. `base`: the turns of
+// what z turns.
+std::vector<Turn> turns_over_time(std::span<const Turn> measured, std::span<const Turn> base,
+                                  std::span<const double> weights, double smoothness, double pull) {
   const std::size_t n = measured.size();
   std::vector<double> upper(n, 0);
   std::vector<Turn> z(n);
   for (std::size_t t = 0; t < n; ++t) {
     double diagonal = weights[t] + pull + (t > 0 ? smoothness : 0) + (t + 1 < n ? smoothness : 0);
-    z[t] = weights[t] * measured[t] + pull;
+    z[t] = (weights[t] * measured[t] + pull) * base[t];
     if (t > 0) {
       diagonal -= smoothness * upper[t - 1];
       z[t] += smoothness * z[t - 1];
@@ -98,9 +105,9 @@ std::vector<Turn> turns_over_time(std::span<const Turn> measured, std::span<cons
     z[t] /= diagonal;
   }
   for (std::size_t t = n; t-- > 1;) z[t - 1] += upper[t - 1] * z[t];
-  for (Turn& turn : z) {
-    const double length = std::sqrt(std::norm(turn));
-    turn = length > 0 ? turn / length : Turn(1);
+  for (std::size_t t = 0; t < n; ++t) {
+    const double length = std::sqrt(std::norm(z[t]));
+    z[t] = length > 0 ? z[t] * std::conj(base[t]) / length : Turn(1);
   }
   return z;
 }
@@ -142,12 +149,11 @@ class Solver {
     find_noise();
     if (frames_ > 0) {
       find_targets();
-      place(true);
-      if (shift_root()) place(false);
+      place();
+      move_to_measured();
       twist_limbs();
-      follow();
       spread_twists();
-      follow();
+      for (std::size_t j = 1; j < joints_; ++j) follow(j);
     }
     finish();
     return std::move(result_);
@@ -257,15 +263,15 @@ class Solver {
     return aside / count <= std::max(0.03 * length, 3 * result_.noise) ? farthest : -1;
   }
 
-  // Rotations and places from the root down. With `measure`, offsets are measured first.
-  void place(bool measure) {
+  // Offsets are measured, and joints brought near where they were measured, from the root down.
+  void place() {
+    std::ranges::copy(measured_of(0), placed_.begin());
     for (std::size_t j = 0; j < joints_; ++j) {
-      if (parents_[j] < 0 && measure) std::ranges::copy(measured_of(j), &placed_[j * frames_]);
       if (targets_[j].size() == 1) {
-        if (measure) measure_bone(j);
+        measure_bone(j);
         point(j);
       } else if (!targets_[j].empty()) {
-        if (measure) measure_shape(j);
+        measure_shape(j);
         fit(j);
       } else if (parents_[j] >= 0) {
         std::ranges::copy(turns_of(at(parents_[j])), turns_of(j).begin());
@@ -274,15 +280,16 @@ class Solver {
         const auto target = std::ranges::find(targets_[j], child);
         if (target != targets_[j].end()) {
           offsets_[at(child)] = shapes_[j][static_cast<std::size_t>(target - targets_[j].begin())];
-        } else if (measure) {
+        } else {
           measure_aside(j, at(child));
         }
-        for (std::size_t f = 0; f < frames_; ++f) {
-          placed_[at(child) * frames_ + f] =
-              placed_[j * frames_ + f] + turns_[j * frames_ + f] * offsets_[at(child)];
-        }
+        for (std::size_t f = 0; f < frames_; ++f) hang(at(child), f);
       }
     }
+  }
+  void hang(std::size_t child, std::size_t f) {
+    const std::size_t from = at(parents_[child]) * frames_ + f;
+    placed_[child * frames_ + f] = placed_[from] + turns_[from] * offsets_[child];
   }
 
   Quat turn_above(std::size_t joint, std::size_t frame) const {
@@ -344,7 +351,12 @@ class Solver {
           sums[i] += back * way(j, at(targets_[j][i]), f);
         }
       }
-      for (std::size_t i = 0; i < sums.size(); ++i) shape[i] = sums[i] / count;
+      double change = 0;
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        change = std::max(change, (shape[i] - sums[i] / count).norm());
+        shape[i] = sums[i] / count;
+      }
+      if (change < 1e-8) break;
     }
     // As the reference pose stands, as nearly as the shape allows.
     Mat3 sum = 1e-9 * Mat3::Identity();
@@ -363,31 +375,121 @@ class Solver {
 
   void point(std::size_t j) {
     const std::size_t target = at(targets_[j][0]);
-    const Vec3& bone = shapes_[j][0];
+    const bool has_length = shapes_[j][0].norm() > kNoLength;
+    const Vec3 along = bone(j);
     for (std::size_t f = 0; f < frames_; ++f) {
       const Quat above = turn_above(j, f);
       Quat& turn = turns_[j * frames_ + f];
       turn = above;
       const Vec3 to = measured_[target * frames_ + f] - placed_[j * frames_ + f];
-      if (bone.norm() < kNoLength || to.norm() < kNoLength) continue;
-      turn = (shortest_arc(above * bone, to) * above).normalized();
+      const double length = to.norm();
+      if (!has_length || length < kNoLength) continue;
+      const Vec3 from = above * along;
+      Quat arc;
+      arc.w() = 1 + from.dot(to) / length;
+      arc.vec() = from.cross(to) / length;
+      if (arc.w() < 0.1) arc = shortest_arc(from, to);
+      turn = (arc * above).normalized();
     }
   }
 
-  // Moves the root so that the joints are right in the mean; false if they are.
-  bool shift_root() {
-    double largest = 0;
-    for (std::size_t f = 0; f < frames_; ++f) {
-      Vec3 sum = Vec3::Zero();
-      double weights = 0;
-      for (std::size_t j = 0; j < joints_; ++j) {
-        sum += weights_[j] * (measured_[j * frames_ + f] - placed_[j * frames_ + f]);
-        weights += weights_[j];
-      }
-      placed_[f] += sum / weights;
-      largest = std::max(largest, sum.norm() / weights);
+  // What a joint and those below it say on where it is to go, and how it turns.
+  struct Pull {
+    Mat3 weight = Mat3::Zero();  // of a step, metres
+    Vec3 step = Vec3::Zero();    // weighted
+    // Of its rotation vector, and of both: from the children.
+    Mat3 turn_weight = Mat3::Zero(), cross_weight = Mat3::Zero();
+    Vec3 turn = Vec3::Zero();
+  };
+
+  double misfit(std::size_t f) const {
+    double sum = 0;
+    for (std::size_t j = 0; j < joints_; ++j) {
+      sum += weights_[j] * (measured_[j * frames_ + f] - placed_[j * frames_ + f]).squaredNorm();
     }
-    return largest > 1e-7;
+    return sum;
+  }
+
+  // Joints to where their distances to the measured ones are least together, by Gauss and Newton.
+  // Rotations are eliminated from the leaves to the root, so that a step takes time proportional to
+  // the number of joints (Featherstone, "Rigid Body Dynamics Algorithms", 2008, chapter 7).
+  void move_to_measured() {
+    parallel_for(frames_, kGrain, input_.jobs, [&](std::size_t begin, std::size_t end) {
+      std::vector<Pull> pulls;
+      std::vector<Vec3> before(joints_);
+      std::vector<Quat> turns_before(joints_);
+      for (std::size_t f = begin; f < end; ++f) {
+        double now = misfit(f);
+        for (int i = 0; i < kMaxSteps && now > kNoMisfit; ++i) {
+          for (std::size_t j = 0; j < joints_; ++j) {
+            before[j] = placed_[j * frames_ + f];
+            turns_before[j] = turns_[j * frames_ + f];
+          }
+          step_to_measured(f, kDamping * now / static_cast<double>(joints_), pulls);
+          const double last = std::exchange(now, misfit(f));
+          if (now < last) {
+            if (now > 0.999 * last) break;
+            continue;
+          }
+          for (std::size_t j = 0; j < joints_; ++j) {
+            placed_[j * frames_ + f] = before[j];
+            turns_[j * frames_ + f] = turns_before[j];
+          }
+          break;
+        }
+      }
+    });
+    measured_ = placed_;
+  }
+
+  // `damping`: square metres, of levers that are too short to show a rotation.
+  void step_to_measured(std::size_t f, double damping, std::vector<Pull>& pulls) {
+    pulls.assign(joints_, {});
+    for (std::size_t j = joints_; j-- > 0;) {
+      Pull& pull = pulls[j];
+      pull.weight.diagonal().array() += weights_[j];
+      pull.step += weights_[j] * (measured_[j * frames_ + f] - placed_[j * frames_ + f]);
+      if (!children_[j].empty()) {
+        // A turn about the only bone moves nothing: it is left out.
+        pull.turn_weight.diagonal().array() += 1e-12 + damping + 1e-6 * pull.turn_weight.trace();
+        const Mat3 inverse = pull.turn_weight.inverse();
+        pull.turn = inverse * pull.turn;
+        pull.step -= pull.cross_weight * pull.turn;
+        pull.turn_weight = inverse * pull.cross_weight.transpose();
+        pull.weight -= pull.cross_weight * pull.turn_weight;
+      }
+      if (parents_[j] < 0) continue;
+      Pull& above = pulls[at(parents_[j])];
+      const Vec3 bone = placed_[j * frames_ + f] - placed_[at(parents_[j]) * frames_ + f];
+      Mat3 lever;  // times the rotation vector: how the joint moves
+      lever << 0, bone.z(), -bone.y(), -bone.z(), 0, bone.x(), bone.y(), -bone.x(), 0;
+      const Mat3 moved = pull.weight * lever;
+      above.weight += pull.weight;
+      above.step += pull.step;
+      above.cross_weight += moved;
+      above.turn_weight += lever.transpose() * moved;
+      above.turn += bone.cross(pull.step);
+    }
+    for (std::size_t j = 0; j < joints_; ++j) {
+      Vec3& place = placed_[j * frames_ + f];
+      Pull& pull = pulls[j];
+      if (parents_[j] < 0) pull.step = pull.weight.inverse() * pull.step;
+      const Vec3 turn = pull.turn - pull.turn_weight * pull.step;
+      for (const int child : children_[j]) {
+        pulls[at(child)].step = pull.step + turn.cross(placed_[at(child) * frames_ + f] - place);
+      }
+      if (!children_[j].empty()) turn_by(turn, j, f);
+      if (parents_[j] < 0) place += pull.step;
+    }
+    for (std::size_t j = 1; j < joints_; ++j) hang(j, f);
+  }
+  // By a rotation vector in world axes.
+  void turn_by(const Vec3& vector, std::size_t j, std::size_t f) {
+    Quat by;
+    by.w() = 1;
+    by.vec() = 0.5 * vector;  // up to its third power, and at most a half turn
+    Quat& turn = turns_[j * frames_ + f];
+    turn = (by * turn).normalized();
   }
 
   // Turns a joint with one target about its bone, `axis`.
@@ -406,16 +508,25 @@ class Solver {
            shapes_[at(joint)][0].norm() > kNoLength;
   }
 
-  // Joints of which the children do not show the twist take it from their parents, from the root
-  // down.
-  void follow() {
-    for (std::size_t j = 1; j < joints_; ++j) {
-      if (targets_[j].empty()) {
-        std::ranges::copy(turns_of(at(parents_[j])), turns_of(j).begin());
-      } else if (targets_[j].size() == 1 && !twisted_[j]) {
-        point(j);
-      }
+  // A joint of which the children do not show the twist takes it from its parent.
+  void follow(std::size_t j) {
+    if (targets_[j].empty()) {
+      std::ranges::copy(turns_of(at(parents_[j])), turns_of(j).begin());
+    } else if (targets_[j].size() == 1 && !twisted_[j]) {
+      point(j);
     }
+  }
+
+  // How far a joint has turned about its bone, from frame to frame.
+  std::vector<Turn> twists_of(std::size_t j, const Vec3& axis) const {
+    std::vector<Turn> turns(frames_, Turn(1));
+    for (std::size_t f = 1; f < frames_; ++f) {
+      const Quat step = turns_[j * frames_ + f - 1].conjugate() * turns_[j * frames_ + f];
+      const Turn half(step.w(), step.vec().dot(axis));
+      const double size = std::norm(half);
+      turns[f] = size > 0 ? turns[f - 1] * half * half / size : turns[f - 1];
+    }
+    return turns;
   }
 
   void twist_limb(int upper, int lower, int end, const Vec3& forward) {
@@ -431,6 +542,7 @@ class Solver {
     if (hinge.norm() < 1e-9) return;
     hinge.normalize();
     const Vec3 along_bone = bone(u), across = along_bone.cross(hinge);
+    const std::vector<Turn> base = twists_of(u, along_bone);
     std::vector<Turn> measured(frames_, Turn(1));
     std::vector<double> weights(frames_), clear(frames_);
     for (std::size_t f = 0; f < frames_; ++f) {
@@ -448,11 +560,11 @@ class Solver {
     // A limb that is nearly straight may be bent the other way: it follows frames that are clearly
     // bent.
     const double steps = 0.05 * input_.rate, smoothness = 0.003 * steps * steps;
-    auto found = turns_over_time(measured, clear, smoothness, 1e-4);
+    auto found = turns_over_time(measured, base, clear, smoothness, 1e-4);
     for (std::size_t f = 0; f < frames_; ++f) {
       if ((measured[f] * std::conj(found[f])).real() < 0) measured[f] = -measured[f];
     }
-    found = turns_over_time(measured, weights, smoothness, 1e-5);
+    found = turns_over_time(measured, base, weights, smoothness, 1e-5);
     for (std::size_t f = 0; f < frames_; ++f) twist(u, f, along_bone, found[f]);
     twisted_[u] = true;
   }
@@ -470,21 +582,14 @@ class Solver {
 
   // The share of the twist between the ends of a chain that a link and those above it take.
   double share_of(std::size_t joint, std::size_t place, std::size_t links) const {
-    switch (joint < input_.roles.roles.size() ? input_.roles.roles[joint] : Role::none) {
-      case Role::left_collar:
-      case Role::right_collar:
-      case Role::left_upper_arm:
-      case Role::right_upper_arm:
-      case Role::left_lower_arm:
-      case Role::right_lower_arm:
-      case Role::left_upper_leg:
-      case Role::right_upper_leg:
-      case Role::left_lower_leg:
-      case Role::right_lower_leg:
-        return 0;
-      default:
-        return static_cast<double>(place + 1) / static_cast<double>(links + 1);
+    const Role role = joint < input_.roles.roles.size() ? input_.roles.roles[joint] : Role::none;
+    for (const ArmRoles& arm : kArmRoles) {
+      if (role == arm.collar || role == arm.upper || role == arm.lower) return 0;
     }
+    for (const LegRoles& leg : kLegRoles) {
+      if (role == leg.upper || role == leg.lower) return 0;
+    }
+    return static_cast<double>(place + 1) / static_cast<double>(links + 1);
   }
 
   void spread_twists() {
@@ -498,6 +603,12 @@ class Solver {
       // From a joint known in full to the next.
       if (links.empty() || parents_[links.back()] < 0) continue;
       std::ranges::reverse(links);
+      double shares = 0;
+      for (std::size_t i = 0; i < links.size(); ++i) shares += share_of(links[i], i, links.size());
+      if (shares == 0) continue;
+      std::vector<std::size_t> above;
+      for (std::size_t j = links.back(); j > 0; j = at(parents_[j])) above.push_back(j);
+      for (const std::size_t j : std::views::reverse(above)) follow(j);
       std::vector<double> angles(frames_);
       const Vec3 last = bone(links.back());
       for (std::size_t f = 0; f < frames_; ++f) {
@@ -507,9 +618,10 @@ class Solver {
       unwrap(angles);
       for (std::size_t i = 0; i < links.size(); ++i) {
         const double share = share_of(links[i], i, links.size());
-        if (share > 0) twisted_[links[i]] = true;
+        if (share == 0) continue;
+        twisted_[links[i]] = true;
         const Vec3 axis = bone(links[i]);
-        for (std::size_t f = 0; share > 0 && f < frames_; ++f) {
+        for (std::size_t f = 0; f < frames_; ++f) {
           twist(links[i], f, axis, std::polar(1.0, share * angles[f]));
         }
       }

@@ -20,8 +20,9 @@
 //   limb is straight the twist is carried over from before and after, by least squares over time.
 // - A joint without children keeps its rotation relative to its parent.
 // - White noise shows in the bone lengths, which would otherwise not change. It is removed from all
-//   joints together, as far as their common movement does not explain it
-//   (filter/series_denoiser.h); positions without noise are not changed.
+//   joints together (filter/series_denoiser.h); positions without noise are not changed.
+// - Joints are where the sum of their squared distances from these places is least, with bones of
+//   constant length: a third of what is left of the noise is along the bones, and goes, too.
 
 namespace krok {
 
@@ -59,9 +60,9 @@ PoseFromPositions from_positions(const PositionsToPose& input);
 // differences of bone lengths. `tracks`: [joints x frames]. 0 for fewer than 5 frames.
 std::vector<double> noise_of(std::span<const int> parents, std::span<const Vec3> tracks);
 
-// Removes that noise from the tracks of all joints together by filter::without_noise(), between the
-// frames at which a joint jumps to another place, as after a rest pose. Returns whether anything
-// changed.
+// Removes that noise from the tracks of all joints together by filter::without_noise_in_parts(),
+// between the frames at which a joint jumps to another place, as after a rest pose. Returns whether
+// anything changed.
 bool smooth_tracks(std::span<const double> noise, double rate, int jobs, std::span<Vec3> tracks);
 
 }  // namespace krok

@@ -76,7 +76,7 @@ bool smooth_part(std::size_t begin, std::size_t end, std::span<const double> noi
           (of(i, t) / noise[noisy[i]]).transpose();
     }
   }
-  const Eigen::MatrixXd smooth = filter::without_noise(series, rate, jobs);
+  const Eigen::MatrixXd smooth = filter::without_noise_in_parts(series, rate, jobs);
   for (std::size_t i = 0; i < noisy.size(); ++i) {
     for (Eigen::Index t = 0; t < rows; ++t) {
       of(i, t) =

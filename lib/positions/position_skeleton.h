@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,10 +47,5 @@ struct ArrangedSkeleton {
 // Codes: skeleton-parent (a parent that is not there, a loop, several roots), skeleton-name (a name
 // that is empty or twice), those of find_roles().
 Result<ArrangedSkeleton> arrange(const PositionSkeleton& joints);
-
-// The places of a skeleton's joints, [frames x joints], from those of an array's columns, [frames x
-// columns].
-std::vector<Vec3> places_of(const ArrangedSkeleton& skeleton, std::span<const Vec3> columns,
-                            std::size_t column_count);
 
 }  // namespace krok

@@ -21,8 +21,9 @@ except ImportError as missing:
 
 BIN, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
 os.environ["PATH"] = f"{BIN}{os.pathsep}{os.environ['PATH']}"
-sys.path[:0] = [str(SOURCE / "python")]
+sys.path[:0] = [str(SOURCE / "python"), str(SOURCE / "tests" / "lint")]
 import krok  # noqa: E402
+from bvh import Bvh  # noqa: E402
 
 CAPTURE = SOURCE / "samples" / "captures" / "walk.bvh"
 SMPL = [-1, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 9, 9, 12, 13, 14, 16, 17, 18, 19]
@@ -124,6 +125,11 @@ class Arrays(unittest.TestCase):
         places = walk["positions"][:, [list(walk["names"]).index(name) for name in order]]
         upright = self.imported("y.npy", places, skeleton="humanml22", fps=60)
         self.assertLess(np.abs(upright["positions"] - places).max(), 1e-4)
+        krok.run("export", self.folder / "in.anim", output=self.folder / "in.bvh", unit="m")
+        bvh = Bvh(self.folder / "in.bvh")  # kinematics that share no code with Krok
+        joints = [list(upright["names"]).index(joint[0]) if joint[0] else -1 for joint in bvh.joints]
+        self.assertEqual(sorted(joints)[-22:], list(range(22)))
+        self.assertLess(np.abs(bvh.world() - places[:, joints])[:, np.array(joints) >= 0].max(), 1e-4)
         lying = self.imported("z.npy", 1000 * places @ [[1, 0, 0], [0, 0, 1], [0, -1, 0]], skeleton="humanml22",
                               fps=60)
         self.assertLess(np.abs(lying["positions"] - places).max(), 1e-4)

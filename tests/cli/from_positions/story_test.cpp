@@ -24,7 +24,7 @@ TEST_F(FromPositions, HoldsWhatItsReadmeTells) {
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const std::string readme = told("README.md"), printed = made.out + made.err;
   for (const char* line :
-       {"noise 5.06 mm, smoothed", "heels and balls drift by up to 0.000243 mm"}) {
+       {"noise 5.06 mm, smoothed", "heels and balls drift by up to 0.000481 mm"}) {
     EXPECT_THAT(printed, testing::HasSubstr(line));
     EXPECT_THAT(readme, testing::HasSubstr(line));
   }

@@ -60,6 +60,17 @@ TEST(Npy, elements_of_all_sizes_and_orders) {
   EXPECT_EQ(numbers("|u1", "(2, 3)", "\1\4\2\5\3\6"s, true), (Numbers{1, 2, 3, 4, 5, 6}));
 }
 
+TEST(Npy, a_part_in_either_order_of_axes) {
+  for (const bool fortran : {false, true}) {
+    const std::string file =
+        npy_file(header_of("|u1", "(2, 3)", fortran), fortran ? "\1\4\2\5\3\6" : "\1\2\3\4\5\6");
+    const auto array = krok::npy::parse(bytes_of(file));
+    ASSERT_TRUE(array.ok());
+    EXPECT_EQ(array->numbers(2, 3), (std::vector<double>{3, 4, 5}));
+    EXPECT_EQ(array->numbers(5), std::vector<double>{6});
+  }
+}
+
 TEST(Npy, objects_are_never_opened) {
   EXPECT_EQ(error_code(npy_file(header_of("|O", "(1,)"), "\x80\4cos\nsystem\n.")), "npy-objects");
 }
