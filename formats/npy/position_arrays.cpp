@@ -41,19 +41,30 @@ bool fill_gaps(std::vector<double>& values, std::size_t frames) {
   return true;
 }
 
-// How to bring an array into order, if an axis has three elements.
+// How to bring an array into order.
 std::string advice_on_axes(std::span<const std::size_t> shape) {
-  const auto three = std::ranges::find(shape, 3U);
-  if (shape.size() == 2 && shape[1] % 3 == 0) {
+  const auto is_body = [](std::size_t size) { return !skeleton_of_columns(size).empty(); };
+  const std::size_t last = shape.empty() ? 0 : shape.back();
+  if (shape.size() == 2 && last == 3) return "one frame? then a[None]";
+  if (shape.size() == 2 && last % 3 == 0) {
     return fmt::format(
-        "positions of {} joints in a row? then a.reshape(-1, {}, 3); rotation vectors "
-        "of SMPL are read from an .npz as \"poses\", with \"trans\"",
-        shape[1] / 3, shape[1] / 3);
+        "positions of {} joints in a row? then a.reshape(-1, {}, 3); rotation vectors of SMPL are "
+        "read from an .npz as \"poses\", with \"trans\"",
+        last / 3, last / 3);
   }
+  if (shape.size() == 2 && (last == 263 || last == 251)) {
+    return "HumanML3D's features? its recover_from_ric() makes positions of them";
+  }
+  const auto three = std::ranges::find(shape, 3U);
+  if (three == shape.end() && last == 4) return "x, y, z and another number? then a[..., :3]";
+  if (three == shape.end() && last == 2) return "places in an image: depth is needed, too";
   if (three == shape.end()) return "save the array with the axes frames, joints, x y z";
   const std::ptrdiff_t axis = three - shape.begin();
   if (shape.size() == 4 && axis == 2) {
     return "motions, joints, x y z, frames? then a.transpose(0, 3, 1, 2)";
+  }
+  if (shape.size() == 3 && axis == 1 && is_body(shape[0]) && !is_body(shape[2])) {
+    return "joints, x y z, frames? then a.transpose(2, 0, 1)";
   }
   return fmt::format("axis {} has three elements: numpy.moveaxis(a, {}, -1) makes it the last",
                      axis, axis);
@@ -100,14 +111,17 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
     if (motion.motions > 1 && !file.options.motion) {
       motion.diagnostics.push_back(make_warning(
           "npy-motion", fmt::format("the file holds {} motions, the first is used", shape[0]),
-          "krok-import --clip NUMBER takes another, --clip all writes all"));
+          frames == 1 ? "one motion of so many frames? then a[:, 0]"
+                      : "krok-import --clip NUMBER takes another, --clip all writes all"));
     }
   }
   std::vector<double> values = array->numbers(at(wanted) * size, size);
   const auto wrong = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
   if (wrong != values.end()) {
     const auto place = static_cast<std::size_t>(wrong - values.begin());
-    Error error("npy-value", fmt::format("{} has {} for a coordinate", what, *wrong),
+    Error error("npy-value",
+                fmt::format("{} has {} for a coordinate of joint {} in frame {}", what, *wrong,
+                            place / 3 % columns, place / (3 * columns)),
                 "--repair fills gaps from the frames before and after");
     error.frame = static_cast<std::int64_t>(place / (3 * columns));
     for (std::size_t j = 0; j < arranged->columns.size(); ++j) {
@@ -201,10 +215,12 @@ Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string
 Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns,
                                       double& usual_rate, Diagnostics& diagnostics) {
   const auto other_number = [&](int expected) {
+    const std::string_view fitting = skeleton_of_columns(columns);
     return Error("npy-skeleton",
                  fmt::format("there are {} joints, {} has {}", columns,
                              shown(file.options.columns_name), expected),
-                 kSkeletonHint);
+                 fitting.empty() ? kSkeletonHint
+                                 : fmt::format("{} has as many: --skeleton {}", fitting, fitting));
   };
   if (file.options.skeleton) {
     ArrangedSkeleton arranged;

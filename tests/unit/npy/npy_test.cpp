@@ -132,6 +132,10 @@ TEST(Npy, axes_in_another_order_are_explained) {
   EXPECT_NE(hint_for({22, 40, 3}).find("swapaxes"), std::string::npos);
   EXPECT_NE(hint_for({2, 22, 3, 40}).find("transpose(0, 3, 1, 2)"), std::string::npos);
   EXPECT_NE(hint_for({40, 66}).find("reshape(-1, 22, 3)"), std::string::npos);
+  EXPECT_NE(hint_for({22, 3, 40}).find("transpose(2, 0, 1)"), std::string::npos);
+  EXPECT_NE(hint_for({22, 3}).find("a[None]"), std::string::npos);
+  EXPECT_NE(hint_for({40, 263}).find("recover_from_ric()"), std::string::npos);
+  EXPECT_NE(hint_for({40, 22, 4}).find("a[..., :3]"), std::string::npos);
 }
 
 TEST(Npy, published_orders_make_people) {
