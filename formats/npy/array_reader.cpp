@@ -2,18 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "capture/far_values.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/json/located_json.h"
 #include "formats/npy/array_motion_internal.h"
-#include "math/quaternion.h"
 #include "positions/from_positions.h"
 #include "scene/farthest.h"
 #include "scene/frame_moment.h"

@@ -96,10 +96,18 @@ struct Poses {
 };
 
 Result<Poses> read_poses(const ArrayFile& file) {
+  std::vector<std::string> names = {file.find({"poses", "smpl_poses", "full_pose", "thetas"})};
+  if (names[0].empty()) {
+    names = {file.find({"root_orient", "global_orient"}), file.find({"pose_body", "body_pose"})};
+    if (file.arrays.has("pose_hand") || file.arrays.has("left_hand_pose")) {
+      names.insert(names.end(), {"pose_jaw", "jaw_pose", "pose_eye", "leye_pose", "reye_pose",
+                                 "pose_hand", "left_hand_pose", "right_hand_pose"});
+    }
+    std::erase_if(names, [&](const std::string& name) { return !file.arrays.has(name); });
+  }
   Poses poses;
-  const auto add = [&](std::vector<std::vector<double>>& parts, std::vector<std::size_t>& sizes,
-                       const std::string& name) -> Status {
-    if (name.empty()) return {};
+  std::vector<std::vector<double>> parts;
+  for (const std::string& name : names) {
     std::vector<std::size_t> shape;
     auto values = file.numbers(name, shape);
     if (!values) return values.error();
@@ -112,37 +120,14 @@ Result<Poses> read_poses(const ArrayFile& file) {
                                name, shape_text(shape)));
     }
     poses.frames = shape[0];
+    poses.joints += size / 3;
     parts.push_back(*std::move(values));
-    sizes.push_back(size);
-    return {};
-  };
-  std::vector<std::vector<double>> parts;
-  std::vector<std::size_t> sizes;
-  const std::string whole = file.find({"poses", "smpl_poses", "full_pose", "thetas"});
-  if (!whole.empty()) {
-    if (Status status = add(parts, sizes, whole); !status) return status.error();
-  } else {
-    const bool hands = file.arrays.has("pose_hand") || file.arrays.has("left_hand_pose");
-    std::vector<std::string> names = {file.find({"root_orient", "global_orient"}),
-                                      file.find({"pose_body", "body_pose"})};
-    if (hands) {
-      for (const char* name : {"pose_jaw", "jaw_pose", "pose_eye", "leye_pose", "reye_pose",
-                               "pose_hand", "left_hand_pose", "right_hand_pose"}) {
-        names.push_back(file.find({name}));
-      }
-    }
-    for (const std::string& name : names) {
-      if (Status status = add(parts, sizes, name); !status) return status.error();
-    }
   }
-  std::size_t size = 0;
-  for (const std::size_t part : sizes) size += part;
-  poses.joints = size / 3;
-  poses.values.reserve(poses.frames * size);
   for (std::size_t f = 0; f < poses.frames; ++f) {
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      const auto from = parts[i].begin() + static_cast<std::ptrdiff_t>(f * sizes[i]);
-      poses.values.insert(poses.values.end(), from, from + static_cast<std::ptrdiff_t>(sizes[i]));
+    for (const std::vector<double>& part : parts) {
+      const auto size = static_cast<std::ptrdiff_t>(part.size() / poses.frames);
+      const auto from = part.begin() + static_cast<std::ptrdiff_t>(f) * size;
+      poses.values.insert(poses.values.end(), from, from + size);
     }
   }
   return poses;

@@ -160,8 +160,9 @@ class Solver {
   }
 
  private:
-  using Track = std::span<Quat>;
-  Track turns_of(std::size_t joint) { return std::span(turns_).subspan(joint * frames_, frames_); }
+  std::span<Quat> turns_of(std::size_t joint) {
+    return std::span(turns_).subspan(joint * frames_, frames_);
+  }
   std::span<Vec3> measured_of(std::size_t joint) {
     return std::span(measured_).subspan(joint * frames_, frames_);
   }
@@ -529,7 +530,9 @@ class Solver {
     return turns;
   }
 
-  void twist_limb(int upper, int lower, int end, const Vec3& forward) {
+  void twist_limb(Role upper_role, Role lower_role, Role end_role, const Vec3& forward) {
+    const int upper = input_.roles.joint(upper_role), lower = input_.roles.joint(lower_role),
+              end = input_.roles.joint(end_role);
     if (!has_bone(upper) || lower < 0 || end < 0) return;
     const std::size_t u = at(upper);
     const auto& reference = input_.skeleton.reference;
@@ -571,12 +574,10 @@ class Solver {
 
   void twist_limbs() {
     for (const ArmRoles& arm : kArmRoles) {
-      const auto joint = [&](Role role) { return input_.roles.joint(role); };
-      twist_limb(joint(arm.upper), joint(arm.lower), joint(arm.hand), Vec3::UnitZ());
+      twist_limb(arm.upper, arm.lower, arm.hand, Vec3::UnitZ());
     }
     for (const LegRoles& leg : kLegRoles) {
-      const auto joint = [&](Role role) { return input_.roles.joint(role); };
-      twist_limb(joint(leg.upper), joint(leg.lower), joint(leg.foot), -Vec3::UnitZ());
+      twist_limb(leg.upper, leg.lower, leg.foot, -Vec3::UnitZ());
     }
   }
 
