@@ -25,6 +25,28 @@ Box box_of(const CellLayout& cell) {
   return {Vec2(cell.left, cell.top), Vec2(cell.right, cell.bottom)};
 }
 
+constexpr double kAfterTitle = 10;   // pixels
+constexpr int kWidestHeader = 1200;  // pixels
+
+std::string note_of(const SheetRow& row, const RowLayout& place) {
+  if (place.shows_ground) return row.note;
+  return fmt::format("{}{}the ground is {} m {}", row.note, row.note.empty() ? "" : "   ",
+                     readable(std::abs(place.ground_distance), 3),
+                     place.ground_distance > 0 ? "below" : "above");
+}
+
+// A sheet of few cells is as wide as its headers, so that they can be read.
+void widen_for_headers(const Sheet& sheet, TextPainter& text, Layout& layout) {
+  if (sheet.columns > 1) return;
+  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    const RowLayout& place = layout.rows[r];
+    const double width = text.width(sheet.rows[r].title, kTitleSize) + kAfterTitle +
+                         text.width(note_of(sheet.rows[r], place), kTextSize);
+    const int whole = place.left + static_cast<int>(std::ceil(width)) + kMargin;
+    layout.width = std::max(layout.width, std::min(whole, kWidestHeader));
+  }
+}
+
 // Paints the 2D parts: background and text.
 class SheetPainter {
  public:
@@ -114,16 +136,12 @@ class SheetPainter {
     // A title alone may be wider than its cells.
     const double right = sheet_.columns == 1 ? layout_.width - kMargin : place.right;
     double x = place.left;
-    const std::string title = text_.fitted(row.title, kTitleSize, right - x);
-    text_.draw(image_, {x, line}, title, kTitleSize, kInk);
-    x += text_.width(title, kTitleSize) + (title.empty() ? 0 : 10);
-    std::string note = row.note;
-    if (!place.shows_ground) {
-      note += fmt::format("{}the ground is {} m {}", note.empty() ? "" : "   ",
-                          readable(std::abs(place.ground_distance), 3),
-                          place.ground_distance > 0 ? "below" : "above");
-    }
-    text_.draw(image_, {x, line}, text_.fitted(note, kTextSize, right - x), kTextSize, kSoft);
+    const double size = text_.width(row.title, kTitleSize) > right - x ? kSmallSize : kTitleSize;
+    const std::string title = text_.fitted(row.title, size, right - x);
+    text_.draw(image_, {x, line}, title, size, kInk);
+    x += text_.width(title, size) + (title.empty() ? 0 : kAfterTitle);
+    text_.draw(image_, {x, line}, text_.fitted(note_of(row, place), kTextSize, right - x),
+               kTextSize, kSoft);
   }
 
   void paint_labels(const CellLayout& cell) {
@@ -208,6 +226,9 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
   // Before the work, so that a sheet that is too large costs little.
   auto layout = lay_out(sheet, options);
   if (!layout) return layout.error();
+  auto text = TextPainter::create();
+  if (!text) return text.error();
+  widen_for_headers(sheet, *text, *layout);
   const auto tracer = Tracer::create();
   if (!tracer) return tracer.error();
   std::vector<TracedActor> traced;
@@ -217,8 +238,6 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
     if (!ready) return ready.error();
     traced.push_back(std::move(*ready));
   }
-  auto text = TextPainter::create();
-  if (!text) return text.error();
 
   SheetImage image;
   image.image = Image(layout->width, layout->height, kPaper);

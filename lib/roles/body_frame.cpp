@@ -66,6 +66,16 @@ Quat body_frame(const Skeleton& skeleton, const RoleMap& roles) {
   return axes ? along_axes(frame_of(axes->left, axes->up)) : Quat::Identity();
 }
 
+std::optional<double> heading_of(const RoleMap& roles, std::span<const Transform> joints) {
+  constexpr double kLevel = 0.3;  // of the direction ahead; else it is of a body that lies
+  const auto axes =
+      axes_of(roles, [&](Role role) -> Vec3 { return joints[at(roles.joint(role))].position; });
+  if (!axes) return {};
+  const Vec3 ahead = axes->left.cross(axes->up);
+  if (std::hypot(ahead.x(), ahead.z()) < kLevel) return {};
+  return std::atan2(ahead.x(), ahead.z());
+}
+
 Skeleton facing_skeleton(const Clip& clip, const RoleMap& roles) {
   constexpr double kOtherwise = 45 * kRadiansPerDegree;
   constexpr int kSamples = 200;

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <span>
+
+#include "math/transform.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
 
@@ -10,6 +14,11 @@ namespace krok {
 // way. Within 30 degrees of the axes it is the nearest of them, as bodies lean and heads bow. The
 // identity where the roles are not known or the body has no width or height.
 Quat body_frame(const Skeleton& skeleton, const RoleMap& roles);
+
+// The heading of a body whose joints are at these places, by the same joints: radians about +Y, 0
+// is +Z and pi/2 is +X. Nothing where the roles are not known, or for a body that lies on its back
+// or belly.
+std::optional<double> heading_of(const RoleMap& roles, std::span<const Transform> joints);
 
 // The clip's skeleton, in which the reference orientations of trunk, neck and head are those that
 // they have in a body that looks ahead: as in the reference pose, unless they are turned from it by

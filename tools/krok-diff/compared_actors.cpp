@@ -6,7 +6,9 @@
 #include "compare/frame_match.h"
 #include "compare/matching.h"
 #include "compare/skeleton_match.h"
+#include "core/index.h"
 #include "motion/ground_frame.h"
+#include "roles/body_frame.h"
 #include "roles/roles.h"
 #include "tools/krok-diff/difference_sheet.h"
 #include "tools/shared/bone_actor.h"
@@ -209,9 +211,20 @@ class ScenePair {
     if (!second_.has_surface()) {
       corresponds_ = corresponds_ && first.joint_names == second.joint_names;
     }
+    joints_ = skeleton_of(first);
+    if (check(joints_)) roles_ = find_roles(joints_);
   }
 
   bool corresponds() const { return corresponds_; }
+
+  // Of the first, at the start.
+  double heading() const {
+    const auto front = heading_of(roles_, joints_.reference);
+    if (!front) return 0;
+    const int carrier = carrying_joint(roles_);
+    return *front +
+           ground_frame(joints_, carrier, first_.state(0).joints[krok::at(carrier)]).heading;
+  }
 
   // The duration that both are animated; 0 if one is not.
   double duration() const {
@@ -245,8 +258,8 @@ class ScenePair {
     }
     if (first_.scene().only_still && second_.scene().only_still) return result;
     const render::Bounds box = render::bounds(result.first);
-    const Vec3 place =
-        a.joints.empty() ? Vec3(0.5 * (box.low + box.high)) : a.joints.front().position;
+    const Vec3 place = a.joints.empty() ? Vec3(0.5 * (box.low + box.high))
+                                        : a.joints[krok::at(carrying_joint(roles_))].position;
     for (Actor* actor : {&result.first, &result.second, &result.coloured}) {
       stand_at(place, *actor);
     }
@@ -262,6 +275,8 @@ class ScenePair {
 
   ScenePart first_, second_;
   std::vector<std::size_t> first_of_second_;  // of meshes
+  Skeleton joints_;                           // of the first, in the pose without animation
+  RoleMap roles_;                             // its; none for other than one skeleton
   bool corresponds_ = false;
 };
 
@@ -298,6 +313,7 @@ DifferenceSheet sheet_of(const Scene& first, const Scene& second, const compare:
   sheet.largest = found.largest;
   sheet.tolerance = found.tolerance;
   sheet.span.end = pair->duration();
+  sheet.heading = pair->heading();
   const bool still = first.only_still && second.only_still;
   if (!still && found.largest > 0 && found.where.animation <= 0 &&
       found.where.time <= sheet.span.end) {

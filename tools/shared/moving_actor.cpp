@@ -19,6 +19,7 @@
 #include "motion/ground_frame.h"
 #include "nodes/animation_choice.h"
 #include "nodes/scene_of.h"
+#include "roles/body_frame.h"
 #include "skin/scene_of.h"
 #include "tools/cli/file_name.h"
 #include "tools/shared/bone_actor.h"
@@ -33,11 +34,14 @@ using registry::Kind;
 // A scene as it is drawn, and the animation of it that is.
 struct Drawn {
   std::shared_ptr<const DrawnScene> scene;
-  Skeleton skeleton;  // of an actor, for headings; otherwise empty
+  Skeleton skeleton;  // for headings; empty: none
   int animation = -1;
   int carrier = 0;        // joint
   double frame_rate = 0;  // of an actor's motion: drawn at its frames, not in between
   int frame_count = 0;
+  // Of a file's scene: where its body faces in the pose without animation, which may be any.
+  double front = 0;
+  bool in_floats = false;  // what is followed is in the floats that are drawn
 
   SceneState state_at(double time, bool joints_alone) const {
     if (frame_count > 0) {
@@ -55,10 +59,9 @@ struct Drawn {
     return 0.5 * (box.low + box.high);
   }
 
-  // Of a file's scene in the floats that are drawn.
   Vec3 carrier_of(const SceneState& state) const {
     const Vec3& place = state.joints[krok::at(carrier)].position;
-    return skeleton.empty() ? Vec3(place.cast<float>().cast<double>()) : place;
+    return in_floats ? Vec3(place.cast<float>().cast<double>()) : place;
   }
 
   render::Actor at(double time) const {
@@ -77,7 +80,8 @@ struct Drawn {
   double heading(double time) const {
     if (skeleton.empty()) return 0;
     const SceneState state = state_at(time, true);
-    return ground_frame(skeleton, carrier, state.joints[krok::at(carrier)]).heading;
+    return wrapped(front +
+                   ground_frame(skeleton, carrier, state.joints[krok::at(carrier)]).heading);
   }
 };
 
@@ -186,7 +190,17 @@ Result<MovingActor> read_gltf(const InputFile& input, const ActorOptions& option
   if (!drawn_scene->as_bones() && !drawn_scene->has_triangles()) {
     return Error("figure-input", "the file has neither meshes nor joints").in_file(path);
   }
-  MovingActor actor = moving(path, {drawn_scene, {}, *animation});
+  Drawn drawn{.scene = drawn_scene, .skeleton = {}, .animation = *animation, .in_floats = true};
+  // Several roots, or joints without names, are no body.
+  if (Skeleton joints = skeleton_of(drawn_scene->scene()); check(joints)) {
+    const RoleMap roles = find_roles(joints);
+    drawn.carrier = carrying_joint(roles);
+    if (const auto front = heading_of(roles, joints.reference)) {
+      drawn.front = *front;
+      drawn.skeleton = std::move(joints);
+    }
+  }
+  MovingActor actor = moving(path, std::move(drawn));
   actor.facts = facts;
   return actor;
 }

@@ -190,6 +190,39 @@ TEST_F(KrokPlotSheet, DrawsModelsAndGlbFiles) {
   EXPECT_EQ(report()["sheet"]["cells"].size(), 2U) << "alone it stands still, seen from two sides";
 }
 
+// Would fail if a glTF file were seen from +Z, or from one place for its whole way.
+TEST_F(KrokPlotSheet, AGlbIsSeenAsItsMotionIs) {
+  const std::string anim = path("turned.anim"), glb = path("turned.glb");
+  ASSERT_EQ(run_tool("krok-edit", {kWalk, "--heading", "110deg", "-o", anim}).exit_code, 0);
+  ASSERT_EQ(run_tool("krok-export", {anim, "-o", glb}).exit_code, 0);
+  const auto cells = [&](const std::string& input) {
+    EXPECT_EQ(plot({input, "--body", "none", "--sheet", path("s.png"), "--view", "front",
+                    "--moments", "0s,1s"})
+                  .exit_code,
+              0);
+    return report()["sheet"]["cells"];
+  };
+  const json as_motion = cells(anim), as_glb = cells(glb);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(as_glb[i]["yaw"].get<double>(), as_motion[i]["yaw"].get<double>(), 15);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(as_glb[i]["target"][axis].get<double>(),
+                  as_motion[i]["target"][axis].get<double>(), 1e-3);
+    }
+  }
+}
+
+// Would fail if the header of a sheet of few cells were cut off at their width.
+TEST_F(KrokPlotSheet, ASheetIsAsWideAsItsHeader) {
+  const auto width = [&](const std::string& name) {
+    const std::string input = put(name, get(kWalk));
+    EXPECT_EQ(plot({input, "--body", "none", "--sheet", path("s.png"), "--moments", "1"}).exit_code,
+              0);
+    return report()["sheet"]["width"].get<int>();
+  };
+  EXPECT_GT(width("a_walk_with_a_name_that_is_longer_than_a_cell_is_wide.bvh"), width("w.bvh"));
+}
+
 // If it fails, --method does not reach the mesh, or changes what is drawn without it.
 TEST_F(KrokPlotSheet, MovesModelsByTheMethodAskedFor) {
   const std::string model = path("own.model"), anim = path("own.anim");
