@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <set>
 
+#include "core/index.h"
 #include "core/nearest_name.h"
+#include "core/numbers.h"
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/character/character_format.h"
@@ -186,11 +188,32 @@ class Loader {
     const Character& character = loaded_.character;
     for (const Character::Eye& eye : character.eyes) {
       if (Status status = check_joint("eye", eye.name, eye.joint); !status) return status;
+      warn_of_place(eye);
     }
     for (const Character::Socket& socket : character.sockets) {
       if (Status status = check_joint("socket", socket.name, socket.joint); !status) return status;
     }
     return {};
+  }
+
+  // Eyes are at a place in the model, not in their joint's frame.
+  void warn_of_place(const Character::Eye& eye) {
+    constexpr double kFar = 0.25;  // of the model; a head's height is an eighth
+    Eigen::AlignedBox3d box;
+    for (const Transform& joint : loaded_.model.skeleton.reference) box.extend(joint.position);
+    const int joint = loaded_.model.skeleton.find(eye.joint);
+    const Vec3& place = loaded_.model.skeleton.reference[at(joint)].position;
+    const double away = (eye.position.cast<double>() - place).norm();
+    if (away <= kFar * box.sizes().maxCoeff()) return;
+    Diagnostic warning = make_warning(
+        "character-eye",
+        fmt::format("eye '{}' is {} m from its joint '{}'", shown(eye.name), readable(away, 3),
+                    shown(eye.joint)),
+        fmt::format("its position is in the model's reference pose, in metres; the joint is at "
+                    "{}, {}, {}",
+                    readable(place.x(), 4), readable(place.y(), 4), readable(place.z(), 4)));
+    warning.where.file = path_;
+    inputs_.diagnose(std::move(warning));
   }
 
   Status check_joint(const char* what, const std::string& name, const std::string& joint) const {

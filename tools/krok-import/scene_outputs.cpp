@@ -26,6 +26,7 @@
 #include "nodes/moving.h"
 #include "nodes/scene.h"
 #include "roles/eyes.h"
+#include "roles/roles.h"
 #include "scene/character.h"
 #include "scene/encoded_image.h"
 #include "tools/cli/file_name.h"
@@ -273,6 +274,13 @@ Status SceneImporter::add_actor() {
   if (wants_character() && actor_.model.triangles.empty()) {
     return missing(scene_.meshes.empty() ? "mesh" : "mesh with triangles", "--save-character",
                    "use --save-model for the skeleton alone");
+  }
+  if (wants_character() && scene_.skins.empty() && !find_roles(actor_.model.skeleton).humanoid) {
+    context_.warn("import-no-skin",
+                  fmt::format("no mesh is skinned: each moves with its node as a whole, and the "
+                              "skeleton is {}",
+                              counted(actor_.model.skeleton.joint_count(), "node")),
+                  "export it with its armature and skin weights, if it has some");
   }
   if (Status status = add_model(); !status) return status;
   if (wants_character()) {

@@ -79,8 +79,9 @@ void declare_mesh(CommandOptions& command, Options& o) {
   add_twist_joints_option(command, o.twist);
   command
       .add_option("--attach PLACE=IN", o.attached,
-                  "For --as rig: attach the mesh of a file (.glb, .gltf, .model and others) to a "
-                  "socket of the character, or to a joint by name or role: right_hand=cup.glb. It "
+                  "For --as rig: attach the mesh of a file (.glb, .gltf, .model, .obj in metres "
+                  "and others) to a socket of the character, or to a joint by name or role: "
+                  "right_hand=cup.glb. It "
                   "becomes a node below the joint; the file's origin and axes are the socket's, or "
                   "the joint's; repeatable")
       .one_each_time();
@@ -114,8 +115,10 @@ void declare_mesh(CommandOptions& command, Options& o) {
 
 void declare(CommandOptions& command, Options& o) {
   command
-      .add_option("subject IN.model", o.subject,
-                  "Skinned mesh: a .model, or a .character with its materials and expressions")
+      .add_option(
+          "subject IN.model", o.subject,
+          "Skinned mesh: a .model, a .character with its materials and expressions, or what "
+          "krok-import makes one of (.glb, .fbx and others)")
       .required();
   command.add_option("motions IN.anim", o.motions,
                      "Motions: .anim, or captures read as by krok-import; several of one skeleton "
@@ -129,7 +132,8 @@ Status check(const Options& options) {
   if (options.has_weights_by_clip() && options.motions.empty()) {
     return usage("{clip} in the name of --weights needs a motion");
   }
-  if (!options.weights.empty() && options.morphs.empty() && !is_character(options.subject)) {
+  if (!options.weights.empty() && options.morphs.empty() &&
+      extension(options.subject) == ".model") {
     return usage("--weights needs morph targets", "add --morph IN.exr; a .character has its own");
   }
   if (!options.morphs.empty() && is_character(options.subject)) {
@@ -148,7 +152,9 @@ bool is_character(const std::string& path) {
 
 As what_to_write(const Options& options, const std::string& output) {
   if (options.as != As::automatic) return options.as;
-  return extension(output) == ".pc2" ? As::baked : As::rig;
+  const std::string end = extension(output);
+  if (end == ".obj" && options.motions.empty()) return As::pose;
+  return end == ".pc2" ? As::baked : As::rig;
 }
 
 Status check_for(As as, const Options& options) {

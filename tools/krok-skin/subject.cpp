@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 
@@ -18,6 +19,7 @@
 #include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
 #include "formats/morph_exr/morph_exr.h"
+#include "formats/obj/obj_reader.h"
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
 #include "roles/roles.h"
@@ -48,6 +50,11 @@ class Loader {
 
  private:
   Status read_subject() {
+    std::error_code unknown;
+    if (std::filesystem::is_directory(options_.subject, unknown)) {
+      return usage(fmt::format("{} is a folder, not a mesh", shown(options_.subject)),
+                   "a mesh comes first, then motions: krok-skin hero.character FOLDER -o hero.glb");
+    }
     const auto file = context_.open_input(options_.subject);
     if (!file) return file.error();
     const io::Format& format = io::format_of(*file);
@@ -289,19 +296,68 @@ class Loader {
         return Error("skin-attach",
                      fmt::format("--attach {}: there is no socket or joint of that name or role",
                                  shown(given.name)),
-                     nearest_hint(given.name, skeleton.names))
+                     nearest_hint(given.name, places()))
             .in_file(options_.subject);
       }
-      auto actor = io::open_actor(given.path, context_, {.with_motions = false});
+      auto actor = open_thing(given.path);
       if (!actor) return actor.error();
       if (!actor->has_mesh()) {
         return Error("skin-attach", "has no mesh to attach").in_file(given.path);
       }
       thing.model = std::move(actor->model);
+      warn_of_size(given, thing.model);
       take_materials(std::move(actor->materials), thing);
       subject_.things.push_back(std::move(thing));
     }
     return {};
+  }
+
+  // What --attach may name.
+  std::vector<std::string> places() const {
+    const Skeleton& skeleton = subject_.model.skeleton;
+    std::vector<std::string> names = skeleton.names;
+    for (const Role role : find_roles(skeleton).roles) {
+      if (role != Role::none && role != Role::end) names.emplace_back(role_name(role));
+    }
+    for (const Character::Socket& socket : subject_.sockets) names.push_back(socket.name);
+    return names;
+  }
+
+  Result<Actor> open_thing(const std::string& path) {
+    if (extension(path) != ".obj") {
+      return io::open_actor(path, context_, {.with_motions = false});
+    }
+    const auto file = context_.open_input(path);
+    if (!file) return file.error();
+    auto shape = obj::read(file->text(), path);
+    if (!shape) return shape.error();
+    context_.diagnose(shape->diagnostics);
+    Actor actor;
+    actor.model = std::move(shape->model);
+    return actor;
+  }
+
+  // A thing in another unit, or modelled at its place in a scene instead of at its own origin.
+  void warn_of_size(const NamedPath& given, const Model& thing) {
+    constexpr double kLarge = 3, kSmall = 1e-3;  // of the body
+    Eigen::AlignedBox3f body, box;
+    for (const Vec3f& point : subject_.model.positions) body.extend(point);
+    for (const Vec3f& point : thing.positions) box.extend(point);
+    const auto size = static_cast<double>(box.sizes().maxCoeff());
+    const auto usual = static_cast<double>(body.sizes().maxCoeff());
+    const auto away = static_cast<double>(box.exteriorDistance(Vec3f(Vec3f::Zero())));
+    const bool odd_size = size > kLarge * usual || size < kSmall * usual;
+    if (!odd_size && away <= usual) return;
+    const std::string body_size = fmt::format("the body is {} m in size", readable(usual, 3));
+    Diagnostic warning = make_warning(
+        "skin-attach",
+        odd_size ? fmt::format("the mesh is {} m in size, {}", readable(size, 3), body_size)
+                 : fmt::format("the mesh begins {} m from the place '{}' that carries it; {}",
+                               readable(away, 3), shown(given.name), body_size),
+        odd_size ? "scale it where it was made: glTF and OBJ files are in metres"
+                 : "move it to the origin of its file, which is the joint or socket");
+    warning.where.file = given.path;
+    context_.diagnose(std::move(warning));
   }
 
   // Adds a thing's materials to the subject's, under names that are not taken.

@@ -224,6 +224,20 @@ TEST_F(CharacterImportTest, AActorWithoutMaterialsHasNone) {
   EXPECT_EQ(run_tool("krok-info", {path("hero.character")}).exit_code, 0);
 }
 
+// Would fail if a mesh that nothing can move were taken for a character without a word.
+TEST_F(CharacterImportTest, AMeshWithoutASkinIsWarnedOf) {
+  put_glb(rig());
+  EXPECT_FALSE(has_code(import({"--save-character", path("a.character")}).err, "import-no-skin"));
+  GlbBuilder builder = rig();
+  builder.json["nodes"][0].erase("skin");
+  builder.json.erase("skins");
+  builder.json.erase("animations");
+  put_glb(builder);
+  const ToolRun run = import({"--save-character", path("b.character")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(has_code(run.err, "import-no-skin")) << run.err;
+}
+
 // Cameras, lights or points alone are no character: a file without a vertex would look like one.
 TEST_F(CharacterImportTest, WithoutAMeshIsRefused) {
   GlbBuilder builder = rig();

@@ -91,6 +91,25 @@ TEST_F(SkinAttach, NodesAreBelowTheJointAndPaintIsItsOwn) {
   EXPECT_EQ(json::parse(info)["result"].dump().find("\"grip\""), std::string::npos);
 }
 
+TEST_F(SkinAttach, AnObjIsAttachedToo) {
+  put("axes.obj", "v 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+  tool("krok-skin", {"in.model", "in.anim", "--attach", "Spine=axes.obj", "-o", "b.glb"});
+  expect_carried("b.glb", "Spine", {});
+}
+
+// Would fail if a thing in centimetres, or far from its hand, went along without a word.
+TEST_F(SkinAttach, AThingOfAnOddSizeOrPlaceIsWarnedOf) {
+  const auto warning = [&](const std::string& corners) {
+    put("cup.obj", corners + "f 1 2 3\n");
+    return tool("krok-skin", {"in.model", "in.anim", "--attach", "Spine=cup.obj", "-o", "b.glb"})
+        .err;
+  };
+  EXPECT_THAT(warning("v 0 0 0\nv 0 40 0\nv 8 0 0\n"),
+              AllOf(HasSubstr("40 m in size"), HasSubstr("[skin-attach]")));
+  EXPECT_THAT(warning("v 0 0 9\nv 0 0.1 9\nv 0.1 0 9\n"), HasSubstr("begins 9 m from the place"));
+  EXPECT_THAT(warning("v 0 0 0\nv 0 0.1 0\nv 0.1 0 0\n"), Not(HasSubstr("warning")));
+}
+
 TEST_F(SkinAttach, MistakesAreTold) {
   const auto error_of = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all = {"held.character", "in.anim", "-o", "x.glb"};

@@ -66,6 +66,25 @@ TEST_F(SkinCharacter, WeightsChangeWhatTheyNameAndNothingElse) {
   expect_same("rest.glb", "bent.glb");
 }
 
+// Eyes are placed in the model; who gives a place in the head's frame, or in centimetres, is told.
+TEST_F(SkinCharacter, EyesFarFromTheirJointAreWarnedOf) {
+  const auto warning = [&](const std::string& place) {
+    std::string text = get(path("hero.character"));
+    const std::size_t from = text.find('[', text.find("position"));
+    text.replace(from, text.find(']', from) + 1 - from, place);
+    put("hero.character", text);
+    return tool("krok-info", {"hero.character"}).err;
+  };
+  EXPECT_EQ(warning("[0.03, 0.8, 0.1]"), "");
+  EXPECT_THAT(warning("[3, 80, 10]"),
+              AllOf(HasSubstr("m from its joint 'Head'"), HasSubstr("[character-eye]")));
+}
+
+TEST_F(SkinCharacter, AnObjWithoutAMotionIsAPose) {
+  tool("krok-skin", {"in.model", "-o", "rest.obj"});
+  EXPECT_THAT(get(path("rest.obj")), HasSubstr("\nv "));
+}
+
 TEST_F(SkinCharacter, FilesOutsideOfItsFolderAreRefused) {
   put_character("[]", "../in.model");
   const std::string told = tool("krok-skin", {"hero.character", "-o", "x.glb"}, 2).err;
