@@ -24,6 +24,9 @@ Result<Description> describe_steps(const InputFile& file, ToolContext& context);
 // Bodies and joints; without their skeleton.
 Result<Description> describe_ragdoll(const InputFile& file, ToolContext& context);
 Result<Description> describe_correctives(const InputFile& file, ToolContext& context);
+// Morph targets (OpenEXR).
+Result<Description> describe_morphs(const InputFile& file, ToolContext& context);
+Result<Description> describe_textgrid(const InputFile& file, ToolContext& context);
 Result<Description> describe_material(const InputFile& file, ToolContext& context);
 // A character with the files that it refers to; joint roles are its own unless `how` has a role
 // map.

@@ -50,10 +50,14 @@ void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, do
     lines.push_back(fmt::format("{:<23} {:>{}}{}", label == "none" ? "-" : label, "",
                                 2 * std::min(depths[at(j)], 40), skeleton.names[at(j)]));
     const int parent = skeleton.parents[at(j)];
+    const Vec3 place = metres * skeleton.reference[at(j)].position;
+    const Quat& turn = skeleton.reference[at(j)].orientation;
     out.json["skeleton"].push_back(
         {{"joint", skeleton.names[at(j)]},
          {"parent", parent < 0 ? Json() : Json(skeleton.names[at(parent)])},
-         {"role", label == "none" ? Json() : Json(label)}});
+         {"role", label == "none" ? Json() : Json(label)},
+         {"position", {place.x(), place.y(), place.z()}},
+         {"orientation", {turn.x(), turn.y(), turn.z(), turn.w()}}});
   }
   if (verbose) out.add("roles", std::move(lines));
 }

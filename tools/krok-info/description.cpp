@@ -67,6 +67,19 @@ void add_size(const Eigen::AlignedBox3d& box, const std::string& measured, Descr
   const Vec3 size = box.sizes();
   out.add("size", fmt::format("{} x {} x {} m (X, Y, Z; {})", readable(size.x(), 4),
                               readable(size.y(), 4), readable(size.z(), 4), measured));
+  const auto range = [&](char name, int axis) {
+    return fmt::format("{} {} to {}", name, readable(box.min()[axis] + 0.0, 4),
+                       readable(box.max()[axis] + 0.0, 4));
+  };
+  const auto level = [](const Vec3& point) { return Vec3(point.x(), 0, point.z()); };
+  // What stands elsewhere than above the origin is met by surprise when it is placed.
+  const double away = level(box.center()).norm();
+  const bool elsewhere = away > std::max(0.5, level(size).norm());
+  out.add("extent",
+          fmt::format("{}, {}, {} m{}", range('X', 0), range('Y', 1), range('Z', 2),
+                      elsewhere ? fmt::format("; {} m from the origin", readable(away, 3)) : ""));
+  out.json["min"] = {box.min().x(), box.min().y(), box.min().z()};
+  out.json["max"] = {box.max().x(), box.max().y(), box.max().z()};
   out.json["size"] = {size.x(), size.y(), size.z()};
   out.json["height"] = size.y();
   out.json["measured"] = measured;

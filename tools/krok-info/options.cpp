@@ -29,7 +29,7 @@ ToolSpec make_spec() {
   spec.details =
       "Motions (.anim), models (.model), cameras (.cam), step libraries (.steps), materials "
       "(.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5), "
-      "captures (.bvh, .asf, .amc).";
+      "morph targets (.exr), labels over time (.TextGrid), captures (.bvh, .asf, .amc).";
   spec.inputs = "FILE...";
   spec.folder_endings = io::endings([](const io::Format& format) { return !format.companion; });
   spec.examples = {

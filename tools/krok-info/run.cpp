@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/hash.h"
+#include "core/text.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
@@ -47,14 +48,16 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
       break;
   }
   if (io::is_motion(file)) return describe_motion(file, how, context);
-  return Error("info-kind",
-               "is " + std::string(registry::describe_content(file.bytes())) +
-                   ", which krok-info cannot read",
-               "supported are .anim, .model, .cam, .steps, .material, .character, .ragdoll.json, "
-               ".correctives, .bvh, .asf, .amc, .glb and .gltf files, and characters in .fbx, "
-               ".dae, .smd, .ms3d, .3ds, .ase, "
-               ".md5mesh and "
-               ".md5anim files");
+  const std::string ending = extension(file.path());
+  if (ending == ".exr") return describe_morphs(file, context);
+  if (ending == ".textgrid") return describe_textgrid(file, context);
+  return Error(
+      "info-kind",
+      "is " + std::string(registry::describe_content(file.bytes())) +
+          ", which krok-info cannot read",
+      "supported are .anim, .model, .cam, .steps, .material, .character, .ragdoll.json, "
+      ".correctives, .exr, .TextGrid, .bvh, .asf, .amc, .glb and .gltf files, and characters in "
+      ".fbx, .dae, .smd, .ms3d, .3ds, .ase, .md5mesh and .md5anim files");
 }
 
 Result<Description> describe_path(const std::string& path, const SkeletonOptions& how,

@@ -65,6 +65,26 @@ constexpr const char* kBvh =
     "Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 50 0\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.05\n"
     "0 90 0 0 0 0\n0 90 1 0 0 0\n0 90 2 0 0 0\n";
 
+// Would fail if what stands elsewhere looked as if it stood at the origin.
+TEST_F(KrokInfo, TellsWhereTheReferencePoseIs) {
+  std::string far = kBvh;
+  far.replace(far.find("OFFSET 0 0 0"), 12, "OFFSET 300 0 -400");
+  const Outcome result = run(make("far.bvh", far));
+  EXPECT_THAT(result.out, HasSubstr("X 3 to 3, Y 0 to 0.5, Z -4 to -4 m; 5 m from the origin"));
+  const Outcome near = run(make("near.bvh", kBvh));
+  EXPECT_THAT(near.out, HasSubstr("X 0 to 0, Y 0 to 0.5, Z 0 to 0 m\n"));
+}
+
+TEST_F(KrokInfo, TellsTiersOfATextGrid) {
+  const Outcome result =
+      run(make("talk.TextGrid",
+               "File type = \"ooTextFile\"\nObject class = \"TextGrid\"\n\n0\n2\n"
+               "<exists>\n1\n\"IntervalTier\"\n\"phones\"\n0\n2\n2\n0\n1\n\"\"\n1\n"
+               "2\n\"AA\"\n"));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("phones: 2 intervals, 1 with a label"));
+}
+
 TEST_F(KrokInfo, TellsWhatIsInAMotion) {
   const Outcome result = run(kFrozen + "motion.anim");
   EXPECT_EQ(result.exit_code, 0);

@@ -52,6 +52,12 @@ class LookInfoTest : public CliTest {
   const std::string joint_ = samples::model().skeleton.names[1];
 };
 
+TEST_F(LookInfoTest, TellsMorphTargets) {
+  const ToolRun run = run_here("krok-info", {"face.exr"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, AllOf(HasSubstr("morph targets (.exr)"), HasSubstr("Smile")));
+}
+
 TEST_F(LookInfoTest, TellsWhatACharacterIs) {
   const std::string members =
       "\"name\": \"Hero\", \"materials\": [\"a.material\"], \"morphs\": \"face.exr\", "
