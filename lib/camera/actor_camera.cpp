@@ -290,7 +290,7 @@ class Shooting {
 
 Result<ActorShot> film(const Clip& clip, const RoleMap& roles, const ActorCamera& camera) {
   if (Status status = check(clip, camera); !status) return status.error();
-  auto shape = actor_shape(clip, roles, camera.framing);
+  auto shape = actor_shape(clip, roles, camera.framing, std::max(0, camera.joint));
   if (!shape) return shape.error();
   return Shooting(clip, roles, camera, *std::move(shape)).shoot();
 }

@@ -54,7 +54,7 @@ Error unknown(const char* part, const char* role) {
 
 // 1 for joints of the part.
 Result<std::vector<std::uint8_t>> part_of(const Skeleton& skeleton, const RoleMap& roles,
-                                          Framing framing) {
+                                          Framing framing, int joint) {
   std::vector<std::uint8_t> part(skeleton.names.size(), framing == Framing::full ? 1 : 0);
   if (framing == Framing::upper) {
     const int hips = roles.joint(Role::hips);
@@ -70,18 +70,23 @@ Result<std::vector<std::uint8_t>> part_of(const Skeleton& skeleton, const RoleMa
         roles.joint(Role::head) >= 0 ? roles.joint(Role::head) : roles.joint(Role::neck);
     if (head < 0) return unknown("head", "head or neck");
     mark(part, subtree(skeleton, head), 1);
+  } else if (framing == Framing::joint) {
+    for (int j = 0; j < skeleton.joint_count(); ++j) {
+      part[at(j)] = j == joint || skeleton.parents[at(j)] == joint ? 1 : 0;
+    }
+    if (const int parent = skeleton.parents[at(joint)]; parent >= 0) part[at(parent)] = 1;
   }
   return part;
 }
 
 }  // namespace
 
-Result<ActorShape> actor_shape(const Clip& clip, const RoleMap& roles, Framing framing) {
+Result<ActorShape> actor_shape(const Clip& clip, const RoleMap& roles, Framing framing, int joint) {
   const Skeleton& skeleton = clip.skeleton;
   if (skeleton.empty() || clip.frame_count() == 0) {
     return Error("camera-empty", "the motion has no frames");
   }
-  const auto part = part_of(skeleton, roles, framing);
+  const auto part = part_of(skeleton, roles, framing, joint);
   if (!part) return part.error();
   ActorShape shape;
   const auto children = skeleton.children();

@@ -15,7 +15,8 @@ namespace krok {
 enum class Framing : unsigned char {
   full,   // the whole character
   upper,  // from the hips up, including the arms
-  head    // the head, or the neck if the head has no other joint
+  head,   // the head, or the neck if the head has no other joint
+  joint   // one joint with its neighbours
 };
 
 // The character as balls around its joints, sized by its height. Ancestors of the hips that only
@@ -27,9 +28,11 @@ struct ActorShape {
   std::vector<int> parents;   // [joints], for the bones; -1 for none
 };
 
-// `clip` gives the character's height if the reference pose has none. Codes: camera-empty (no
-// joints or no frames), camera-part (no joint has the roles of that part).
-Result<ActorShape> actor_shape(const Clip& clip, const RoleMap& roles, Framing framing);
+// `clip` gives the character's height if the reference pose has none; `joint` is that of
+// Framing::joint. Codes: camera-empty (no joints or no frames), camera-part (no joint has the roles
+// of that part).
+Result<ActorShape> actor_shape(const Clip& clip, const RoleMap& roles, Framing framing,
+                               int joint = 0);
 
 // The balls of `joints` in one frame.
 void balls_of(const ActorShape& shape, std::span<const int> joints,

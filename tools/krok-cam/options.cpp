@@ -99,10 +99,12 @@ void declare_image(CommandOptions& command, Options& o) {
   command.only_with(kFilms);
   command.add(
       "--frame PART", o.frame,
-      choice<Framing>(
-          {{"full", Framing::full}, {"upper", Framing::upper}, {"head", Framing::head}}),
+      choice<Framing>({{"full", Framing::full},
+                       {"upper", Framing::upper},
+                       {"head", Framing::head},
+                       {"joint", Framing::joint}}),
       "What to keep in the image in all frames: the full character, the upper body with the "
-      "arms, or the head",
+      "arms, the head, or the joint of --follow with its neighbours",
       "full");
   command.add("--margin PART", o.margin, number({0, 0.45}),
               "Fraction of height and width kept free at each edge, up to 0.45", "0.08");
@@ -183,6 +185,9 @@ Status check(const Options& o) {
     return usage("--facing actor is for a moving camera");
   }
   if (o.name.empty()) return usage("--name is empty");
+  if (o.frame == Framing::joint && o.follow.empty()) {
+    return usage("--frame joint is for --follow", "name the joint with --follow");
+  }
   return {};
 }
 

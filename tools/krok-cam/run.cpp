@@ -214,6 +214,8 @@ std::string_view part_name(Framing framing) {
       return "upper body";
     case Framing::head:
       return "head";
+    case Framing::joint:
+      return "joint";
     default:
       return "full body";
   }
@@ -265,6 +267,10 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
                       ? "all frames"
                       : fmt::format("{} of {}", filmed->frames_shown, counted(frames, "frame")),
                   readable(filmed->distance, 3));
+  if (!filming->follow.empty() && !options.given("--frame") && !options.given("--distance") &&
+      camera.joint != carrying_joint(*roles)) {
+    shot.words += " (--frame joint: a close-up)";
+  }
   shot.track = std::move(filmed->track);
   return shot;
 }

@@ -121,6 +121,16 @@ TEST_F(KrokCam, FollowsWithTheActorInTheImage) {
   EXPECT_NEAR(tele["field_of_view"]["largest"].get<double>(), 13.686, 0.001);
 }
 
+TEST_F(KrokCam, FramesTheJointThatItFollows) {
+  const json whole = result_of({walk_, "--follow", "left_lower_arm", "-o", path("a.cam")});
+  const json close =
+      result_of({walk_, "--follow", "left_lower_arm", "--frame", "joint", "-o", path("b.cam")});
+  EXPECT_EQ(close["framed"], "joint");
+  EXPECT_EQ(close["frames_shown"], close["frames"]);
+  EXPECT_LT(close["distance"].get<double>(), 0.6 * whole["distance"].get<double>());
+  EXPECT_EQ(cam({walk_, "--still", "--frame", "joint", "-o", path("c.cam")}).exit_code, 2);
+}
+
 TEST_F(KrokCam, OrbitsAtItsPace) {
   const json result =
       result_of({walk_, "--orbit", "20s", "--fixed-centre", "-o", path("orbit.cam")});
