@@ -444,6 +444,29 @@ Status read_keyed(const Given& given, const std::string& each, const AnyKind& it
   return {};
 }
 
+// Where a file goes that was given as one of another kind.
+std::string home_of(std::string_view schema) {
+  static constexpr std::pair<std::string_view, std::string_view> kHomes[] = {
+      {"krok.alignment/1", "krok-retarget --alignment"},
+      {"krok.camera-keys/1", "krok-cam"},
+      {"krok.character/1", "krok-skin, instead of a model"},
+      {"krok.correctives/1", "krok-skin --correctives"},
+      {"krok.goals/1", "krok-ik --goals"},
+      {"krok.key-shapes/1", "krok-morph frames"},
+      {"krok.keys/1", "--contacts of tools, or beside its motion as NAME.keys.json"},
+      {"krok.library/1", "krok-fit"},
+      {"krok.limits/1", "krok-ik --limits"},
+      {"krok.path/1", "krok-walk --path"},
+      {"krok.prints/1", "krok-walk, and --prints"},
+      {"krok.role-map/1", "--map"},
+      {"krok.sequences/1", "krok-edit, and \"sequences\" of a timeline"},
+      {"krok.timeline/1", "krok-mix"},
+      {"krok.weights/1", "krok-skin --weights, and \"face\" of a timeline"}};
+  const auto found =
+      std::ranges::find(kHomes, schema, &std::pair<std::string_view, std::string_view>::first);
+  return found == std::end(kHomes) ? "" : fmt::format("such files are for {}", found->second);
+}
+
 AnyKind schema_name(std::string_view name) {
   AnyKind made = kind<int>(
       fmt::format("{{\"const\": \"{}\"}}", name), [name](const Given& given, int&) -> Status {
@@ -451,8 +474,10 @@ AnyKind schema_name(std::string_view name) {
           return status;
         }
         if (given.value.text == name) return {};
-        return given.structure(
+        Error error = given.structure(
             fmt::format("the schema is '{}', expected {}", shown(given.value.text), name));
+        error.hint = home_of(given.value.text);
+        return error;
       });
   made.write = [name](const void*) { return in_quotes(name); };
   return made;
@@ -510,7 +535,13 @@ Status Table::read_field(const Given& object, const Step& step, void* to) const 
 Status Table::read(const Given& given, void* to) const {
   std::string what = !what_.empty() ? what_ : given.name();
   Given object{given.source, given.value, {}, what};
-  Status status = check_keys(object);
+  Status status;
+  // A file of another kind says so before the first of its keys is unknown here.
+  const auto schema = std::ranges::find(steps_, "schema", &Step::key);
+  if (schema != steps_.end() && object.value.find("schema") != nullptr) {
+    status = read_field(object, *schema, to);
+  }
+  if (status) status = check_keys(object);
   for (auto step = steps_.begin(); status && step != steps_.end(); ++step) {
     if (step->describe) {
       what = step->describe(to);

@@ -132,15 +132,15 @@ std::optional<std::vector<std::size_t>> visemes_of(std::string_view label, Alpha
 }
 
 Alphabet alphabet_of(std::span<const Phoneme> phonemes) {
-  const auto is_ascii = [](const Phoneme& phoneme) {
-    return std::ranges::all_of(phoneme.label,
-                               [](char c) { return static_cast<unsigned char>(c) < 0x80; });
-  };
-  if (!std::ranges::all_of(phonemes, is_ascii)) return Alphabet::ipa;
-  const bool is_arpabet = std::ranges::all_of(phonemes, [](const Phoneme& phoneme) {
-    return visemes_of(phoneme.label, Alphabet::arpabet).has_value();
-  });
-  return is_arpabet ? Alphabet::arpabet : Alphabet::sampa;
+  Alphabet best = Alphabet::arpabet;
+  std::ptrdiff_t most = -1;
+  for (const Alphabet alphabet : {Alphabet::arpabet, Alphabet::sampa, Alphabet::ipa}) {
+    const auto read = std::ranges::count_if(phonemes, [&](const Phoneme& phoneme) {
+      return visemes_of(phoneme.label, alphabet).has_value();
+    });
+    if (read > most) most = read, best = alphabet;
+  }
+  return best;
 }
 
 Result<VisemeTrack> VisemeTrack::create(std::span<const Phoneme> phonemes, Alphabet alphabet,
@@ -171,9 +171,8 @@ Result<VisemeTrack> VisemeTrack::create(std::span<const Phoneme> phonemes, Alpha
       return wrong(
           "face-phoneme",
           fmt::format("'{}' is no symbol of {}", shown(phoneme.label), alphabet_name(alphabet)),
-          "a symbol that is wrong misleads the guess of the alphabet: name it (arpabet, ipa, "
-          "sampa), or "
-          "map the symbol in \"symbols\"");
+          "mend the label, map it in \"symbols\", or name another \"alphabet\": arpabet, ipa, "
+          "sampa");
     }
     if (phoneme.start > now + 1e-9) add(now, phoneme.start, kRest);
     now = phoneme.end;

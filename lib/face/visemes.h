@@ -33,8 +33,8 @@ enum class Alphabet : unsigned char { automatic, arpabet, ipa, sampa };
 // The visemes, as they are widely named: PP, FF, TH, DD, kk, CH, SS, nn, RR, aa, E, ih, oh, ou.
 std::span<const std::string_view> viseme_names();
 
-// The alphabet that labels are written in: IPA if one has a character beyond ASCII, ARPAbet if all
-// are its symbols, otherwise X-SAMPA.
+// The alphabet that labels are written in: the one that has most of them; of equals the first of
+// ARPAbet, X-SAMPA and IPA.
 Alphabet alphabet_of(std::span<const Phoneme> phonemes);
 
 // Indices into viseme_names() of a label: none for a pause, two for a diphthong. Stress and length

@@ -14,6 +14,7 @@
 #include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/csv/csv_writer.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
@@ -22,6 +23,7 @@
 #include "timeline/mix.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/renamed_options.h"
 #include "tools/krok-mix/face.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/plant_result.h"
@@ -106,6 +108,12 @@ using timeline::Mixed;
 Result<timeline_file::Document> read_timeline(const Options& options, ToolContext& context) {
   const auto file = context.open_input(options.input);
   if (!file) return file.error();
+  if (io::format_of(*file).reads_motion()) {
+    return Error("mix-input",
+                 fmt::format("is {}, not a timeline", registry::describe_content(file->bytes())),
+                 too_many_hint("krok-mix"))
+        .in_file(file->path());
+  }
   return timeline_file::read(file->text(), file->path());
 }
 

@@ -125,6 +125,19 @@ TEST_F(KrokMix, MistakesAreToldByLineAndColumnAndLeaveNothing) {
   EXPECT_EQ(mask.exit_code, 2);
 }
 
+// Would fail if a file of another kind were answered with the first of its keys.
+TEST_F(KrokMix, FilesOfOtherKindsLeadOn) {
+  put("w.json", R"({"schema": "krok.weights/1", "curves": []})");
+  EXPECT_THAT(run_here("krok-mix", {"w.json", "-o", "o.anim"}).err,
+              AllOf(HasSubstr("w.json:1:12: error: the schema is 'krok.weights/1'"),
+                    HasSubstr("krok-skin --weights")));
+  put("a.bvh", capture(5));
+  EXPECT_THAT(run_here("krok-mix", {"a.bvh", "-o", "o.anim"}).err,
+              AllOf(HasSubstr("is a BVH text file, not a timeline"), HasSubstr("krok-blend")));
+  EXPECT_THAT(run_here("krok-mix", {"a.bvh", "b.bvh", "-o", "o.anim"}).err,
+              HasSubstr("krok-edit A --append B"));
+}
+
 TEST_F(KrokMix, MotionsThatAreGoneOrOfAnotherSkeletonAreTold) {
   const std::string gone = put("in/gone.json",
                                "{\"schema\": \"krok.timeline/1\", \"sources\": {\"a\": "

@@ -141,6 +141,10 @@ TEST(Visemes, LabelsOfThreeAlphabets) {
   const std::vector<Phoneme> sampa = {{0, 1, "S", {}}, {1, 2, "u:", {}}};
   EXPECT_EQ(alphabet_of(german), Alphabet::ipa);
   EXPECT_EQ(alphabet_of(sampa), Alphabet::sampa);
+  // A label that is wrong does not change the alphabet that the error names.
+  std::vector<Phoneme> wrong = speech();
+  wrong.push_back({9, 10, "é", {}});
+  EXPECT_EQ(alphabet_of(wrong), Alphabet::arpabet);
 }
 
 TEST(Visemes, MistakesAreTold) {
