@@ -63,6 +63,16 @@ TEST_F(KrokIk, AHandReachesAPlaceAtItsTimeAndTheRestStays) {
 }
 
 // If this fails, what is put on a table or a rail that follows the ground ends beside it.
+// A look is reached however far away its place is.
+TEST_F(KrokIk, CentimetresWithoutAUnitAreWarnedOf) {
+  const auto look = [&](const char* place) {
+    return ik({"walk.anim", "--look-at", place, "-o", "out.anim"}).err;
+  };
+  EXPECT_THAT(look("head=0,160,300@1s"), AllOf(HasSubstr("[ik-unit]"), HasSubstr("160cm")));
+  EXPECT_THAT(look("head=0,1.6,3@1s"), Not(HasSubstr("ik-unit")));
+  EXPECT_THAT(look("head=0m,160m,300m@1s"), Not(HasSubstr("ik-unit")));
+}
+
 TEST_F(KrokIk, HeightsOfGoalsAreOverTheGround) {
   const auto run = ik({"walk.anim", "--reach", reach(Vec3(0, 0.1 - 0.2, 0.05)), "--fade", "200ms",
                        "--ground", "level:height=20cm", "-o", "out.anim", "--orientation", "xyzw"});
