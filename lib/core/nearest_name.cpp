@@ -40,6 +40,16 @@ std::string nearest_name(std::string_view word, std::span<const std::string> nam
   const std::size_t dashes = wanted.starts_with("--") ? 2 : 0;
   std::string best;
   std::size_t least = 0;
+  // One that has the whole word, or begins with it, is nearer than any with another letter: "hand"
+  // is no head.
+  constexpr std::size_t kWord = 4, kBeginning = 3;
+  for (const std::string& name : names) {
+    const std::size_t found = ascii_lower(name).find(wanted);
+    const std::size_t letters = found == 0 ? kBeginning : kWord;
+    if (found == std::string::npos || wanted.size() < letters + dashes) continue;
+    if (best.empty() || name.size() < best.size()) best = name;
+  }
+  if (!best.empty()) return best;
   for (const std::string& name : names) {
     const std::string other = ascii_lower(std::string_view(name).substr(0, kMaxLetters));
     const std::size_t found = distance(wanted, other);

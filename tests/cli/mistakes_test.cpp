@@ -61,6 +61,58 @@ TEST_F(Mistakes, WordsOfOtherProgramsLeadOn) {
               HasSubstr("180cm"));
 }
 
+// Would fail if words that one tries first, or that other programs have, were answered with
+// --help, or a row of the table named an option that the tool has not.
+TEST_F(Mistakes, WordsOfOtherToolsLeadOn) {
+  for (const auto& [verb, hint] : {std::pair{"sheet", "krok plot IN... --sheet OUT.png"},
+                                   {"gait", "krok keys FOLDER --table"},
+                                   {"compare", "krok diff"},
+                                   {"trim", "krok edit"},
+                                   {"gif", "krok render"}}) {
+    EXPECT_THAT(refused("krok", {verb, "in.bvh"}), HasSubstr(hint));
+  }
+  EXPECT_THAT(refused("krok-import", {"in.bvh", "--output-dir", "o"}), HasSubstr("use --out-dir"));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--threads", "2"}), HasSubstr("use --jobs"));
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--mean"}), HasSubstr("use --show cycles"));
+  EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--target", "a"}), HasSubstr("use --onto"));
+  EXPECT_THAT(refused("krok-diff", {"a.glb", "b.glb", "-o", "d.xml"}), HasSubstr("use --summary"));
+  // Not where the tool has no such option.
+  EXPECT_THAT(refused("krok-info", {"in.bvh", "--fps", "30"}), Not(HasSubstr("--rate")));
+}
+
+// Would fail if what is missing, or in the wrong place, were answered with a wrong guess.
+TEST_F(Mistakes, MissingAndSwappedArgumentsLeadOn) {
+  std::filesystem::create_directory(path("takes"));
+  put("takes/a.bvh", capture(5));
+  EXPECT_THAT(refused("krok-retarget", {"takes", "hero.character", "--out-dir", "o"}),
+              AllOf(HasSubstr("give --onto IN.model"), Not(HasSubstr("'--'"))));
+  EXPECT_THAT(refused("krok-diff", {"in.bvh"}), HasSubstr("give B;"));
+  EXPECT_THAT(refused("krok-skin", {"takes", "hero.character", "-o", "a.glb"}),
+              HasSubstr("a mesh comes first"));
+  EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--onto", "takes", "-o", "a.anim"}),
+              AllOf(HasSubstr("give one of its files"), Not(HasSubstr("--out-dir"))));
+  EXPECT_THAT(refused("krok-diff", {"in.bvh", "in.bvh", "--tol", "1mm"}),
+              HasSubstr("did you mean '--tolerance'?"));
+  EXPECT_THAT(refused("krok-view", {"in.bvh", "-o", "a.png"}), HasSubstr("krok-render"));
+  EXPECT_EQ(run_here("krok-edit", {"in.bvh", "--rate", "15fps", "-o", "r.anim"}).exit_code, 0);
+  EXPECT_THAT(refused("krok-blend", {"in.bvh", "-o", "a.anim"}), HasSubstr("krok-blend A B"));
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--show", "knee", "-o", "a.pdf"}),
+              HasSubstr("angles draws hips, knees"));
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--show", "gait", "-o", "a.pdf"}),
+              HasSubstr("krok-keys --table"));
+  put("clip.mp4", std::string("\0\0\0\x18"
+                              "ftypmp42",
+                              12));
+  EXPECT_THAT(refused("krok-import", {"clip.mp4", "-o", "a.anim"}), HasSubstr(".fbx"));
+  ASSERT_EQ(run_here("krok-body", {"in.bvh", "-o", "a.model"}).exit_code, 0);
+  put("cup.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(
+      refused("krok-skin", {"a.model", "in.bvh", "--attach", "spin=cup.obj", "-o", "a.glb"}),
+      HasSubstr("did you mean 'Spine'?"));
+  EXPECT_EQ(run_here("krok-export", {"in.bvh", "--format", "gltf"}).exit_code, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("in.gltf"))) << "beside the input";
+}
+
 TEST_F(Mistakes, ScriptsGetAReportOfUnknownVerbs) {
   const ToolRun run = run_here("krok", {"nope", "--json"});
   EXPECT_EQ(run.exit_code, 2);

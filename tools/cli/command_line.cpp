@@ -9,6 +9,7 @@
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <ranges>
 #include <string>
 #include <string_view>
 
@@ -379,7 +380,9 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     return Wish::version;
   } catch (const CLI::ParseError& error) {
     if (auto unknown = unknown_option(arguments)) return *std::move(unknown);
-    if (const auto left = app_.remaining(); !left.empty()) {
+    auto left = app_.remaining();
+    std::erase(left, "--");  // before the input of a file of a batch
+    if (!left.empty()) {
       const bool file = form_ == Form::single && takes_many_;
       for (const CLI::Option* option : app_.get_options()) {
         if (!option->get_required() || !option->empty() || option->get_positional()) continue;
@@ -390,18 +393,20 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
       return Error(
           "usage",
           fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),
-          file ? fmt::format("a file to be written is given with -o; for several inputs, use "
-                             "--out-dir DIR; see {} --help",
-                             tool_)
-               : fmt::format("see {} --help", tool_));
+          !too_many_hint(tool_).empty() ? too_many_hint(tool_)
+          : file ? fmt::format("a file to be written is given with -o; for several inputs, use "
+                               "--out-dir DIR; see {} --help",
+                               tool_)
+                 : fmt::format("see {} --help", tool_));
     }
     const bool too_many = form_ == Form::single && takes_many_ &&
                           dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
     std::string missing;
     for (const CLI::Option* option : app_.get_options()) {
       if (!option->get_required() || !option->empty()) continue;
-      missing = fmt::format("give {} {}; ", option->get_positional() ? "" : option->get_name(),
-                            option->get_type_name());
+      const std::string& type = option->get_type_name();
+      missing = fmt::format("give {}{}; ", option->get_positional() ? "" : option->get_name() + " ",
+                            type.empty() ? option->get_name() : type);
       break;
     }
     return Error("usage", error.what(),
@@ -446,9 +451,16 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     if (!is_long && !letter) continue;
     const std::string name = argument.substr(0, argument.find('='));
     if (app_.get_option_no_throw(name) != nullptr) continue;
-    for (const RenamedOption& option : kRenamedOptions) {
-      if (option.tool != tool_ || option.before != name) continue;
-      return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", option.now));
+    const auto is_now = [&](const RenamedOption& option) {
+      if (option.before != name || (!option.tool.empty() && option.tool != tool_)) return false;
+      const std::string now(option.now.substr(0, option.now.find(' ')));
+      return !option.tool.empty() || !now.starts_with('-') ||
+             app_.get_option_no_throw(now) != nullptr;
+    };
+    // A tool's own rows come after those of any.
+    const auto rows = std::views::reverse(kRenamedOptions);
+    if (const auto row = std::ranges::find_if(rows, is_now); row != rows.end()) {
+      return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
     }
     const std::string near = is_long ? nearest_name(name, names) : std::string();
     return Error("usage", fmt::format("unknown option '{}'", shown(name)),

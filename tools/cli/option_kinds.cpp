@@ -115,7 +115,11 @@ ValueKind<double> number(Range range, const std::string& unit) {
 
 ValueKind<double> rate() {
   const auto read = [](const std::string& text) -> Result<double> {
-    const auto value = parse_finite(text);
+    std::string_view digits = text;
+    for (const std::string_view unit : {"fps", "Hz"}) {
+      if (digits.ends_with(unit)) digits.remove_suffix(unit.size());
+    }
+    const auto value = parse_finite(digits);
     if (value && *value >= 1e-3 && *value <= 1e6) return *value;
     return usage(fmt::format("'{}' is not a frame rate from 0.001 to 1000000", shown(text)));
   };
@@ -162,8 +166,13 @@ ValueKind<std::string> output(const std::vector<std::string>& endings) {
     const auto ends_so = [&](const std::string& one) { return ascii_lower(text).ends_with(one); };
     // Devices and names without an extension are taken as they are.
     if (ending.empty() || std::ranges::any_of(endings, ends_so)) return text;
+    constexpr std::string_view kPictures = " .png .jpg .gif .mp4 .webp .webm .avi .mov ";
+    const bool picture = kPictures.find(" " + ascii_lower(ending) + " ") != std::string_view::npos;
     return usage(fmt::format("the output is a {} file, not {}", either_of(endings), shown(text)),
-                 "use the extension " + either_of(endings));
+                 fmt::format("use the extension {}{}", either_of(endings),
+                             picture ? "; krok-render makes films and images, krok-plot --sheet "
+                                       "OUT.png sheets"
+                                     : ""));
   };
   return {"output", "OUT", read, {}};
 }

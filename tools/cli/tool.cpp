@@ -163,7 +163,11 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
   if (!done) {
     Error error = done.error();
     if (error.code == "file-directory" && spec.batch) {
-      error.hint = "to process a folder, use --out-dir DIR instead of -o";
+      const bool of_option = std::ranges::any_of(line.given(), [&](const GivenOption& option) {
+        return std::ranges::find(option.values, error.where.file) != option.values.end();
+      });
+      error.hint = of_option ? "give one of its files"
+                             : "to process a folder, use --out-dir DIR instead of -o";
     }
     return fail(context, report, error);
   }

@@ -15,6 +15,7 @@
 #include "formats/io/open_role_map.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/plant_result.h"
@@ -38,6 +39,9 @@ struct Motion {
 Result<std::vector<Motion>> read_motions(const Options& options, const io::FindRoles& find_roles,
                                          ToolContext& context) {
   std::vector<Motion> motions;
+  if (options.inputs.size() < 2) {
+    return usage("one motion is given", "krok-blend A B blends two; krok-edit changes one");
+  }
   const auto shares = static_cast<std::size_t>(
       std::ranges::count_if(options.inputs, &WeightedInput::is_equal_share));
   if (shares > 0 && shares < options.inputs.size()) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "formats/io/formats.h"
+#include "tools/cli/file_name.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::exporting {
@@ -167,6 +168,10 @@ ToolSpec make_spec() {
       {"krok-export capture.bvh -o capture.glb",
        "directly from a capture; -v prints the detected conventions"},
       {"krok-export walk.anim --format csv -o - | head", "the first rows"}};
+  spec.default_output = [options] {
+    const auto ending = extension_of(options->format);
+    return ending ? beside(options->input, *ending) : std::string();
+  };
   spec.batch = {io::motion_endings(), [options] { return extension_of(options->format); }};
   return spec;
 }

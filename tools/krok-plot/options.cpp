@@ -19,6 +19,25 @@ namespace krok::cli::plot {
 
 namespace {
 
+// Words that one tries first have other names.
+Error with_home(Error error, const std::string& text) {
+  static constexpr std::pair<std::string_view, const char*> kHomes[] = {
+      {"gait speed cadence stance events steps",
+       "krok-keys --table OUT.csv has gait and speed; "
+       "cycles draws angles over the gait cycle"},
+      {"mean average deviation sd std cycle", "cycles draws mean and standard deviation"},
+      {"hip hips knee knees ankle ankles shoulder elbow joint joints",
+       "angles draws hips, knees, ankles, shoulders and elbows, cycles their mean over the gait "
+       "cycle; --joint NAME another joint"},
+      {"sheet poses actor", "--sheet OUT.png shows the actors"}};
+  for (const auto& [words, home] : kHomes) {
+    if ((" " + std::string(words) + " ").find(" " + text + " ") != std::string::npos) {
+      error.hint = home;
+    }
+  }
+  return error;
+}
+
 // A list of charts, separated by commas.
 ValueKind<std::vector<ChartKind>> charts() {
   const auto one = choice<ChartKind>({{"path", ChartKind::path},
@@ -35,7 +54,7 @@ ValueKind<std::vector<ChartKind>> charts() {
               const std::size_t end = std::min(text.find(',', begin), text.size());
               const auto chart =
                   one.read(std::string(trimmed(std::string_view(text).substr(begin, end - begin))));
-              if (!chart) return chart.error();
+              if (!chart) return with_home(chart.error(), text);
               charts.push_back(*chart);
               begin = end + 1;
             }

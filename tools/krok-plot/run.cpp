@@ -139,6 +139,10 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   if (Status status = outputs.finish(); !status) return status.error();
   for (const std::string& line : done) context.log(line);
+  if (charts && !options.plots_tables() && !images && extension(context.output) == ".png" &&
+      !options.given("--show")) {
+    context.log("these are charts; --sheet OUT.png shows the actors");
+  }
   return kExitDone;
 }
 

@@ -65,9 +65,37 @@ int fail(const std::string& message, const std::string& hint) {
 }
 
 std::string hint_for(const std::string& verb) {
-  // A usual word for what two verbs do.
-  if (verb == "convert" || verb == "conv") {
-    return "krok import reads captures and characters, krok export writes BVH, glTF and tables";
+  // Usual words for what a verb does by another name, or with an option.
+  static constexpr std::pair<std::string_view, std::string_view> kWords[] = {
+      {" convert conv ",
+       "krok import reads captures and characters, krok export writes BVH, glTF and tables"},
+      {" compare cmp test regress ", "krok diff compares files and folders"},
+      {" sheet contact-sheet strip thumbnails ", "krok plot IN... --sheet OUT.png"},
+      {" gait table events steps contacts ",
+       "krok keys FOLDER --table OUT.csv, or -o OUT.csv for events"},
+      {" angles chart charts graph curves ",
+       "krok plot IN... --show angles, or cycles for mean and deviation; krok export IN --what "
+       "angles"},
+      {" film movie video gif ", "krok render IN"},
+      {" show open watch viewer play page ", "krok view IN"},
+      {" check validate verify qa ", "krok lint IN..."},
+      {" trim cut crop clip resample filter smooth mirror loop clean scale rotate ",
+       "krok edit IN with an option; see krok edit --help"},
+      {" plant unskate skate ", "krok edit IN --plant -o OUT.anim"},
+      {" rig bake attach animate merge-clips character ",
+       "krok skin hero.character IN... -o OUT.glb"},
+      {" join concat append sequence layer ",
+       "krok mix TIMELINE.json, or krok edit IN --append NEXT.anim"},
+      {" reach look ", "krok ik IN --reach or --look-at"},
+      {" camera follow orbit ", "krok cam IN --follow hips"},
+      {" remap map ", "krok retarget IN --onto hero.character"},
+      {" fall push shove physics ", "krok ragdoll IN"}};
+  const auto is_word = [&](const auto& row) {
+    return row.first.find(fmt::format(" {} ", verb)) != std::string_view::npos;
+  };
+  if (const auto row = std::ranges::find_if(kWords, is_word);
+      !verb.empty() && row != std::end(kWords)) {
+    return std::string(row->second);
   }
   const std::string near = verb.empty() ? "" : nearest_name(verb, verb_names());
   return near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near);
