@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <ranges>
 #include <utility>
 
 #include "core/index.h"
@@ -609,7 +608,7 @@ class Solver {
       if (shares == 0) continue;
       std::vector<std::size_t> above;
       for (std::size_t j = links.back(); j > 0; j = at(parents_[j])) above.push_back(j);
-      for (const std::size_t j : std::views::reverse(above)) follow(j);
+      for (std::size_t i = above.size(); i-- > 0;) follow(above[i]);
       std::vector<double> angles(frames_);
       const Vec3 last = bone(links.back());
       for (std::size_t f = 0; f < frames_; ++f) {

@@ -52,10 +52,10 @@ Clip turned(const Clip& clip, int joint, const std::vector<std::pair<int, double
 // swing.
 TEST(WithoutNoise, FollowsAChangeFromStandingToSwinging) {
   samples::NoiseSource noise(5);
-  constexpr int kHalf = 150;
+  constexpr Eigen::Index kHalf = 150;
   Eigen::MatrixXd truth = Eigen::MatrixXd::Zero(2 * kHalf, 6), series(2 * kHalf, 6);
-  for (int f = kHalf; f < 2 * kHalf; ++f) {
-    truth.row(f).setConstant(20 * (1 - std::cos(0.1 * kPi * 2 * (f - kHalf))));
+  for (Eigen::Index f = kHalf; f < 2 * kHalf; ++f) {
+    truth.row(f).setConstant(20 * (1 - std::cos(0.2 * kPi * static_cast<double>(f - kHalf))));
   }
   for (double& value : series.reshaped()) value = noise.gaussian();
   series += truth;
