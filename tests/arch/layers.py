@@ -38,6 +38,7 @@ ALLOWED = {
     "lib/positions": BASE | {"lib/roles", "lib/filter"},
     "lib/ragdoll": BASE | {"lib/roles", "lib/ik", "lib/motion", "lib/timeline"},
     "lib/retarget": BASE | {"lib/roles", "lib/contacts", "lib/ik", "lib/motion"},
+    "lib/settle": BASE | {"lib/roles", "lib/motion", "lib/ragdoll", "lib/retarget", "lib/terrain"},
     "lib/skin": BASE,
     "lib/face": BASE | {"lib/motion", "lib/pose", "lib/blend", "lib/timeline", "lib/skin"},
     "lib/body": BASE | {"lib/roles", "lib/retarget"},

@@ -207,7 +207,25 @@ void declare_place(CommandOptions& command, Options& o) {
   command.add("--turn", o.turn, angle(),
               "Turn left about the vertical axis through the start position");
   command.add("--move X,Y,Z", o.move, lengths<Vec3>(), "Translate along X, Y and Z: 1m,0,-20cm");
-  command.add_flag("--on-ground", o.ground, "Move the lowest foot position to y = 0");
+  command.add_flag("--on-ground", o.on_ground, "Move the lowest foot position to y = 0");
+  command.group("10. Ground");
+  command.add_flag("--settle", o.settle,
+                   "Lay the motion on --ground: hands, knees, feet and trunk that touch the level "
+                   "ground of the input neither hover nor sink in, for falls, crawls and sitting. "
+                   "Depth and hover are printed");
+  add_ground_option(command, o.ground,
+                    "Ground to settle on, as for krok-walk: a mesh, a height field, or a made one",
+                    "level")
+      .only_with("--settle");
+  command
+      .add("--floor", o.floor, length(),
+           "Height of the level ground that the input was made on [found by what lies on it]")
+      .only_with("--settle");
+  command
+      .add_option(
+          "--model IN.model", o.model,
+          "Settle this mesh of the same skeleton; else bodies of usual sizes about the bones")
+      .only_with("--settle");
 }
 
 void declare(CommandOptions& command, Options& o) {
@@ -270,7 +288,9 @@ ToolSpec make_spec() {
       {"krok-edit walk.anim --plant -o planted.anim",
        "feet that stay where they stand; contacts from walk.keys.json if it exists"},
       {"krok-edit walk.anim -o both.anim --append turn.anim --blend 0.3s --at-origin --heading 0",
-       "two motions in sequence, from the origin towards +Z"}};
+       "two motions in sequence, from the origin towards +Z"},
+      {"krok-edit fall.anim --settle --ground stairs:rise=17cm,run=29cm -o laid.anim",
+       "a fall that ends on stairs, its parts on the treads"}};
   spec.writes = registry::Kind::anim;
   spec.needs_output = false;  // --list-sequences writes nothing
   spec.batch = {io::motion_endings(), [options]() -> Result<std::string> {

@@ -13,6 +13,7 @@
 #include "motion/travel.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
+#include "tools/shared/ground_choice.h"
 #include "tools/shared/interpolation_choice.h"
 
 namespace krok::cli::edit {
@@ -74,10 +75,15 @@ struct Options {
   // 8. size
   std::optional<double> scale, height;  // height in metres
   // 9. position
-  bool at_origin = false, re_orient = false, ground = false;
+  bool at_origin = false, re_orient = false, on_ground = false;
   std::optional<double> heading;  // radians
   double turn = 0;
   Vec3 move = Vec3::Zero();
+  // 10. ground
+  bool settle = false;
+  GroundChoice ground;
+  std::string model;            // whose mesh is laid on the ground, or empty
+  std::optional<double> floor;  // metres
 
   // None for Filter::none and by_noise.
   std::optional<krok::filter::Smoothing> smoothing() const;

@@ -133,7 +133,7 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
           fmt::format("moved by {}, {}, {} m", readable(options.move.x()),
                       readable(options.move.y()), readable(options.move.z())));
   }
-  if (options.ground) {
+  if (options.on_ground) {
     const Transform lift = onto_ground(clip, foot_joints(clip.skeleton, edit.roles));
     apply(lift, fmt::format("lifted by {} m onto the ground", readable(lift.position.y(), 4)));
   }

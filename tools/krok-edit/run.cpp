@@ -9,6 +9,7 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/sequences/sequences.h"
@@ -135,6 +136,21 @@ Result<Edit> read_inputs(const Options& options, ToolContext& context) {
     if (!next) return next.error();
     edit.appended.push_back(std::move(*next));
   }
+  if (options.settle) {
+    auto ground = options.ground.open(context);
+    if (!ground) return ground.error();
+    edit.ground = *std::move(ground);
+  }
+  if (!options.model.empty()) {
+    auto actor =
+        io::open_actor(options.model, context, {.with_materials = false, .with_motions = false});
+    if (!actor) return actor.error();
+    if (!actor->motions.empty()) {
+      return Error("edit-model", "is a motion, not a model", "krok-body makes a model for a motion")
+          .in_file(options.model);
+    }
+    edit.model = std::make_shared<Model>(std::move(actor->model));
+  }
   return edit;
 }
 
@@ -150,7 +166,7 @@ Result<Edited> edit_one(const Options& options, Edit edit, const std::string& ou
   const std::string before = summary_text(edit.clip);
   // The order given in the help.
   for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
-                          take_out_travel, change_size, change_place}) {
+                          take_out_travel, change_size, change_place, settle_on_ground}) {
     if (Status status = step(options, context, edit); !status) {
       return std::move(status.error()).in_file(options.input);
     }

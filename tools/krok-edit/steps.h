@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,7 +8,9 @@
 #include "formats/sequences/sequences.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/model.h"
 #include "scene/motion_keys.h"
+#include "terrain/terrain.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-edit/options.h"
 
@@ -26,6 +29,8 @@ struct Edit {
   std::optional<std::vector<Contact>> contacts;  // of the input; none: to be found
   std::vector<Keytime> keytimes;                 // of the input, for ends that are keytimes
   std::vector<Clip> appended;                    // in the order of Options::append
+  std::shared_ptr<const Terrain> ground;         // to settle on
+  std::shared_ptr<const Model> model;            // to settle, or none
 
   double speed = 1;      // of options and sequence together
   bool loop = false;     // of options or sequence
@@ -57,5 +62,6 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit);
 Status take_out_travel(const Options& options, ToolContext& context, Edit& edit);
 Status change_size(const Options& options, ToolContext& context, Edit& edit);
 Status change_place(const Options& options, ToolContext& context, Edit& edit);
+Status settle_on_ground(const Options& options, ToolContext& context, Edit& edit);
 
 }  // namespace krok::cli::edit

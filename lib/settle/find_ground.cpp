@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/index.h"
+#include "core/parallel.h"
+#include "math/smoother_step.h"
+#include "math/window.h"
+#include "settle/settler_internal.h"
+
+namespace krok::settling {
+
+namespace {
+
+// Of a person of 1.75 m. Metres per second, seconds.
+constexpr double kRising = 0.3, kShortest = 0.06;
+constexpr double kSoft = 0.06, kFade = 0.2;  // seconds
+// A motion follows the ground that touches it about as long and as closely as a level floor.
+constexpr double kLittle = 0.003, kAlike = 0.9, kClearly = 0.2;
+
+}  // namespace
+
+void fill_gaps(std::span<double> values) {
+  const auto known = [](double value) { return !std::isnan(value); };
+  const auto first = std::ranges::find_if(values, known);
+  double last = first == values.end() ? 0 : *first;
+  for (double& value : values) {
+    if (known(value)) last = value;
+    value = last;
+  }
+}
+
+std::vector<Transform> Settler::pose_of(const LocalMotion& motion, int frame) const {
+  std::vector<Transform> pose(parents_.size());
+  for (int j = 0; j < motion.joints; ++j) {
+    const int parent = parents_[at(j)];
+    pose[at(j)] = parent < 0 ? motion.at(j, frame) : pose[at(parent)] * motion.at(j, frame);
+  }
+  return pose;
+}
+
+Heights Settler::heights(const LocalMotion& motion, const Over& over) const {
+  Heights heights;
+  const auto count = at(motion.frames);
+  heights.of_points.resize(count * points_.size());
+  heights.of_bodies.assign(count * bodies_.size(), std::numeric_limits<double>::infinity());
+  parallel_for(count, 16, options_.jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f) {
+      const std::vector<Transform> pose = pose_of(motion, static_cast<int>(f));
+      for (std::size_t p = 0; p < points_.size(); ++p) {
+        const SupportPoint& point = points_[p];
+        const int joint = bodies_[at(point.body)].joint;
+        const double height = over(pose[at(joint)] * point.centre, point.radius);
+        heights.of_points[f * points_.size() + p] = height;
+        double& lowest = heights.of_bodies[at(point.body) * count + f];
+        lowest = std::min(lowest, height);
+      }
+    }
+  });
+  const retarget::TouchLimits limits = {kNear * scale_, kFar * scale_, kRising * scale_, kShortest};
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const std::span<const double> distance(heights.of_bodies.data() + b * count, count);
+    std::vector<double> rising(count, 0);
+    for (std::size_t f = 0; f < count && count > 1; ++f) {
+      const std::size_t before = f == 0 ? 0 : f - 1, after = std::min(f + 1, count - 1);
+      rising[f] = std::abs(distance[after] - distance[before]) * rooted_.rate /
+                  static_cast<double>(after - before);
+    }
+    heights.touches.push_back(retarget::find_touch(distance, rising, limits, rooted_.rate));
+  }
+  return heights;
+}
+
+// The median height of the lowest part where it hardly rises or falls, and how much that varies.
+double Settler::usual(const Heights& heights, double& spread) const {
+  const auto count = at(frames());
+  std::vector<double> lowest(count, std::numeric_limits<double>::infinity()), still;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    for (std::size_t f = 0; f < count; ++f) {
+      lowest[f] = std::min(lowest[f], heights.of_bodies[b * count + f]);
+    }
+  }
+  for (std::size_t f = 0; f < count; ++f) {
+    const double change = f + 1 < count ? (lowest[f + 1] - lowest[f]) * rooted_.rate : 0;
+    if (std::isfinite(lowest[f]) && std::abs(change) < kRising * scale_) still.push_back(lowest[f]);
+  }
+  if (still.empty()) {
+    std::ranges::copy_if(lowest, std::back_inserter(still),
+                         [](double h) { return std::isfinite(h); });
+  }
+  if (still.empty()) return std::numeric_limits<double>::infinity();
+  const double middle = median(still);
+  for (double& height : still) height = std::abs(height - middle);
+  spread = median(still);
+  return middle;
+}
+
+GroundFit Settler::fit(const Heights& heights, std::span<const retarget::Touch> touches) const {
+  GroundFit fit;
+  const auto count = at(frames());
+  for (const double height : heights.of_bodies) fit.depth = std::max(fit.depth, -height);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    for (const retarget::Stay& stay : touches[b].stays) {
+      for (int f = stay.first; f <= stay.last; ++f) {
+        const double height = heights.of_bodies[b * count + at(f)];
+        if (!hangs_.empty() && hangs_[b * count + at(f)] > 0) continue;
+        if (std::isfinite(height)) fit.hover = std::max(fit.hover, height);
+      }
+    }
+  }
+  return fit;
+}
+
+Status Settler::find_ground() {
+  const auto over_ground = [&](const Vec3& centre, double radius) {
+    return clearance(ground_, centre, radius);
+  };
+  Heights on_ground = heights(source_, over_ground);
+  double ground_spread = 0, level_spread = 0;
+  const double ground_height = usual(on_ground, ground_spread);
+  for (const double height : on_ground.of_bodies) fit_.depth = std::max(fit_.depth, -height);
+  const auto over_level = [](const Vec3& centre, double radius) { return centre.y() - radius; };
+  floor_ = options_.floor.value_or(usual(heights(source_, over_level), level_spread));
+  Heights over_floor = heights(
+      source_, [&](const Vec3& centre, double radius) { return centre.y() - radius - floor_; });
+  fit_ = fit(on_ground, on_ground.touches);
+  const GroundFit on_level = fit(over_floor, over_floor.touches);
+  const auto misfit = [](const GroundFit& fit) { return std::max(fit.depth, fit.hover); };
+  const auto touching = [](const Heights& over) {  // frames, of all parts
+    int sum = 0;
+    for (const retarget::Touch& touch : over.touches) {
+      for (const retarget::Stay& stay : touch.stays) sum += stay.last - stay.first + 1;
+    }
+    return sum;
+  };
+  const bool as_much = touching(on_ground) >= kAlike * touching(over_floor);
+  const double level_misfit = misfit(on_level);
+  follows_ground_ = !options_.floor && std::abs(ground_height) <= kNear * scale_ &&
+                    (misfit(fit_) < kClearly * level_misfit ||
+                     (as_much && misfit(fit_) <= level_misfit + kLittle * scale_));
+  lies_already_ = follows_ground_ && fit_.depth <= kNear * scale_;
+  if (!follows_ground_) fit_ = fit(on_ground, over_floor.touches);
+  set_goals(std::move(follows_ground_ ? on_ground : over_floor));
+  // What is under the hips, carried over gaps.
+  ground_below_.assign(at(frames()), std::numeric_limits<double>::quiet_NaN());
+  for (int f = 0; f < frames(); ++f) {
+    const Vec3 hips = source_.at(0, f).position;
+    const auto found = surface_at(ground_, hips);
+    if (!found) ++without_ground_;
+    if (found) ground_below_[at(f)] = follows_ground_ ? 0 : found->height - floor_;
+  }
+  if (without_ground_ == frames()) {
+    const Vec3 hips = source_.at(0, 0).position;
+    return Error("settle-ground",
+                 fmt::format("there is no ground under the motion, which begins at x {:.2f} m, z "
+                             "{:.2f} m",
+                             hips.x(), hips.z()),
+                 "a larger ground, or move the motion onto it (krok-edit --move, --at-origin)");
+  }
+  fill_gaps(ground_below_);
+  ground_below_ = mean_within(ground_below_, static_cast<int>(std::lround(0.2 * rooted_.rate)));
+  return {};
+}
+
+// How high each point should be over the ground: as in the source, but that parts which touch are
+// lowered or raised until their lowest point lies on it.
+void Settler::set_goals(Heights source) {
+  over_source_ = std::move(source);
+  const std::vector<double>& heights = over_source_.of_points;
+  goals_.resize(heights.size());
+  weights_.resize(heights.size());
+  const auto count = at(frames());
+  std::vector<double> raised;  // [bodies x frames]
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto lowest = std::span(over_source_.of_bodies).subspan(b * count, count);
+    std::vector<double> depth;
+    for (const double height : lowest) depth.push_back(std::max(0.0, -height));
+    const int reach = std::max(1, static_cast<int>(std::lround(kSoft * rooted_.rate)));
+    depth = mean_within(mean_within(max_within(depth, 2 * reach), reach), reach);
+    // Of the height in a stay nothing is left; before and after it is taken away, less and less.
+    std::vector<double> lowered(count, 0);
+    const int fade = std::max(1, static_cast<int>(std::lround(kFade * rooted_.rate)));
+    for (const retarget::Stay& stay : over_source_.touches[b].stays) {
+      for (int f = std::max(0, stay.first - fade); f <= std::min(frames() - 1, stay.last + fade);
+           ++f) {
+        const std::size_t in_stay = at(std::clamp(f, stay.first, stay.last));
+        const int away = std::abs(f - static_cast<int>(in_stay));
+        const double part = 1 - smoother_step(static_cast<double>(away) / fade);
+        lowered[at(f)] = std::max(lowered[at(f)], part * (lowest[in_stay] + depth[in_stay]));
+      }
+    }
+    for (std::size_t f = 0; f < count; ++f) raised.push_back(depth[f] - lowered[f]);
+  }
+  for (std::size_t f = 0; f < count; ++f) {
+    for (std::size_t p = 0; p < points_.size(); ++p) {
+      const std::size_t i = f * points_.size() + p, b = at(points_[p].body);
+      goals_[i] = std::max(0.0, heights[i] + raised[b * count + f]);
+      weights_[i] = 1 - smoother_step(goals_[i] / (kFar * scale_));
+    }
+  }
+}
+
+}  // namespace krok::settling

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/index.h"
+#include "motion/hips_root.h"
+#include "motion/local_motion.h"
+#include "retarget/touches.h"
+#include "settle/settle.h"
+#include "settle/smooth_system_internal.h"
+#include "settle/support_points_internal.h"
+
+// The steps of settle(): what touches (find_ground.cpp), where it belongs (set_targets.cpp), and
+// the smoothest motion that brings it there (solve.cpp).
+
+namespace krok::settling {
+
+inline constexpr double kTolerated = 0.005;  // metres
+// Of a person of 1.75 m, metres: parts touch below the one, and are free above the other.
+inline constexpr double kNear = 0.01, kFar = 0.3;
+inline constexpr double kStep = 0.02;  // what counts as a step
+
+// The places of points of each frame over a ground, and which parts touch it.
+struct Heights {
+  std::vector<double> of_points;         // [frames x points]
+  std::vector<double> of_bodies;         // [bodies x frames], of the lowest point
+  std::vector<retarget::Touch> touches;  // [bodies]
+};
+
+// What a point is to do in a frame.
+struct Target {
+  double weight = 0;
+  double rise = 0;            // metres, from where it is in the source
+  Vec3 place = Vec3::Zero();  // in the source, world
+  Vec3 slope = Vec3::Zero();  // of the ground there: rise over way along x and z
+};
+
+// A joint that may turn.
+struct Freedom {
+  int joint = 0;
+  Mat3 damping = Mat3::Identity();
+  std::optional<Vec3> hinge;  // in the parent's frame; bends by positive turns
+  int bone_from = -1, bone_to = -1;
+};
+
+// Gaps (NaN) take the value before them, and those at the start the first one; 0 if there is none.
+void fill_gaps(std::span<double> values);
+
+class Settler {
+ public:
+  Settler(const Clip& clip, const RoleMap& roles, const Terrain& ground,
+          const SettleOptions& options, std::vector<ragdoll::Body> bodies, const Skeleton& neutral);
+
+  Status find_ground();
+  void find_freedoms();
+  void solve();
+  Settled finish();
+  bool lies_already() const { return lies_already_; }
+
+ private:
+  using Over = std::function<double(const Vec3& centre, double radius)>;
+  using Values = std::vector<Eigen::VectorXd>;  // [frames]: shift of the hips, turns of freedoms
+
+  int frames() const { return source_.frames; }
+  std::size_t size() const { return 3 + 3 * freedoms_.size(); }
+
+  // `over` gives the height of a sphere over what counts as the ground.
+  Heights heights(const LocalMotion& motion, const Over& over) const;
+  double usual(const Heights& heights, double& spread) const;
+  GroundFit fit(const Heights& heights, std::span<const retarget::Touch> touches) const;
+  double upright(std::span<const Transform> pose) const;
+  void set_goals(Heights source);
+  std::vector<Transform> pose_of(const LocalMotion& motion, int frame) const;
+  LocalMotion moved() const;
+  std::vector<Transform> moved_pose(int frame) const;
+  bool touches(std::size_t body, std::size_t frame) const {
+    return std::ranges::any_of(over_source_.touches[body].stays, [&](const retarget::Stay& stay) {
+      return at(stay.first) <= frame && frame <= at(stay.last);
+    });
+  }
+  void set_targets();
+  // Both return half the sum of the squared errors.
+  double add_goals(int frame, std::span<const Transform> pose, Eigen::MatrixXd& matrix,
+                   Eigen::VectorXd& right) const;
+  double add_damping(int frame, std::span<const Transform> pose, Eigen::MatrixXd& matrix,
+                     Eigen::VectorXd& right) const;
+  double add_frames(int first, int last, const Eigen::VectorXd& bend, SmoothSystem& system) const;
+  double bend_of(const Freedom& freedom, std::span<const Transform> pose) const;
+  void solve_stretch(int first, int last);
+  void correct_targets(int first, int last);
+  double jerk_of(const LocalMotion& motion) const;
+
+  const Clip& clip_;
+  const RoleMap& roles_;
+  const Terrain& ground_;
+  const SettleOptions& options_;
+  std::vector<ragdoll::Body> bodies_;
+  std::vector<SupportPoint> points_;
+  std::vector<std::pair<std::size_t, std::size_t>> points_of_;  // [bodies], begin and end
+  HipsRoot hips_root_;
+  Clip rooted_;
+  LocalMotion source_;
+  std::vector<int> parents_;
+  double scale_ = 1;  // of a person of 1.75 m
+
+  double floor_ = 0;
+  bool follows_ground_ = false, lies_already_ = false;
+  int without_ground_ = 0;            // frames
+  std::vector<double> ground_below_;  // [frames], above the floor
+  Heights over_source_;
+  std::vector<double> goals_, weights_;  // [frames x points]
+  std::vector<double> hangs_;            // [bodies x frames], metres below what is beside it
+  std::vector<Target> targets_;          // [frames x points]
+  GroundFit fit_;                        // of the source on the ground
+
+  std::vector<Freedom> freedoms_;
+  std::vector<std::vector<std::size_t>> chains_;  // [bodies], of freedoms
+  Values values_;
+};
+
+}  // namespace krok::settling

@@ -1,0 +1,190 @@
+// If these fail, falls and crawls hover over the ground or sink into it, people lean with a slope,
+// knees bend backwards, feet wander, a second pass changes what the first has made, or it depends
+// on how a motion is rooted or turned.
+
+#include "settle/settle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/index.h"
+#include "math/euler.h"
+#include "motion/local_motion.h"
+#include "motion/place.h"
+#include "ragdoll/clear_ground.h"
+#include "samples/generator/rise.h"
+#include "terrain/spec.h"
+
+namespace krok {
+namespace {
+
+class Settle : public testing::TestWithParam<const char*> {
+ protected:
+  static Clip rise(samples::Lying from) {
+    samples::RiseOptions options;
+    options.from = from;
+    options.rate = 30;
+    return *samples::make_rise(options);
+  }
+
+  static std::unique_ptr<Terrain> ground(const char* spec) { return *terrain::from_spec(spec); }
+
+  static Settled settled(const Clip& clip, const Terrain& ground) {
+    auto result = settle(clip, find_roles(clip.skeleton), ground);
+    EXPECT_TRUE(result.ok());
+    return *std::move(result);
+  }
+
+  // Heights of bodies by the ragdoll's own measure, [bodies][frames], metres.
+  static std::vector<std::vector<double>> heights(const Clip& clip, const Terrain& ground) {
+    const auto bodies = *ragdoll::make_bodies(clip.skeleton, find_roles(clip.skeleton));
+    const auto height = [&](double x, double z) -> std::optional<double> {
+      const auto point = ground.at(x, z);
+      return point ? std::optional(point->height) : std::nullopt;
+    };
+    std::vector<std::vector<double>> all(bodies.size());
+    std::vector<Transform> pose(clip.skeleton.names.size());
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      clip.get_pose(f, pose);
+      for (std::size_t b = 0; b < bodies.size(); ++b) {
+        all[b].push_back(-ragdoll::depth_in_ground(bodies[b], pose, height));
+      }
+    }
+    return all;
+  }
+
+  static double largest_distance(const Clip& a, const Clip& b) {
+    double largest = 0;
+    for (std::size_t i = 0; i < a.positions.size(); ++i) {
+      largest = std::max<double>(largest, (a.positions[i] - b.positions[i]).norm());
+    }
+    return largest;
+  }
+};
+
+TEST_P(Settle, LiesAndCrawlsWithoutHoverOrDepth) {
+  const auto on = ground(GetParam());
+  for (const samples::Lying from :
+       {samples::Lying::front, samples::Lying::back, samples::Lying::side}) {
+    const Clip clip = rise(from);
+    const Settled result = settled(clip, *on);
+    EXPECT_LE(result.after.depth, 0.008);
+    EXPECT_LE(result.after.hover, 0.008);
+    EXPECT_GE(result.touches.size(), 4U);
+    const auto measured = heights(result.clip, *on);
+    for (const auto& body : measured) {
+      for (const double height : body) EXPECT_GT(height, -0.008);
+    }
+    EXPECT_LT(result.jerk, 6);  // of the smoothest motion there is
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Grounds, Settle,
+                         testing::Values("level:height=60cm", "slope:12deg,begin=-5m",
+                                         "slope:-8deg,begin=-5m", "rough:seed=7,height=12cm"));
+
+TEST_F(Settle, TwiceIsOnce) {
+  for (const char* spec : {"slope:10deg,begin=-5m", "rough:seed=2,height=10cm"}) {
+    const auto on = ground(spec);
+    const Settled once = settled(rise(samples::Lying::back), *on);
+    EXPECT_LT(largest_distance(once.clip, settled(once.clip, *on).clip), 5e-5) << spec;
+  }
+}
+
+TEST_F(Settle, StandsUprightOnASlope) {
+  const auto on = ground("slope:12deg,begin=-5m");
+  const Clip clip = rise(samples::Lying::front);
+  const Settled result = settled(clip, *on);
+  const int last = clip.frame_count() - 1, hips = 0, neck = clip.skeleton.find("Neck");
+  const auto trunk = [&](const Clip& of, int frame) {
+    const auto places = of.frame_positions(frame);
+    return Vec3((places[at(neck)] - places[at(hips)]).cast<double>().normalized());
+  };
+  EXPECT_LT(std::acos(trunk(clip, last).dot(trunk(result.clip, last))), 4 * kRadiansPerDegree);
+  // Lying it follows the slope: from lying on the front the trunk is turned by most of it.
+  EXPECT_GT(std::acos(trunk(clip, 0).dot(trunk(result.clip, 0))), 6 * kRadiansPerDegree);
+}
+
+TEST_F(Settle, BonesKeepTheirLengthsAndKneesTheirSide) {
+  const auto on = ground("stairs:rise=12cm,run=32cm,begin=-2m");
+  const Clip clip = rise(samples::Lying::back);
+  const Settled result = settled(clip, *on);
+  const LocalMotion before = local_motion(clip), after = local_motion(result.clip);
+  for (int j = 1; j < clip.joint_count(); ++j) {
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      EXPECT_LT((before.at(j, f).position - after.at(j, f).position).norm(), 1e-5);
+    }
+  }
+  for (const char* knee : {"LeftLeg", "RightLeg"}) {
+    const int joint = clip.skeleton.find(knee);
+    const auto bend = [&](const Clip& of, int f) {
+      const auto places = of.frame_positions(f);
+      const auto turns = of.frame_orientations(f);
+      const int thigh = of.skeleton.parents[at(joint)];
+      const Vec3 upper = (places[at(joint)] - places[at(thigh)]).cast<double>();
+      const int foot =
+          of.skeleton.find(std::string(knee).substr(0, std::string(knee).size() - 3) + "Foot");
+      const Vec3 lower = (places[at(foot)] - places[at(joint)]).cast<double>();
+      const Vec3 left = turns[at(thigh)].cast<double>() * Vec3::UnitX();
+      return std::atan2(left.dot(upper.cross(lower)), upper.dot(lower));
+    };
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      EXPECT_GT(bend(result.clip, f), std::min(0.0, bend(clip, f)) - 0.03) << knee << ' ' << f;
+    }
+  }
+}
+
+TEST_F(Settle, DoesNotDependOnTheRootOrTheHeading) {
+  const auto on = ground("level:height=30cm");
+  const Clip clip = rise(samples::Lying::side);
+  const Settled result = settled(clip, *on);
+  Clip turned = clip;
+  const Transform turn{Vec3(2, 0, -1), axis_rotation(Axis::y, 1.1)};
+  move_clip(turn, turned);
+  Settled result_turned = settled(turned, *on);
+  move_clip(turn.inverse(), result_turned.clip);
+  EXPECT_LT(largest_distance(result.clip, result_turned.clip), 3e-3);
+
+  // The same below a root that stands elsewhere.
+  Clip below;
+  below.rate = clip.rate;
+  below.skeleton.add("Reference", -1, {});
+  for (int j = 0; j < clip.joint_count(); ++j) {
+    below.skeleton.add(clip.skeleton.names[at(j)], clip.skeleton.parents[at(j)] + 1,
+                       clip.skeleton.reference[at(j)], clip.skeleton.end_sites[at(j)] != 0);
+  }
+  below.resize(clip.frame_count());
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    clip.get_pose(f, pose);
+    std::vector<Transform> with_root = {{Vec3(1, 0, 3), Quat::Identity()}};
+    with_root.insert(with_root.end(), pose.begin(), pose.end());
+    below.set_pose(f, with_root);
+  }
+  const Settled result_below = settled(below, *on);
+  double largest = 0;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (int j = 0; j < clip.joint_count(); ++j) {
+      largest = std::max<double>(largest, (result_below.clip.frame_positions(f)[at(j + 1)] -
+                                           result.clip.frame_positions(f)[at(j)])
+                                              .norm());
+    }
+    EXPECT_EQ(result_below.clip.frame_positions(f)[0], Vec3f(1, 0, 3));
+  }
+  EXPECT_LT(largest, 1e-3);
+}
+
+TEST_F(Settle, NoGroundIsAnError) {
+  const auto on = ground("stairs:rise=17cm,run=30cm,count=2,begin=0m");
+  class Hole : public Terrain {
+    std::optional<GroundPoint> at(double, double, double) const override { return std::nullopt; }
+  };
+  const Clip clip = rise(samples::Lying::front);
+  const auto result = settle(clip, find_roles(clip.skeleton), Hole());
+  ASSERT_FALSE(result.ok());
+  EXPECT_EQ(result.error().code, "settle-ground");
+}
+
+}  // namespace
+}  // namespace krok
