@@ -53,4 +53,10 @@ for limits in hard soft; do
   "$bin/krok-ragdoll" -q walk.anim "${options[@]}" -o $limits.anim
 done
 "$bin/krok-plot" -q hard.anim soft.anim --show angles --from 1.1s --to 3s -o limits.svg
-echo "  fall.glb, fall.html, fall.png, stairs.png, limits.svg"
+
+say "8. A fall from level ground, laid on a slope"
+slope=slope:12deg,begin=-2m
+"$bin/krok-edit" falls/left.anim --settle --ground $slope -o laid.anim --json=laid.json
+"$bin/krok-plot" -q laid.anim --ground $slope --whole-ground --strip laid.png --view left \
+  --moments 1.2s,1.7s,2.2s,3s,5s --actor-size 200
+echo "  fall.glb, fall.html, fall.png, stairs.png, limits.svg, laid.png"

@@ -36,9 +36,9 @@ TEST_F(FallStory, HoldsWhatItsReadmeTells) {
   const ToolRun made = story("'a folder'");
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const fs::path out = folder_ / "a folder";
-  for (const char* name :
-       {"up.anim", "walker.ragdoll.json", "fall.anim", "fall.glb", "fall.html", "fall.png",
-        "stairs.anim", "stairs.png", "limits.svg", "falls/left.anim", "falls/foot.anim"}) {
+  for (const char* name : {"up.anim", "walker.ragdoll.json", "fall.anim", "fall.glb", "fall.html",
+                           "fall.png", "stairs.anim", "stairs.png", "limits.svg", "laid.png",
+                           "falls/left.anim", "falls/foot.anim"}) {
     EXPECT_TRUE(fs::exists(out / name)) << name;
   }
   const json up = json::parse(get(out / "up.json"));
@@ -47,6 +47,15 @@ TEST_F(FallStory, HoldsWhatItsReadmeTells) {
   EXPECT_LT(rises["penetration"].get<double>(), 0.01);
   EXPECT_LT(rises["acceleration"].get<double>(), 1.5 * rises["motion_acceleration"].get<double>());
   EXPECT_EQ(json::parse(get(out / "falls.json"))["result"]["falls"].size(), 6U);
+
+  const json laid = json::parse(get(out / "laid.json"));
+  EXPECT_TRUE(laid["issues"].empty()) << laid["issues"].dump();
+  const json& settled = laid["result"]["steps"].back();
+  EXPECT_GT(settled["before"]["depth"].get<double>() + settled["before"]["hover"].get<double>(),
+            0.05);
+  EXPECT_LT(settled["after"]["depth"].get<double>(), 0.005);
+  EXPECT_LT(settled["after"]["hover"].get<double>(), 0.005);
+  EXPECT_LT(settled["jerk"].get<double>(), 1.5);
 
   const json stairs = json::parse(get(out / "stairs.json"))["result"];
   EXPECT_LT(stairs["largest"]["penetration"].get<double>(), 0.005);
