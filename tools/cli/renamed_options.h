@@ -48,7 +48,6 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-edit", "--end", "--to"},
     {"krok-edit", "--flip", "--mirror"},
     {"krok-edit", "--fps", "--rate"},
-    {"krok-edit", "--ground", "--on-ground"},
     {"krok-edit", "--lowpass", "--filter butterworth --cutoff 6Hz"},
     {"krok-edit", "--order", "--filter-order"},
     {"krok-edit", "--resample", "--rate"},
