@@ -96,8 +96,8 @@ std::vector<SupportPoint> support_points(const std::vector<ragdoll::Body>& bodie
 }
 
 std::optional<GroundPoint> surface_at(const Terrain& ground, const Vec3& place) {
-  constexpr double kStep = 0.5;  // metres
-  const auto found = ground.at(place.x(), place.z(), place.y() + kStep);
+  constexpr double kAbove = 0.5;  // metres
+  const auto found = ground.at(place.x(), place.z(), place.y() + kAbove);
   return found ? found : ground.at(place.x(), place.z());
 }
 
