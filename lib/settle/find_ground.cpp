@@ -52,7 +52,7 @@ Heights Settler::heights(const LocalMotion& motion, const Over& over) const {
       for (std::size_t p = 0; p < points_.size(); ++p) {
         const SupportPoint& point = points_[p];
         const int joint = bodies_[at(point.body)].joint;
-        const double height = over(pose[at(joint)] * point.centre, point.radius);
+        const double height = over(point, pose[at(joint)] * point.centre, static_cast<int>(f));
         heights.of_points[f * points_.size() + p] = height;
         double& lowest = heights.of_bodies[at(point.body) * count + f];
         lowest = std::min(lowest, height);
@@ -97,14 +97,15 @@ double Settler::usual(const Heights& heights, double& spread) const {
   return middle;
 }
 
-GroundFit Settler::fit(const Heights& heights, std::span<const retarget::Touch> touches) const {
+GroundFit Settler::fit(const Heights& on_ground, const Heights& over_rest,
+                       std::span<const retarget::Touch> touches) const {
   GroundFit fit;
   const auto count = at(frames());
-  for (const double height : heights.of_bodies) fit.depth = std::max(fit.depth, -height);
+  for (const double height : on_ground.of_bodies) fit.depth = std::max(fit.depth, -height);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     for (const retarget::Stay& stay : touches[b].stays) {
       for (int f = stay.first; f <= stay.last; ++f) {
-        const double height = heights.of_bodies[b * count + at(f)];
+        const double height = over_rest.of_bodies[b * count + at(f)];
         if (!hangs_.empty() && hangs_[b * count + at(f)] > 0) continue;
         if (std::isfinite(height)) fit.hover = std::max(fit.hover, height);
       }
@@ -113,20 +114,64 @@ GroundFit Settler::fit(const Heights& heights, std::span<const retarget::Touch> 
   return fit;
 }
 
-Status Settler::find_ground() {
-  const auto over_ground = [&](const Vec3& centre, double radius) {
-    return clearance(ground_, centre, radius);
+void Settler::find_steps() {
+  Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (int f = 0; f < frames(); ++f) {
+    const std::vector<Transform> pose = pose_of(source_, f);
+    lies_.push_back(1 - upright(pose));
+    for (const ragdoll::Body& body : bodies_) {
+      const Vec3& place = pose[at(body.joint)].position;
+      low = low.cwiseMin(Vec2(place.x(), place.z()));
+      high = high.cwiseMax(Vec2(place.x(), place.z()));
+    }
+  }
+  rolled_ = std::make_unique<RolledGround>(ground_, low, high);
+  if (!rolled_->has_steps()) rolled_.reset();
+}
+
+double Settler::on_ramp(const SupportPoint& point, int frame) const {
+  if (!rolled_) return 0;
+  const Role role = roles_.roles[at(bodies_[at(point.body)].joint)];
+  return role == Role::left_foot || role == Role::right_foot ? lies_[at(frame)] : 1;
+}
+
+double Settler::over_rest(const SupportPoint& point, const Vec3& place, int frame) const {
+  const double ramp = on_ramp(point, frame);
+  double height = ramp < 1 ? (1 - ramp) * clearance(ground_, place, point.radius) : 0;
+  if (ramp > 0) height += ramp * clearance(*rolled_, place, point.radius);
+  return height;
+}
+
+Vec3 Settler::slope_under(const SupportPoint& point, const Vec3& place, int frame) const {
+  const double ramp = on_ramp(point, frame);
+  const auto slope = [&](const Terrain& ground) {
+    const auto under = surface_at(ground, place);
+    const Vec3 up = under ? under->normal : Vec3(Vec3::UnitY());
+    return Vec3(-up.x() / up.y(), 0, -up.z() / up.y());
   };
-  Heights on_ground = heights(source_, over_ground);
+  Vec3 sum = Vec3::Zero();
+  if (ramp < 1) sum += (1 - ramp) * slope(ground_);
+  if (ramp > 0) sum += ramp * slope(*rolled_);
+  return sum;
+}
+
+Status Settler::find_ground() {
+  find_steps();
+  const auto over_rest = [&](const SupportPoint& point, const Vec3& place, int frame) {
+    return this->over_rest(point, place, frame);
+  };
+  Heights on_ground = heights(source_, over_rest);
   double ground_spread = 0, level_spread = 0;
   const double ground_height = usual(on_ground, ground_spread);
-  for (const double height : on_ground.of_bodies) fit_.depth = std::max(fit_.depth, -height);
-  const auto over_level = [](const Vec3& centre, double radius) { return centre.y() - radius; };
+  const auto over_level = [](const SupportPoint& point, const Vec3& place, int) {
+    return place.y() - point.radius;
+  };
   floor_ = options_.floor.value_or(usual(heights(source_, over_level), level_spread));
-  Heights over_floor = heights(
-      source_, [&](const Vec3& centre, double radius) { return centre.y() - radius - floor_; });
-  fit_ = fit(on_ground, on_ground.touches);
-  const GroundFit on_level = fit(over_floor, over_floor.touches);
+  Heights over_floor = heights(source_, [&](const SupportPoint& point, const Vec3& place, int) {
+    return place.y() - point.radius - floor_;
+  });
+  fit_ = fit(on_ground, on_ground, on_ground.touches);
+  const GroundFit on_level = fit(over_floor, over_floor, over_floor.touches);
   const auto misfit = [](const GroundFit& fit) { return std::max(fit.depth, fit.hover); };
   const auto touching = [](const Heights& over) {  // frames, of all parts
     int sum = 0;
@@ -141,13 +186,13 @@ Status Settler::find_ground() {
                     (misfit(fit_) < kClearly * level_misfit ||
                      (as_much && misfit(fit_) <= level_misfit + kLittle * scale_));
   lies_already_ = follows_ground_ && fit_.depth <= kNear * scale_;
-  if (!follows_ground_) fit_ = fit(on_ground, over_floor.touches);
+  if (!follows_ground_) fit_ = fit(on_ground, on_ground, over_floor.touches);
   set_goals(std::move(follows_ground_ ? on_ground : over_floor));
   // What is under the hips, carried over gaps.
   ground_below_.assign(at(frames()), std::numeric_limits<double>::quiet_NaN());
   for (int f = 0; f < frames(); ++f) {
     const Vec3 hips = source_.at(0, f).position;
-    const auto found = surface_at(ground_, hips);
+    const auto found = surface_at(rolled_ ? static_cast<const Terrain&>(*rolled_) : ground_, hips);
     if (!found) ++without_ground_;
     if (found) ground_below_[at(f)] = follows_ground_ ? 0 : found->height - floor_;
   }

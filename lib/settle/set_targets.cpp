@@ -31,13 +31,11 @@ void Settler::set_targets() {
         const std::size_t i = f * points_.size() + p, b = at(points_[p].body);
         Target& target = targets_[i];
         target.place = source[at(bodies_[b].joint)] * points_[p].centre;
-        const double height = clearance(ground_, target.place, points_[p].radius);
+        const double height = over_rest(points_[p], target.place, static_cast<int>(f));
         if (!(weights_[i] > 1e-3) || !std::isfinite(height)) continue;
         target.weight = weights_[i] * weights_[i];
         target.rise = goals_[i] - height;
-        const auto under = surface_at(ground_, target.place);
-        const Vec3 up = under ? under->normal : Vec3(Vec3::UnitY());
-        target.slope = {-up.x() / up.y(), 0, -up.z() / up.y()};
+        target.slope = slope_under(points_[p], target.place, static_cast<int>(f));
         double& rest = rests[b * count + f];
         if (weights_[i] < 0.3 || rest > target.rise) continue;
         rest = target.rise;

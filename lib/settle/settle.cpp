@@ -104,10 +104,14 @@ Settled Settler::finish() {
     }
     motion = local_motion(hips_root_.rooted(settled.clip));
   }
-  const Heights on_ground = heights(motion, [&](const Vec3& centre, double radius) {
-    return clearance(ground_, centre, radius);
+  const Heights on_ground = heights(motion, [&](const SupportPoint& point, const Vec3& place, int) {
+    return clearance(ground_, place, point.radius);
   });
-  settled.after = fit(on_ground, over_source_.touches);
+  const Heights over_rest =
+      heights(motion, [&](const SupportPoint& point, const Vec3& place, int frame) {
+        return this->over_rest(point, place, frame);
+      });
+  settled.after = fit(on_ground, over_rest, over_source_.touches);
   const auto count = at(frames());
   std::pair<double, std::size_t> deepest = {0, 0}, highest = {0, 0};  // where, [bodies x frames]
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -118,9 +122,9 @@ Settled Settler::finish() {
     for (const retarget::Stay& stay : over_source_.touches[b].stays) {
       SettledTouch touch{bodies_[b].name, stay.first, stay.last, 0, 0};
       for (int f = stay.first; f <= stay.last; ++f) {
-        const double height = on_ground.of_bodies[b * count + at(f)];
+        const double height = over_rest.of_bodies[b * count + at(f)];
         if (!std::isfinite(height)) continue;
-        touch.depth = std::max(touch.depth, -height);
+        touch.depth = std::max(touch.depth, -on_ground.of_bodies[b * count + at(f)]);
         if (!hangs_.empty() && hangs_[b * count + at(f)] > 0) continue;
         touch.hover = std::max(touch.hover, height);
         if (height > highest.first) highest = {height, b * count + at(f)};

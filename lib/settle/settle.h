@@ -60,10 +60,11 @@ struct Settled {
 // with second differences of the change as a part of the error. Knees and elbows turn about their
 // usual axes, and do not bend backwards. Bones keep their lengths.
 //
-// A part that rests on an edge may stand out over what is lower. Stairs whose steps are smaller
-// than what lies across them are not met to millimetres: the warnings give depth and hover. Points
-// over no ground are free; if there is no ground under the hips in any frame the result is an
-// error.
+// Where the ground has steps, what lies rests on a ramp over their edges, as a ball rolls over
+// them; the feet of an upright body stand on the treads, and may stand out over an edge. On stairs
+// as steep as in houses some parts stay off by centimetres: the warnings give depth and hover.
+// Points over no ground are free; if there is no ground under the hips in any frame the result is
+// an error.
 //
 // A motion that touches `ground` as much and as closely as it does a level floor, with no part
 // deeper than 10 mm, is returned as it is: settling twice is settling once.

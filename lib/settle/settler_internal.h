@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"
 #include "retarget/touches.h"
+#include "settle/rolled_ground_internal.h"
 #include "settle/settle.h"
 #include "settle/smooth_system_internal.h"
 #include "settle/support_points_internal.h"
@@ -64,7 +66,8 @@ class Settler {
   bool lies_already() const { return lies_already_; }
 
  private:
-  using Over = std::function<double(const Vec3& centre, double radius)>;
+  // The height of a point, at a place in a frame, over what counts as the ground.
+  using Over = std::function<double(const SupportPoint& point, const Vec3& place, int frame)>;
   using Values = std::vector<Eigen::VectorXd>;  // [frames]: shift of the hips, turns of freedoms
 
   int frames() const { return source_.frames; }
@@ -73,8 +76,14 @@ class Settler {
   // `over` gives the height of a sphere over what counts as the ground.
   Heights heights(const LocalMotion& motion, const Over& over) const;
   double usual(const Heights& heights, double& spread) const;
-  GroundFit fit(const Heights& heights, std::span<const retarget::Touch> touches) const;
+  GroundFit fit(const Heights& on_ground, const Heights& over_rest,
+                std::span<const retarget::Touch> touches) const;
   double upright(std::span<const Transform> pose) const;
+  // Over what a part rests on: steps are a ramp, but for the feet of who is upright.
+  double over_rest(const SupportPoint& point, const Vec3& place, int frame) const;
+  Vec3 slope_under(const SupportPoint& point, const Vec3& place, int frame) const;
+  double on_ramp(const SupportPoint& point, int frame) const;  // 0 to 1
+  void find_steps();
   void set_goals(Heights source);
   std::vector<Transform> pose_of(const LocalMotion& motion, int frame) const;
   LocalMotion moved() const;
@@ -109,6 +118,8 @@ class Settler {
   std::vector<int> parents_;
   double scale_ = 1;  // of a person of 1.75 m
 
+  std::unique_ptr<RolledGround> rolled_;  // where there are steps
+  std::vector<double> lies_;              // [frames], 1: the trunk lies, 0: it is upright
   double floor_ = 0;
   bool follows_ground_ = false, lies_already_ = false;
   int without_ground_ = 0;            // frames

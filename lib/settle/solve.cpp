@@ -285,7 +285,7 @@ void Settler::correct_targets(int first, int last) {
         double lowest = std::numeric_limits<double>::infinity();
         for (std::size_t p = from; p < to; ++p) {
           const Vec3 place = pose[at(bodies_[b].joint)] * points_[p].centre;
-          heights[p] = clearance(ground_, place, points_[p].radius);
+          heights[p] = over_rest(points_[p], place, static_cast<int>(f));
           lowest = std::min(lowest, heights[p]);
         }
         for (std::size_t p = from; p < to; ++p) {

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "terrain/terrain.h"
+
+namespace krok::settling {
+
+// The ground as a ball of 1.5 m radius rolls over it: what lies across stairs rests on a ramp over
+// the edges of the steps (morphological closing). Nowhere below the ground.
+class RolledGround final : public Terrain {
+ public:
+  // Over a rectangle on the ground (x, z); beyond it the ground is as it is. `ground` must outlive
+  // this.
+  RolledGround(const Terrain& ground, const Vec2& low, const Vec2& high);
+
+  // Whether there are steps: heights that differ by more than 5 cm from one place to the next.
+  bool has_steps() const { return has_steps_; }
+
+  std::optional<GroundPoint> at(double x, double z, double below) const override;
+
+ private:
+  double& cell(std::vector<double>& cells, int column, int row) const {
+    return cells[static_cast<std::size_t>(row * columns_ + column)];
+  }
+  double height(double column, double row) const;  // NaN where there is none
+
+  const Terrain& ground_;
+  Vec2 low_;
+  double size_ = 0.04;  // of a cell, metres
+  int columns_ = 0, rows_ = 0;
+  std::vector<double> heights_;  // [rows x columns], NaN where there is no ground
+  bool has_steps_ = false;
+};
+
+}  // namespace krok::settling
