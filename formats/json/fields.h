@@ -88,7 +88,8 @@ Kind<T> kind(std::string schema, Read read) {
 }
 
 Kind<std::string> text();
-Kind<std::string> plain_text(std::size_t most, std::string_view wrong, std::string hint = {});
+Kind<std::string> plain_text(std::size_t most, std::string_view wrong,
+                             const std::string& hint = {});
 // One that is_name() accepts, of what the object describes.
 Kind<std::string> name();
 Kind<bool> boolean();
@@ -97,7 +98,7 @@ Kind<double> number(double least, double most);
 Kind<double> positive();
 Kind<float> single(double least, double most);
 // An integer; `expected` is for the message about others.
-Kind<int> whole(double least, double most, std::string expected);
+Kind<int> whole(double least, double most, const std::string& expected);
 // Frames per second; checked_rate() with the message of check_frame_rate().
 Kind<double> frame_rate();
 Kind<double> checked_rate();

@@ -86,7 +86,7 @@ void Settler::set_targets() {
     for (std::size_t f = 0; f < count; ++f) {
       if (std::isnan(own[f])) continue;
       const double stands = 1 - std::min(1.0, over_source_.touches[b].weight[f]);
-      const Target rest = rest_of(b, f);
+      const Target& rest = rest_of(b, f);
       for (std::size_t p = points_of_[b].first; p < points_of_[b].second; ++p) {
         Target& target = targets_[f * points_.size() + p];
         const double plane = own[f] + rest.slope.dot(target.place - rest.place);

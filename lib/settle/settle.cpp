@@ -70,7 +70,7 @@ double Settler::jerk_of(const LocalMotion& motion) const {
   std::vector<double> jerks;
   std::array<std::vector<Transform>, 4> poses;
   for (int f = 0; f < frames(); ++f) {
-    std::ranges::rotate(poses, poses.begin() + 1);
+    std::rotate(poses.begin(), poses.begin() + 1, poses.end());
     poses[3] = pose_of(motion, f);
     if (f < 3) continue;
     for (const ragdoll::Body& body : bodies_) {

@@ -73,8 +73,7 @@ void add_vertices(const std::vector<ragdoll::Body>& bodies, const Model& model,
       outermost.push_back(static_cast<std::size_t>(found - places[b].begin()));
     }
     std::ranges::sort(outermost);
-    const auto repeated = std::ranges::unique(outermost);
-    outermost.erase(repeated.begin(), repeated.end());
+    outermost.erase(std::unique(outermost.begin(), outermost.end()), outermost.end());
     for (const std::size_t v : outermost) points.push_back({static_cast<int>(b), places[b][v], 0});
   }
 }

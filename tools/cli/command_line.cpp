@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <memory>
-#include <ranges>
 #include <string>
 #include <string_view>
 
@@ -458,8 +458,8 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
              app_.get_option_no_throw(now) != nullptr;
     };
     // A tool's own rows come after those of any.
-    const auto rows = std::views::reverse(kRenamedOptions);
-    if (const auto row = std::ranges::find_if(rows, is_now); row != rows.end()) {
+    const auto none = std::rend(kRenamedOptions);
+    if (const auto row = std::find_if(std::rbegin(kRenamedOptions), none, is_now); row != none) {
       return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
     }
     const std::string near = is_long ? nearest_name(name, names) : std::string();
