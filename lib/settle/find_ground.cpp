@@ -73,8 +73,8 @@ Heights Settler::heights(const LocalMotion& motion, const Over& over) const {
   return heights;
 }
 
-// The median height of the lowest part where it hardly rises or falls, and how much that varies.
-double Settler::usual(const Heights& heights, double& spread) const {
+// The median height of the lowest part where it hardly rises or falls.
+double Settler::usual(const Heights& heights) const {
   const auto count = at(frames());
   std::vector<double> lowest(count, std::numeric_limits<double>::infinity()), still;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -91,10 +91,7 @@ double Settler::usual(const Heights& heights, double& spread) const {
                          [](double h) { return std::isfinite(h); });
   }
   if (still.empty()) return std::numeric_limits<double>::infinity();
-  const double middle = median(still);
-  for (double& height : still) height = std::abs(height - middle);
-  spread = median(still);
-  return middle;
+  return median(std::move(still));
 }
 
 GroundFit Settler::fit(const Heights& on_ground, const Heights& over_rest,
@@ -161,12 +158,11 @@ Status Settler::find_ground() {
     return this->over_rest(point, place, frame);
   };
   Heights on_ground = heights(source_, over_rest);
-  double ground_spread = 0, level_spread = 0;
-  const double ground_height = usual(on_ground, ground_spread);
+  const double ground_height = usual(on_ground);
   const auto over_level = [](const SupportPoint& point, const Vec3& place, int) {
     return place.y() - point.radius;
   };
-  floor_ = options_.floor.value_or(usual(heights(source_, over_level), level_spread));
+  floor_ = options_.floor.value_or(usual(heights(source_, over_level)));
   Heights over_floor = heights(source_, [&](const SupportPoint& point, const Vec3& place, int) {
     return place.y() - point.radius - floor_;
   });

@@ -8,7 +8,7 @@ namespace krok::settling {
 
 namespace {
 
-constexpr double kBall = 1.5, kReach = 1.2, kJump = 0.05;  // metres
+constexpr double kBall = 1.5, kReach = 1.2, kJump = 1.25;  // metres; rise over run
 constexpr double kCells = 200000;                          // at most, or larger ones
 
 }  // namespace
@@ -27,7 +27,7 @@ RolledGround::RolledGround(const Terrain& ground, const Vec2& low, const Vec2& h
       if (!found) continue;
       double& own = cell(heights_, c, r);
       own = found->height;
-      const auto differs = [&](double other) { return std::abs(other - own) > kJump; };
+      const auto differs = [&](double other) { return std::abs(other - own) > kJump * size_; };
       has_steps_ |= (c > 0 && differs(cell(heights_, c - 1, r))) ||
                     (r > 0 && differs(cell(heights_, c, r - 1)));
     }
@@ -35,6 +35,13 @@ RolledGround::RolledGround(const Terrain& ground, const Vec2& low, const Vec2& h
   if (!has_steps_) return;
   // The lowest that the ball's centre can be over each place, and then its underside.
   const int reach = static_cast<int>(kReach / size_);
+  const int across = 2 * reach + 1;
+  std::vector<double> ball;  // [across x across], its surface below the centre; NaN beyond
+  for (int i = 0; i < across * across; ++i) {
+    const double x = size_ * (i % across - reach), y = size_ * (i / across - reach);
+    const double square = x * x + y * y;
+    ball.push_back(square > kReach * kReach ? kNone : std::sqrt(kBall * kBall - square));
+  }
   std::vector<double> centres(heights_.size(), kNone);
   const auto roll = [&](std::vector<double>& from, std::vector<double>& to, double sign) {
     for (int r = 0; r < rows_; ++r) {
@@ -42,9 +49,8 @@ RolledGround::RolledGround(const Terrain& ground, const Vec2& low, const Vec2& h
         double best = kNone;
         for (int y = std::max(0, r - reach); y <= std::min(rows_ - 1, r + reach); ++y) {
           for (int x = std::max(0, c - reach); x <= std::min(columns_ - 1, c + reach); ++x) {
-            const double square = size_ * size_ * ((x - c) * (x - c) + (y - r) * (y - r));
-            if (square > kReach * kReach) continue;
-            const double value = cell(from, x, y) + sign * std::sqrt(kBall * kBall - square);
+            const int at_ball = (y - r + reach) * across + x - c + reach;
+            const double value = cell(from, x, y) + sign * ball[static_cast<std::size_t>(at_ball)];
             if (!std::isnan(value) && !(sign * best >= sign * value)) best = value;
           }
         }

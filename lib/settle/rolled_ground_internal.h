@@ -14,7 +14,8 @@ class RolledGround final : public Terrain {
   // this.
   RolledGround(const Terrain& ground, const Vec2& low, const Vec2& high);
 
-  // Whether there are steps: heights that differ by more than 5 cm from one place to the next.
+  // Whether there are steps: heights that differ by more than 1.25 of the way from one place to the
+  // next (51 degrees).
   bool has_steps() const { return has_steps_; }
 
   std::optional<GroundPoint> at(double x, double z, double below) const override;

@@ -85,7 +85,7 @@ void Settler::set_targets() {
     const auto soft = mean_within(mean_within(max_within(steps, 2 * reach), reach), reach);
     for (std::size_t f = 0; f < count; ++f) {
       if (std::isnan(own[f])) continue;
-      const double stands = 1 - std::min(1.0, over_source_.touches[b].weight[f]);
+      const double moves = 1 - std::min(1.0, over_source_.touches[b].weight[f]);
       const Target& rest = rest_of(b, f);
       for (std::size_t p = points_of_[b].first; p < points_of_[b].second; ++p) {
         Target& target = targets_[f * points_.size() + p];
@@ -93,7 +93,7 @@ void Settler::set_targets() {
         const double hangs =
             std::max(0.0, plane + hangs_[b * count + f] - target.rise) / (kOverhang * scale_);
         target.weight /= (1 + hangs * hangs) * (1 + hangs * hangs);
-        target.rise += stands * (soft[f] - steps[f]);
+        target.rise += moves * (soft[f] - steps[f]);
       }
     }
   }

@@ -75,7 +75,7 @@ class Settler {
 
   // `over` gives the height of a sphere over what counts as the ground.
   Heights heights(const LocalMotion& motion, const Over& over) const;
-  double usual(const Heights& heights, double& spread) const;
+  double usual(const Heights& heights) const;
   GroundFit fit(const Heights& on_ground, const Heights& over_rest,
                 std::span<const retarget::Touch> touches) const;
   double upright(std::span<const Transform> pose) const;

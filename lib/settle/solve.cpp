@@ -24,10 +24,10 @@ constexpr double kYaw = one_at(0.05), kTilt = one_at(0.3), kUpright = 60;       
 constexpr double kTrunk = one_at(0.2), kLimb = one_at(0.3), kEnd = one_at(0.5);  // radians
 constexpr double kHinge = one_at(0.5), kAcross = 30;
 constexpr double kShiftBend = one_at(10), kTurnBend = one_at(40);  // metres, radians per second^2
-constexpr double kStraight = 0.02;   // radians that knees stay bent, as far as they are
-constexpr double kMostDepth = 0.03;  // metres: deeper is beside a step
-constexpr double kBeyond = 1.3;      // a correction is partly lost to what it disagrees with
-constexpr double kInGround = 8;      // weight of a point that came into the ground
+constexpr double kStraight = 0.02;  // radians that knees stay bent, as far as they are
+constexpr double kMaxDepth = 0.03;  // metres: deeper is beside a step
+constexpr double kBeyond = 1.3;     // a correction is partly lost to what it disagrees with
+constexpr double kInGround = 8;     // weight of a point that came into the ground
 constexpr int kPasses = 8, kRounds = 16;
 constexpr double kGain = 1e-4;                // share of the errors that a round must take away
 constexpr double kDone = 2e-4;                // metres or radians
@@ -292,7 +292,7 @@ void Settler::correct_targets(int first, int last) {
           double lower =
               touches(b, f) && !(hangs_[b * at(frames()) + f] > 0) ? std::max(0.0, lowest) : 0;
           if (heights[p] < 0) {
-            lower = std::max(heights[p], -kMostDepth);
+            lower = std::max(heights[p], -kMaxDepth);
           } else if (lower == 0 || heights[p] > lowest + kTolerated) {
             continue;
           }

@@ -72,7 +72,7 @@ void add_size(const Eigen::AlignedBox3d& box, const std::string& measured, Descr
                        readable(box.max()[axis] + 0.0, 4));
   };
   const auto level = [](const Vec3& point) { return Vec3(point.x(), 0, point.z()); };
-  // What stands elsewhere than above the origin is met by surprise when it is placed.
+  // A reference pose away from the origin comes out elsewhere than where it is placed.
   const double away = level(box.center()).norm();
   const bool elsewhere = away > std::max(0.5, level(size).norm());
   out.add("extent",
