@@ -24,7 +24,9 @@ TEST(RolledGround, IsARampOverStairsAndNowhereBelowThem) {
     // The line through the edges: a rise before each run.
     const double edges = 0.17 * ((z + 4) / 0.29 + 1);
     EXPECT_NEAR(height, edges, 0.05) << z;
-    if (i > 0) EXPECT_LT(std::abs(height - before), 0.03) << z;
+    if (i > 0) {
+      EXPECT_LT(std::abs(height - before), 0.03) << z;
+    }
     before = height;
   }
 }
