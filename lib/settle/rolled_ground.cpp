@@ -37,10 +37,11 @@ RolledGround::RolledGround(const Terrain& ground, const Vec2& low, const Vec2& h
   const int reach = static_cast<int>(kReach / size_);
   const int across = 2 * reach + 1;
   std::vector<double> ball;  // [across x across], its surface below the centre; NaN beyond
-  for (int i = 0; i < across * across; ++i) {
-    const double x = size_ * (i % across - reach), y = size_ * (i / across - reach);
-    const double square = x * x + y * y;
-    ball.push_back(square > kReach * kReach ? kNone : std::sqrt(kBall * kBall - square));
+  for (int y = -reach; y <= reach; ++y) {
+    for (int x = -reach; x <= reach; ++x) {
+      const double square = size_ * size_ * (x * x + y * y);
+      ball.push_back(square > kReach * kReach ? kNone : std::sqrt(kBall * kBall - square));
+    }
   }
   std::vector<double> centres(heights_.size(), kNone);
   const auto roll = [&](std::vector<double>& from, std::vector<double>& to, double sign) {
