@@ -1,5 +1,6 @@
 #include "math/window.h"
 
+#include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -61,25 +62,26 @@ std::vector<double> mean_within(std::span<const double> values, int reach) {
 }
 
 Vec3 median_point(std::span<const Vec3> points) {
-  Vec3 center = Vec3::Zero();
-  if (points.empty()) return center;
-  for (const Vec3& point : points) center += point;
-  center /= static_cast<double>(points.size());
+  if (points.empty()) return Vec3::Zero();
+  // A row for each axis, as wide operations want them.
+  const Eigen::Array<double, Eigen::Dynamic, 3> all =
+      Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3,
+                                         static_cast<Eigen::Index>(points.size()))
+          .transpose();
+  Eigen::Array<double, Eigen::Dynamic, 3> off(all.rows(), 3), cubed(all.rows(), 3);
+  Eigen::ArrayXd weights(all.rows());
+  Vec3 center = all.colwise().mean();
   double last = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kRounds; ++round) {
-    Vec3 sum = Vec3::Zero();
-    double weights = 0;
-    Mat3 across = Mat3::Zero();
-    for (const Vec3& point : points) {
-      const Vec3 off = point - center;
-      const double weight = 1 / std::sqrt(off.squaredNorm() + kTogether * kTogether);
-      sum += weight * off;
-      weights += weight;
-      across += weight * weight * weight * off * off.transpose();
-    }
-    Vec3 step = sum / weights;  // Weiszfeld's
+    off = all.rowwise() - center.transpose().array();
+    weights = (off.square().rowwise().sum() + kTogether * kTogether).rsqrt();
+    const Vec3 sum = off.matrix().transpose() * weights.matrix();
+    const double total = weights.sum();
+    cubed = off.colwise() * weights.cube();
+    const Mat3 across = cubed.matrix().transpose().lazyProduct(off.matrix());
+    Vec3 step = sum / total;  // Weiszfeld's
     // Newton's near the end, while it converges.
-    const Vec3 newton = (weights * Mat3::Identity() - across).inverse() * sum;
+    const Vec3 newton = (total * Mat3::Identity() - across).inverse() * sum;
     if (step.norm() < kNear && newton.norm() < std::min(last, kMaxNewton * step.norm())) {
       step = newton;
     }
