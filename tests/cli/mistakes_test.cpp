@@ -33,6 +33,16 @@ TEST_F(Mistakes, UnknownOptionsGetTheNearestName) {
               HasSubstr("did you mean 'rig'?"));
 }
 
+// Would fail if an option took the next one for its value, and what is left got the blame.
+TEST_F(Mistakes, OptionsWithoutTheirValue) {
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--from", "--to", "2s", "-o", "a.anim"}),
+              AllOf(HasSubstr("--from has no value"), HasSubstr("write --from TIME")));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--ground", "-o", "a.anim"}),
+              HasSubstr("'-o' is the next option"));
+  // Numbers below zero are values.
+  EXPECT_EQ(run_here("krok-edit", {"in.bvh", "--heading", "-90deg", "-o", "a.anim"}).exit_code, 0);
+}
+
 TEST_F(Mistakes, UnknownJointsToo) {
   EXPECT_THAT(refused("krok-plot", {"in.bvh", "--joint", "Spin", "-o", "a.svg"}),
               HasSubstr("did you mean 'Spine'?"));

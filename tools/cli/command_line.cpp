@@ -372,6 +372,7 @@ Status CommandLine::open_folders() {
 Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arguments) {
   given_.clear();
   fixed_positionals.clear();
+  if (auto bare = option_without_value(arguments)) return *std::move(bare);
   try {
     app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
@@ -435,6 +436,22 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     if (Status status = options_.check_conditions(); !status) return status.error();
   }
   return Wish::run;
+}
+
+// The first option whose value would be the option after it: "--size -o x.png".
+std::optional<Error> CommandLine::option_without_value(
+    const std::vector<std::string>& arguments) const {
+  for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i] != "--"; ++i) {
+    const std::string& next = arguments[i + 1];
+    if (!arguments[i].starts_with('-') || !next.starts_with('-') || next == "-") continue;
+    const CLI::Option* option = app_.get_option_no_throw(arguments[i]);
+    if (option == nullptr || option->get_items_expected_min() < 1) continue;
+    if (app_.get_option_no_throw(next.substr(0, next.find('='))) == nullptr) continue;
+    return usage(fmt::format("{} has no value", arguments[i]),
+                 fmt::format("write {} {}; '{}' is the next option", arguments[i],
+                             option->get_type_name(), next));
+  }
+  return std::nullopt;
 }
 
 // The first word before "--" that looks like an option and is none.

@@ -71,7 +71,7 @@ std::string hint_for(const std::string& verb) {
        "krok import reads captures and characters, krok export writes BVH, glTF and tables"},
       {" compare cmp test regress ", "krok diff compares files and folders"},
       {" sheet contact-sheet strip thumbnails ", "krok plot IN... --sheet OUT.png"},
-      {" gait table events steps contacts ",
+      {" gait table events steps contacts stats statistics ",
        "krok keys FOLDER --table OUT.csv, or -o OUT.csv for events"},
       {" angles chart charts graph curves ",
        "krok plot IN... --show angles, or cycles for mean and deviation; krok export IN --what "
@@ -79,6 +79,7 @@ std::string hint_for(const std::string& verb) {
       {" film movie video gif ", "krok render IN"},
       {" show open watch viewer play page ", "krok view IN"},
       {" check validate verify qa ", "krok lint IN..."},
+      {" batch folder ", "most verbs take folders and patterns; see krok VERB --help"},
       {" trim cut crop clip resample filter smooth mirror loop clean scale rotate ",
        "krok edit IN with an option; see krok edit --help"},
       {" plant unskate skate ", "krok edit IN --plant -o OUT.anim"},
