@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/index.h"
 #include "math/euler.h"
@@ -23,9 +24,9 @@ namespace krok::ragdoll {
 namespace {
 
 constexpr double kOverlap = 0.5;         // seconds in which the motion begins, at most
-constexpr double kShortest = 0.35;       // seconds of the way there
-constexpr double kLongestWay = 4;        // seconds
-constexpr double kHelps = 0.95;          // of the acceleration of the try before
+constexpr double kShortest = 0.65;       // seconds of the way there
+constexpr double kLongestWay = 1.4;      // seconds
+constexpr double kHelps = 0.85;          // of the acceleration of the try before
 constexpr double kTooDeep = 0.3;         // metres in the ground
 constexpr double kTravel = 0.6;          // metres/s of the root, at most
 constexpr double kQuinticPeak = 5.7735;  // of its acceleration, for a way and time of 1
@@ -118,11 +119,11 @@ std::vector<Transform> pose_of(const Clip& clip, int frame) {
   return pose;
 }
 
-// Angular accelerations of the first `joints` relative to their parents, of frames [begin, end).
-std::vector<double> accelerations(const LocalMotion& motion, int joints, int begin, int end,
-                                  double rate) {
+// Angular accelerations of `joints` relative to their parents, of frames [begin, end).
+std::vector<double> accelerations(const LocalMotion& motion, std::span<const int> joints, int begin,
+                                  int end, double rate) {
   std::vector<double> found;
-  for (int j = 0; j < joints; ++j) {
+  for (const int j : joints) {
     const auto turns = motion.joint_orientations(j);
     const auto step = [&](int f) {
       return rotation_vector(turns[at(f)].conjugate() * turns[at(f + 1)]);
@@ -240,28 +241,35 @@ LocalMotion Riser::way(int frames, int overlap) const {
 
 void Riser::run(RisenClip& risen) {
   const double rate = fall_.rate;
-  const double typical = percentile_99(accelerations(local_, joints_, 0, local_.frames, rate));
+  // Of joints with bodies: fingers and end sites that keep still are no measure.
+  std::vector<int> bodied, all(at(joints_));
+  for (const Body& body : bodies_) bodied.push_back(body.joint);
+  std::iota(all.begin(), all.end(), 0);
+  const double typical = percentile_99(accelerations(local_, bodied, 0, local_.frames, rate));
   // A motion that stands still gives no measure.
   risen.motion_acceleration = std::max(typical, 1.0);
   limit_ = options_.max_acceleration * risen.motion_acceleration;
   double duration = first_duration();
   LocalMotion motion;
   int frames = 0;
-  double before = std::numeric_limits<double>::infinity();
+  risen.acceleration = std::numeric_limits<double>::infinity();
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    frames = std::max(2, static_cast<int>(std::ceil(duration * rate)));
-    int overlap = std::min(static_cast<int>(kOverlap * rate), frames / 2);
+    const int longer = std::max(2, static_cast<int>(std::ceil(duration * rate)));
+    int overlap = std::min(static_cast<int>(kOverlap * rate), longer / 2);
     overlap = std::min(overlap, local_.frames - 1);
     overlap -= overlap % 2;
-    motion = way(frames, overlap);
-    clear_ground(fall_.skeleton, bodies_, options_.ground, 0, rate, 0.08 * duration + 0.05, motion);
-    const auto found = accelerations(motion, joints_, 0, frames + 1, rate);
-    risen.acceleration = found.empty() ? 0 : *std::ranges::max_element(found);
+    LocalMotion tried = way(longer, overlap);
+    clear_ground(fall_.skeleton, bodies_, options_.ground, 0, rate, 0.08 * duration + 0.1, tried);
+    const auto found = accelerations(tried, all, 0, longer + 1, rate);
+    const double largest = found.empty() ? 0 : *std::ranges::max_element(found);
     // Accelerations fall with the square of the time, but for those that the motion begins with.
-    const bool helps = risen.acceleration < kHelps * before;
-    if (risen.acceleration <= limit_ || duration > kLongestWay || !helps) break;
-    before = risen.acceleration;
-    duration *= std::clamp(std::sqrt(risen.acceleration / limit_), 1.08, 1.4);
+    if (largest <= kHelps * risen.acceleration) {
+      risen.acceleration = largest;
+      motion = std::move(tried);
+      frames = longer;
+    }
+    if (largest <= limit_ || duration >= kLongestWay) break;
+    duration = std::min(kLongestWay, duration * std::clamp(std::sqrt(largest / limit_), 1.08, 1.4));
   }
   risen.first_frame = frame_;
   risen.handover = frame_ + frames;

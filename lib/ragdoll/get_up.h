@@ -36,7 +36,7 @@ struct RisenClip {
   RiseChoice choice;
   std::vector<RiseChoice> tried;  // the best of each motion
   // Radians/s^2: the largest angular acceleration of a joint relative to its parent on the way to
-  // the motion, and the motion's 99th percentile.
+  // the motion, and the motion's 99th percentile among joints with bodies.
   double acceleration = 0, motion_acceleration = 0;
   double depth = 0;  // metres: the deepest that a body is in the ground from `first_frame` on
 };
@@ -53,7 +53,8 @@ Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
 // remaining difference is removed joint by joint along a quintic in time (the smoothest way from
 // rest to rest, Flash and Hogan 1985), while the motion begins slowly, so that neither speeds nor
 // accelerations jump. How long that takes follows from how far it is and how fast the motion moves,
-// 5.6 s at most. Bodies that come into the ground are lifted out of it (clear_ground()).
+// 1.4 s at most: people who get up do not wait for their slowest joint. Bodies that come into the
+// ground are lifted out of it (clear_ground()).
 //
 // Poses are summed with the root at the hips (HipsRoot), so that a root above them does not matter.
 //

@@ -19,6 +19,7 @@ constexpr double kLying = 0.5;  // seconds from rest to where all is still
 // Tolerances: radians, metres, and a share of the motion's acceleration.
 constexpr double kMaxExcess = 1 * kRadiansPerDegree, kMaxPenetration = 0.005;
 constexpr double kMaxAcceleration = 1.5, kMaxDepth = 0.01;
+constexpr double kMaxOff = 5 * kRadiansPerDegree;
 
 Json json_of(const krok::ragdoll::WorldMeasures& of) {
   return Json{{"joint_gap", of.joint_gap},
@@ -43,6 +44,11 @@ Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOption
   Fallen fallen;
   fallen.clip = std::move(fall->clip);
   fallen.fall = std::move(*fall);
+  const auto is_full = [](const krok::ragdoll::Body& body) {
+    return body.parent < 0 || body.strength >= 1 || body.mode == krok::ragdoll::BodyMode::animated;
+  };
+  fallen.undisturbed =
+      fallen.fall.follows && options.pushes.empty() && std::ranges::all_of(subject.bodies, is_full);
   if (subject.rises.empty()) return fallen;
   if (fallen.fall.rest < 0) {
     return Error("ragdoll-moving", "the body does not come to rest, so that it cannot get up",
@@ -84,6 +90,15 @@ std::vector<Error> faults_of(const Fallen& fallen) {
                         fmt::format("a body is {:.1f} mm in the ground (5 are tolerated)",
                                     fall.largest.penetration * 1e3),
                         "a weaker push, or ground without edges that are sharp or thin");
+  }
+  if (fallen.undisturbed && fall.mean_off > kMaxOff) {
+    faults.emplace_back(
+        "ragdoll-off-motion",
+        fmt::format("the motion is followed {:.1f} degrees off (RMS; 5 are "
+                    "tolerated), {:.0f} at most",
+                    fall.mean_off / kRadiansPerDegree, fall.largest_off / kRadiansPerDegree),
+        "feet in the ground hold legs back: --hold 0.5 gives way, krok-edit "
+        "--settle lifts them; --at after a rest frame");
   }
   if (!fallen.risen) return faults;
   const krok::ragdoll::RisenClip& risen = *fallen.risen;

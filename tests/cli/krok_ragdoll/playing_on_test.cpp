@@ -42,6 +42,15 @@ TEST_F(PlayingOn, ASeedWithoutPushesIsRefused) {
   EXPECT_THAT(run.err, HasSubstr("--push-every"));
 }
 
+// A walk 5 cm in the ground with its hips held: legs cannot do both.
+TEST_F(PlayingOn, FollowsOrWarns) {
+  EXPECT_TRUE(report({"--powered", "1", "--hold", "1"})["issues"].empty());
+  const json sunk = report({"--powered", "1", "--hold", "1", "--ground", "level:height=5cm"});
+  EXPECT_GT(sunk["result"]["off_motion"]["mean_angle"].get<double>(), 5);
+  ASSERT_EQ(sunk["issues"].size(), 1U) << sunk["issues"];
+  EXPECT_EQ(sunk["issues"][0]["code"], "ragdoll-off-motion");
+}
+
 // The one line of the manual: pushed at 2 s and 4 s, to opposite sides, visibly; walks on to the
 // motion's end, and there is no warning that he does not lie still.
 TEST_F(PlayingOn, AWalkerIsPushedAndWalksOn) {
