@@ -209,6 +209,7 @@ struct File {
       return Status();
     });
     example.field("name", &ExampleEntry::name, text());
+    example.field("style", &ExampleEntry::style, text(), "a person, a mood");
     example.field("clip", &ExampleEntry::clip, text(), "a path").required();
     example.field(
         "steps", &ExampleEntry::automatic,

@@ -48,6 +48,7 @@ struct KeytimeEntry {
 struct ExampleEntry {
   std::string name;                    // for users; empty: that of the clip
   std::string clip;                    // a path, may have wildcards
+  std::string style;                   // a person, a mood; empty: not known
   bool automatic = false;              // detect steps in it; otherwise it is one example
   std::optional<ClipTime> from, to;    // the part to use
   std::string keys;                    // path of its keytimes; empty: its sidecar, or detected

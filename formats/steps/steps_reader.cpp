@@ -136,6 +136,12 @@ Status read_examples(const ContainerReader& container, const Info& info, Library
   if (!status) return status;
   auto names = read_texts(container, "EXNAMES", info.examples);
   if (!names) return names.error();
+  std::vector<std::string> styles(info.examples);
+  if (container.find("EXSTYLES")) {
+    auto texts = read_texts(container, "EXSTYLES", info.examples);
+    if (!texts) return texts.error();
+    styles = *std::move(texts);
+  }
   const OrientationEncoding encoding = orientation_encoding(container);
   const std::size_t size = transform_size(encoding);
   const auto frames = container.section("FRAMES", totals->frames * info.joints, size);
@@ -144,6 +150,7 @@ Status read_examples(const ContainerReader& container, const Info& info, Library
   for (std::size_t i = 0; i < records.size(); ++i) {
     Example& example = library.examples.emplace_back();
     example.name = std::move((*names)[i]);
+    example.style = std::move(styles[i]);
     example.mirrored = (records[i].flags & kMirrored) != 0;
     const auto part = [i](const std::vector<double>& all, std::size_t count) {
       const auto from = all.begin() + static_cast<std::ptrdiff_t>(i * count);

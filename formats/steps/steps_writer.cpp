@@ -70,10 +70,14 @@ Status write_frames(const Library& library, OrientationEncoding encoding,
   return {};
 }
 
+bool has_styles(const Library& library) {
+  return !std::ranges::all_of(library.examples, &std::string::empty, &Example::style);
+}
+
 Status write_examples(const Library& library, OrientationEncoding encoding,
                       ContainerWriter& container) {
   std::vector<ExampleRecord> records;
-  std::vector<std::string> names;
+  std::vector<std::string> names, styles;
   std::vector<double> keytimes, measured;
   std::vector<ContactRecord> contacts;
   for (const Example& example : library.examples) {
@@ -81,6 +85,7 @@ Status write_examples(const Library& library, OrientationEncoding encoding,
         {example.motion.rate, static_cast<std::uint32_t>(example.motion.frame_count()),
          static_cast<std::uint32_t>(example.contacts.size()), example.mirrored ? kMirrored : 0, 0});
     names.push_back(example.name);
+    styles.push_back(example.style);
     keytimes.insert(keytimes.end(), example.keytimes.begin(), example.keytimes.end());
     measured.insert(measured.end(), example.parameters.begin(), example.parameters.end());
     for (const Contact& contact : example.contacts) {
@@ -89,6 +94,7 @@ Status write_examples(const Library& library, OrientationEncoding encoding,
   }
   Status status = container.section("EXAMPLES", bytes_of(records));
   if (status) status = write_texts("EXNAMES", names, container);
+  if (status && has_styles(library)) status = write_texts("EXSTYLES", styles, container);
   if (status) status = container.section("KEYTIMES", bytes_of(keytimes));
   if (status) status = container.section("MEASURED", bytes_of(measured));
   if (status) status = container.section("CONTACTS", bytes_of(contacts));
@@ -148,9 +154,12 @@ Status check(const StepsFile& steps) {
                     kMaxExamples, kMaxKeytimes, kMaxParameters));
   }
   std::vector<std::string> names = library.keytimes;
-  for (const Example& example : library.examples) names.push_back(example.name);
+  for (const Example& example : library.examples) {
+    names.push_back(example.name);
+    names.push_back(example.style);
+  }
   if (!all_storable(names)) {
-    return shape("the name of an example or keytime is not valid UTF-8 or has a zero byte");
+    return shape("the name of an example, style or keytime is not valid UTF-8 or has a zero byte");
   }
   if (steps.weights) {
     if (Status status = steps.weights->check(); !status) return status;
@@ -178,6 +187,7 @@ Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& fi
   std::size_t sections = 12 + kSkeletonSections;
   const std::vector<std::string> roles = roles_in(library);
   if (!roles.empty()) ++sections;
+  if (has_styles(library)) ++sections;
   if (steps.weights) sections += weight_sections(*steps.weights);
   ContainerWriter container(file, kStepsFormat, orientation_flags(options.orientation), sections);
   Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -18,7 +19,8 @@ namespace krok::gait {
 struct PlannedStep {
   int stance = 0;
   int library = 0;
-  std::vector<double> asked;    // parameters by the prints
+  std::vector<double> asked;  // parameters by the prints, the others as usual
+  std::vector<std::uint8_t> is_asked;
   std::vector<double> nearest;  // the nearest inside the examples' range
   double far = 0;               // metres from `asked` to `nearest`
   std::vector<double> weights;
@@ -36,6 +38,11 @@ struct PlannedWalk {
   std::vector<std::string> why_moved;
   Diagnostics warnings;
 };
+
+// Sets the parameters that are not asked for: to those of the examples of the style, weighted by
+// how near these are in the parameters that are. All are [parameters].
+void take_usual(const StepLibrary& steps, FootSide swing, std::span<const std::uint8_t> is_asked,
+                std::span<double> parameters);
 
 Result<PlannedWalk> plan_steps(std::span<const StepLibrary> libraries, const Walker& walker,
                                std::span<const Print> prints, const Terrain& ground,

@@ -24,30 +24,13 @@ constexpr double kTurnCost = 0.5;    // metres a radian
 constexpr int kBisections = 20;
 constexpr int kBlendTries = 6;
 
-// Parameters that are not asked for: those of the examples, weighted by how near these are in the
-// parameters that are.
-double usual_value(const parametric::Library& library, std::span<const double> asked,
-                   std::span<const std::uint8_t> is_asked, const parametric::Bounds& bounds,
-                   std::size_t dimension) {
-  double sum = 0, weights = 0;
-  for (const parametric::Example& example : library.examples) {
-    double far = 0.01;
-    for (std::size_t d = 0; d < asked.size(); ++d) {
-      if (!is_asked[d]) continue;
-      const double range = std::max(bounds.upper[d] - bounds.lower[d], 1e-9);
-      far += std::pow((example.parameters[d] - asked[d]) / range, 2);
-    }
-    sum += example.parameters[dimension] / (far * far);
-    weights += 1 / (far * far);
-  }
-  return sum / weights;
-}
-
-std::vector<double> parameters_for(const parametric::Library& library,
-                                   const parametric::Bounds& bounds, const StepShape& to,
-                                   const StepShape& from, double duration) {
+// `is_asked`: see PlannedStep.
+std::vector<double> parameters_for(const StepLibrary& steps, FootSide swing, const StepShape& to,
+                                   const StepShape& from, double duration,
+                                   std::vector<std::uint8_t>& is_asked) {
+  const parametric::Library& library = steps.steps(swing).library();
   std::vector<double> asked(library.parameters.size(), 0);
-  std::vector<std::uint8_t> is_asked(asked.size(), 1);
+  is_asked.assign(asked.size(), 1);
   for (std::size_t d = 0; d < asked.size(); ++d) {
     // At the first keytime the swing foot is on the print it comes from.
     const StepShape& shape = library.parameters[d].keytime == 0 ? from : to;
@@ -75,9 +58,7 @@ std::vector<double> parameters_for(const parametric::Library& library,
         is_asked[d] = 0;
     }
   }
-  for (std::size_t d = 0; d < asked.size(); ++d) {
-    if (!is_asked[d]) asked[d] = usual_value(library, asked, is_asked, bounds, d);
-  }
+  take_usual(steps, swing, is_asked, asked);
   return asked;
 }
 
@@ -226,7 +207,8 @@ Status Planner::choose(const GroundedPrint& to, double duration, int number,
     const parametric::Synthesiser& steps = libraries_[i].steps(swing);
     const StepShape shape = shape_of(stance, to, libraries_[i].toe_out());
     const StepShape begin = shape_of(stance, from, libraries_[i].toe_out());
-    auto asked = parameters_for(steps.library(), steps.bounds(), shape, begin, duration);
+    std::vector<std::uint8_t> is_asked;
+    auto asked = parameters_for(libraries_[i], swing, shape, begin, duration, is_asked);
     auto off = parametric::outside(steps.bounds(), asked);
     const Apart here = beyond(libraries_[i], shape);
     const double cost = off.distance + (here.place + kTurnCost * here.turn) / kUsualRange;
@@ -236,6 +218,7 @@ Status Planner::choose(const GroundedPrint& to, double duration, int number,
     far = apart(steps.library(), asked, off.nearest);
     step.library = static_cast<int>(i);
     step.asked = std::move(asked);
+    step.is_asked = std::move(is_asked);
     step.nearest = options_.extrapolate ? step.asked : std::move(off.nearest);
   }
   step.far = options_.extrapolate ? 0 : std::hypot(far.place, more.place);
@@ -388,6 +371,29 @@ Result<PlannedWalk> Planner::plan(std::span<const Print> prints) {
 }
 
 }  // namespace
+
+void take_usual(const StepLibrary& steps, FootSide swing, std::span<const std::uint8_t> is_asked,
+                std::span<double> parameters) {
+  const parametric::Bounds& bounds = steps.steps(swing).bounds();
+  const auto& examples = steps.steps(swing).library().examples;
+  std::vector<double> sums(parameters.size(), 0);
+  double weights = 0;
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    if (!steps.in_style(i)) continue;
+    double far = 0.01;
+    for (std::size_t d = 0; d < parameters.size(); ++d) {
+      if (!is_asked[d]) continue;
+      const double range = std::max(bounds.upper[d] - bounds.lower[d], 1e-9);
+      far += std::pow((examples[i].parameters[d] - parameters[d]) / range, 2);
+    }
+    for (std::size_t d = 0; d < sums.size(); ++d)
+      sums[d] += examples[i].parameters[d] / (far * far);
+    weights += 1 / (far * far);
+  }
+  for (std::size_t d = 0; d < sums.size(); ++d) {
+    if (!is_asked[d]) parameters[d] = sums[d] / weights;
+  }
+}
 
 Result<PlannedWalk> plan_steps(std::span<const StepLibrary> libraries, const Walker& walker,
                                std::span<const Print> prints, const Terrain& ground,

@@ -7,13 +7,15 @@
 #include <optional>
 #include <vector>
 
+#include "core/text.h"
 #include "motion/ground_frame.h"
 
 namespace krok::gait {
 
 namespace {
 
-constexpr double kClearly = 0.15;       // metres: steps forward or backward, not on the spot
+constexpr double kClearly = 0.15;  // metres: steps forward or backward, not on the spot
+constexpr std::size_t kShownStyles = 12;
 constexpr double kMaxToeOut = kPi / 3;  // more is a step to the side
 
 double heading_at(const parametric::Example& example, const parametric::FootShape& foot,
@@ -84,6 +86,45 @@ Status check_direction(const StepLibrary& steps) {
 }
 
 }  // namespace
+
+bool StepLibrary::take_style(std::string_view style) {
+  const auto& examples = library().examples;
+  const std::string wanted = ascii_lower(style);
+  std::vector<std::uint8_t> taken(examples.size(), 0);
+  const auto take = [&](auto&& is_taken) {
+    std::ranges::transform(examples, taken.begin(), is_taken);
+    return std::ranges::find(taken, 1) != taken.end();
+  };
+  const bool found =
+      take([&](const auto& example) { return ascii_lower(example.style) == wanted; }) ||
+      take([&](const auto& example) {
+        return ascii_lower(parametric::capture_of(example.name)).find(wanted) != std::string::npos;
+      });
+  if (found) in_style_ = std::move(taken);
+  return found;
+}
+
+Status take_style(std::span<StepLibrary> libraries, std::string_view style) {
+  bool found = false;
+  std::vector<std::string> names;
+  for (StepLibrary& library : libraries) {
+    found = (library.take_style(style) && library.is_middle()) || found;
+    for (const parametric::Example& example : library.library().examples) {
+      std::string name = example.style;
+      if (name.empty()) name = parametric::capture_of(example.name);
+      if (std::ranges::find(names, name) == names.end()) names.push_back(std::move(name));
+    }
+  }
+  if (found) return {};
+  std::string some;
+  for (std::size_t i = 0; i < std::min(names.size(), kShownStyles); ++i) {
+    some += (i == 0 ? "" : ", ") + shown(names[i]);
+  }
+  return Error(
+      "walk-style",
+      fmt::format("no style is '{0}', and no capture's name contains '{0}'", shown(style)),
+      fmt::format("the library has {}{}", some, names.size() > kShownStyles ? ", ..." : ""));
+}
 
 const StepLibrary& main_library(std::span<const StepLibrary> libraries) {
   for (const StepKind kind : {StepKind::walk, StepKind::run}) {

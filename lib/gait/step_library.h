@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
@@ -45,6 +47,13 @@ class StepLibrary {
   // Radians by which feet usually point outwards from the way they go.
   double toe_out() const { return toe_out_; }
 
+  // Limits the steps' style, durations and usual lengths to the examples of a style, or of
+  // captures whose names contain it, in any case. Returns whether there are any; otherwise all
+  // examples count, as before the call.
+  bool take_style(std::string_view style);
+  bool has_style() const { return !in_style_.empty(); }
+  bool in_style(std::size_t example) const { return in_style_.empty() || in_style_[example] != 0; }
+
   // The examples' steps, whether or not all of it is a parameter. [examples]
   const std::vector<FoundStep>& found_steps() const { return found_steps_; }
 
@@ -59,12 +68,17 @@ class StepLibrary {
   std::string name_;
   StepKind kind_ = StepKind::walk;
   std::vector<FoundStep> found_steps_;
+  std::vector<std::uint8_t> in_style_;  // [examples], empty: all
   RoleMap roles_;
   FootSide own_ = FootSide::left;
   double toe_out_ = 0;
   std::array<std::unique_ptr<const parametric::Library>, 2> libraries_;  // [swing side]
   std::array<std::unique_ptr<const parametric::Synthesiser>, 2> synthesisers_;
 };
+
+// Limits all libraries to a style, see StepLibrary::take_style(); those of starts and stops may
+// lack it. Code walk-style if none of walks or runs has it.
+Status take_style(std::span<StepLibrary> libraries, std::string_view style);
 
 // The first library of walks, which has the skeleton, the rate and the feet; without walks the
 // first of runs; the first if there is none.

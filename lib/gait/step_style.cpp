@@ -31,7 +31,6 @@ constexpr double kNoStyle = 1e-6;       // sum of differences of weights
 constexpr int kStyleCorrections = 3;    // of the weights at an example's parameters
 constexpr int kStyleTries = 3;
 constexpr double kFarFromExamples = 0.4;  // metres
-constexpr std::size_t kShownCaptures = 5;
 
 constexpr std::array kMatched = {Role::hips,
                                  Role::chest,
@@ -103,12 +102,11 @@ struct Before {
 // The steps of one library with one swing foot.
 class Examples {
  public:
-  Examples(const StepLibrary& steps, FootSide swing, const std::string& style_of)
-      : steps_(&steps.steps(swing)) {
+  Examples(const StepLibrary& steps, FootSide swing)
+      : all_(&steps), swing_(swing), steps_(&steps.steps(swing)) {
     const parametric::Library& library = steps_->library();
     const parametric::Bounds& bounds = steps_->bounds();
     std::vector<double> scaled(library.parameters.size());
-    const std::string wanted = ascii_lower(style_of);
     for (std::size_t i = 0; i < library.examples.size(); ++i) {
       const parametric::Example& example = library.examples[i];
       const auto& times = example.keytimes;
@@ -119,17 +117,14 @@ class Examples {
       finishes_.push_back(ends_of(example.motion, steps.roles(),
                                   library.foot(strikes ? library.swing : library.stance()),
                                   times.back(), -1));
-      allowed_.push_back(ascii_lower(example.name).find(wanted) != std::string::npos ? 1 : 0);
-      captures_.push_back(capture_of(example.name));
+      captures_.emplace_back(parametric::capture_of(example.name));
       bounds.scale(example.parameters, scaled);
       scaled_.insert(scaled_.end(), scaled.begin(), scaled.end());
     }
-    fitted_.resize(library.examples.size());
   }
 
   const parametric::Synthesiser& steps() const { return *steps_; }
   Before before(int example) const { return {&finishes_[at(example)], captures_[at(example)]}; }
-  bool any_allowed() const { return std::ranges::find(allowed_, 1) != allowed_.end(); }
 
   // The example for a step with these parameters after one that ended like `before`, if there is
   // one. `last`: examples of the last steps of this kind.
@@ -140,7 +135,7 @@ class Examples {
     double least = std::numeric_limits<double>::infinity();
     int best = -1;
     for (std::size_t i = 0; i < begins_.size(); ++i) {
-      if (!allowed_[i]) continue;
+      if (!all_->in_style(i)) continue;
       double far = 0;
       for (std::size_t d = 0; d < scaled.size(); ++d) {
         far += std::pow(scaled_[i * scaled.size() + d] - scaled[d], 2);
@@ -164,13 +159,15 @@ class Examples {
     return best;
   }
 
-  // The weights at an example's own parameters; empty if it cannot be made there, or if they
-  // reproduce the example.
-  const std::vector<double>& fitted(int example) {
-    auto& found = fitted_[at(example)];
+  // The weights at an example's own parameters, and where none are asked for at the usual ones, so
+  // that steps last longer or shorter as examples do; empty if there is no such blend, or if it is
+  // the example.
+  const std::vector<double>& fitted(int example, const std::vector<std::uint8_t>& is_asked) {
+    auto& found = fitted_[{example, is_asked}];
     if (!found) {
       found.emplace();
-      const auto& parameters = steps_->library().examples[at(example)].parameters;
+      std::vector<double> parameters = steps_->library().examples[at(example)].parameters;
+      take_usual(*all_, swing_, is_asked, parameters);
       auto made = steps_->weights(parameters, {true, kStyleCorrections});
       if (made) {
         double off = 0;
@@ -184,17 +181,18 @@ class Examples {
   }
 
  private:
+  const StepLibrary* all_;
+  FootSide swing_;
   const parametric::Synthesiser* steps_;
   std::vector<Ends> begins_, finishes_;  // [examples]
   std::vector<std::string> captures_;    // [examples]
-  std::vector<std::uint8_t> allowed_;    // [examples]
   std::vector<double> scaled_;           // [examples x parameters]
-  std::vector<std::optional<std::vector<double>>> fitted_;
+  std::map<std::pair<int, std::vector<std::uint8_t>>, std::optional<std::vector<double>>> fitted_;
 };
 
 // The step with what the example differs by. Less of it where it would be no motion.
 void add_style(Examples& examples, int example, double share, PlannedStep& step) {
-  const std::vector<double>& fitted = examples.fitted(example);
+  const std::vector<double>& fitted = examples.fitted(example, step.is_asked);
   if (fitted.empty()) return;
   const std::vector<double> plain = step.weights;
   for (int i = 0; i < kStyleTries; ++i, share *= 0.5) {
@@ -213,42 +211,13 @@ void add_style(Examples& examples, int example, double share, PlannedStep& step)
   }
 }
 
-Error no_capture(std::span<const StepLibrary> libraries, const std::string& style_of) {
-  std::vector<std::string> names;
-  for (const StepLibrary& library : libraries) {
-    for (const parametric::Example& example : library.library().examples) {
-      const std::string name = capture_of(example.name);
-      if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-    }
-  }
-  std::string some;
-  for (std::size_t i = 0; i < std::min(names.size(), kShownCaptures); ++i) {
-    some += (i == 0 ? "" : ", ") + shown(names[i]);
-  }
-  return Error("walk-style", fmt::format("no capture's name contains '{}'", shown(style_of)),
-               fmt::format("the library has {}: {}{}",
-                           counted(static_cast<long long>(names.size()), "capture"), some,
-                           names.size() > kShownCaptures ? ", ..." : ""));
-}
-
 }  // namespace
 
-std::string capture_of(const std::string& example) {
-  std::string name = example;
-  for (int words = 0; words < 2; ++words) {
-    const auto space = name.rfind(' ');
-    if (space == std::string::npos) return example;
-    name.resize(space);
-  }
-  return name;
-}
-
-Status choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& options,
-                     PlannedWalk& plan) {
-  if (!(options.variation > 0)) return {};
+void choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& options,
+                   PlannedWalk& plan) {
+  if (!(options.variation > 0)) return;
   std::map<std::pair<int, FootSide>, Examples> all;
   std::map<std::pair<int, FootSide>, std::vector<int>> last;
-  bool found = false;
   Before before;
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     PlannedStep& step = plan.steps[i];
@@ -256,15 +225,9 @@ Status choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& 
     const std::pair key{step.library, swing};
     auto place = all.find(key);
     if (place == all.end()) {
-      place =
-          all.emplace(key, Examples(libraries[at(step.library)], swing, options.style_of)).first;
+      place = all.emplace(key, Examples(libraries[at(step.library)], swing)).first;
     }
     Examples& examples = place->second;
-    if (!examples.any_allowed()) {
-      before = {};
-      continue;
-    }
-    found = true;
     std::vector<int>& used = last[key];
     const int example = examples.choose(step.made, before, used, options.seed, i);
     if (example < 0) continue;
@@ -275,8 +238,6 @@ Status choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& 
     const double share = options.variation * (1 - smoother_step(step.far / kFarFromExamples));
     if (share > 0) add_style(examples, example, share, step);
   }
-  if (!found && !options.style_of.empty()) return no_capture(libraries, options.style_of);
-  return {};
 }
 
 }  // namespace krok::gait

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "gait/body_motion_internal.h"
 
@@ -18,11 +17,8 @@ namespace krok::gait {
 // on in each other (motion matching on places and velocities where the steps meet: Clavet, "Motion
 // Matching and The Road to Next-Gen Animation", GDC 2016) and whose parameters are near those of
 // the step, so that a walk follows real walks and keeps to one person's style. The same seed gives
-// the same walk. Code walk-style if no example is of a capture that `options.style_of` names.
-Status choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& options,
-                     PlannedWalk& plan);
-
-// The name of the capture that an example was cut from: without the number and the side.
-std::string capture_of(const std::string& example);
+// the same walk.
+void choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& options,
+                   PlannedWalk& plan);
 
 }  // namespace krok::gait

@@ -25,7 +25,9 @@ constexpr double kMoreLength = 0.03;   // metres beyond the longest example
 FoundStep mean_of_steps(const StepLibrary& steps) {
   std::array<FoundStep, 3> sums;  // level and straight, level, all
   std::array<int, 3> counts{};
-  for (const FoundStep& step : steps.found_steps()) {
+  for (std::size_t e = 0; e < steps.found_steps().size(); ++e) {
+    if (!steps.in_style(e)) continue;
+    const FoundStep& step = steps.found_steps()[e];
     const bool is_level = std::abs(step.up) < kLevelStep;
     const bool is_straight = std::abs(step.turn - 2 * steps.toe_out()) < kStraightStep;
     for (std::size_t i = is_level ? (is_straight ? 0 : 1) : 2; i < sums.size(); ++i) {
@@ -58,6 +60,7 @@ std::vector<Pace> paces_of(const StepLibrary& steps) {
   constexpr double kPaceSpacing = 0.01, kAlike = 0.02;  // metres
   std::vector<Pace> examples;
   for (std::size_t i = 0; i < steps.found_steps().size(); ++i) {
+    if (!steps.in_style(i)) continue;
     const std::vector<double>& times = steps.library().examples[i].keytimes;
     examples.push_back(
         {length_along_way(steps.found_steps()[i], steps.toe_out()), times.back() - times.front()});

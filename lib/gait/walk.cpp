@@ -162,9 +162,7 @@ Result<Walk> Walk::plan(std::span<const StepLibrary> libraries, std::span<const 
   auto plan = plan_steps(libraries, state->walker, prints, ground, options);
   if (!plan) return plan.error();
   state->plan = *std::move(plan);
-  if (Status status = choose_styles(libraries, options, state->plan); !status) {
-    return status.error();
-  }
+  choose_styles(libraries, options, state->plan);
   auto body = BodyMotion::create(libraries, state->walker, state->plan, options);
   if (!body) return body.error();
   state->body = *std::move(body);

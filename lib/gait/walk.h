@@ -33,7 +33,6 @@ struct WalkOptions {
   // speed, jerk, and how much steps vary (tests/walk/measure_style.py).
   double variation = 0.85;
   std::uint64_t seed = 1;  // which of several suitable examples
-  std::string style_of{};  // of captures whose names contain this, in any case; empty: of all
 };
 
 // One step: the swing foot goes from the print before the stance foot's to the one after it.
@@ -65,7 +64,7 @@ struct WalkDetails {
 class Walk {
  public:
   // Plans the walk. Libraries and ground must outlive it; the libraries share one skeleton. Codes:
-  // walk-library; walk-legs; walk-style (no example of a capture called so); parametric-skeleton;
+  // walk-library; walk-legs; parametric-skeleton;
   // walk-prints (fewer than three, sides that do not
   // alternate, values out of range); with the number of the print, counted from 1: walk-ground,
   // walk-too-long, walk-too-high, walk-too-steep, walk-crossing, walk-wall, walk-heading,

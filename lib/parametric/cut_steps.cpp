@@ -203,6 +203,7 @@ class Cutter {
                      piece, times, std::move(contacts));
     if (!example) return example.error().message;
     example->mirrored = flipped;
+    example->style = walk.style;
     library.examples.push_back(*std::move(example));
     origins_.push_back({walk.name, step.times.front(), step.times.back()});
     return {};

@@ -20,6 +20,7 @@ struct Walk {
   const Clip* clip = nullptr;
   const MotionKeys* keys = nullptr;
   const FoundContacts* found = nullptr;  // may be null; used to find the soles
+  std::string style{};                   // of its examples
 };
 
 // What is cut: steps of walks have the keytimes stance_strike, swing_off, swing_strike. In a run

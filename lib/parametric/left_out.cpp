@@ -99,6 +99,10 @@ std::optional<double> distance(const Library& library, const PackedExamples& pac
   return std::sqrt(sum / static_cast<double>(found.size()));
 }
 
+std::size_t samples_of(const Library& library) {
+  return kParts * (library.keytimes.size() - 1);
+}
+
 std::vector<Vec3> example_poses(const Library& library, std::size_t index) {
   const Library alone = library.with({library.examples[index]});
   const PackedExamples packed = pack_examples(alone);

@@ -30,6 +30,8 @@ std::vector<double> nearest_weights(const Bounds& bounds, std::span<const double
 // Positions of an example's joints at fixed fractions of its intervals, [samples x joints], without
 // the joints above the hips.
 std::vector<Vec3> example_poses(const Library& library, std::size_t index);
+// The number of those samples.
+std::size_t samples_of(const Library& library);
 
 // RMS distance over joints and samples between the blend with these weights and such positions,
 // metres; nullopt if there is no such blend.

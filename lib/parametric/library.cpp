@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <map>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -232,6 +234,33 @@ Result<Example> make_example(const Library& library, std::string name, const Cli
     return std::move(status).error().in_file(example.name);
   }
   return example;
+}
+
+// Detected steps have a number and a foot after the name of their capture.
+std::string_view capture_of(std::string_view example) {
+  std::string_view rest = example;
+  if (rest.ends_with(" left") || rest.ends_with(" right")) {
+    rest.remove_suffix(rest.size() - rest.rfind(' '));
+    const std::size_t space = rest.rfind(' ');
+    if (space == std::string_view::npos) return example;
+    int number = 0;
+    const auto parsed = std::from_chars(rest.data() + space + 1, rest.data() + rest.size(), number);
+    if (parsed.ec == std::errc() && parsed.ptr == rest.data() + rest.size()) {
+      return rest.substr(0, space);
+    }
+  }
+  return example;
+}
+
+std::vector<int> captures_of(const Library& library) {
+  std::map<std::string_view, int> numbers;
+  std::vector<int> captures;
+  for (const Example& example : library.examples) {
+    const auto added =
+        numbers.emplace(capture_of(example.name), static_cast<int>(numbers.size())).first;
+    captures.push_back(added->second);
+  }
+  return captures;
 }
 
 double ground_of(const Library& library) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
@@ -19,6 +20,7 @@ namespace krok::parametric {
 // origin, the toes point to +Z.
 struct Example {
   std::string name;               // display name: "walk_07 2 left"
+  std::string style;              // of its capture: a person, a mood; empty if not known
   Clip motion;                    // on the library's skeleton, without provenance
   std::vector<double> keytimes;   // [keytimes], seconds from the motion's first frame, rising
   std::vector<Contact> contacts;  // in the frame and time of `motion`
@@ -56,6 +58,12 @@ double shortest_interval(const Library& library);
 RoleMap roles_of(const Library& library);
 // The roles in `map` that were given, for Library::given_roles.
 std::vector<GivenRole> given_roles(const RoleMap& map);
+
+// The capture that an example was cut from, by its name: without the number and the side.
+std::string_view capture_of(std::string_view example);
+
+// [examples] which capture each is of, from 0.
+std::vector<int> captures_of(const Library& library);
 
 // The joint that carries the motions: the hips, or the root.
 int carrying_joint(const Library& library);

@@ -19,4 +19,13 @@ namespace krok::parametric {
 std::vector<int> thin_out(const Library& library, double spacing,
                           std::size_t most = std::numeric_limits<std::size_t>::max());
 
+// Max examples of smoothed weights: the time grows with their third power, and more make no
+// difference that could be measured.
+inline constexpr std::size_t kMaxSmoothed = 500;
+
+// Selects examples whose weights are smoothed, ascending: all that are not the same, up to
+// kMaxSmoothed, in which styles have equal shares. Half of a style's are the farthest apart, the
+// others evenly taken from the rest, since usual steps are not at the ends.
+std::vector<int> thin_out_smoothed(const Library& library);
+
 }  // namespace krok::parametric

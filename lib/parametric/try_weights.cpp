@@ -28,9 +28,10 @@ struct Material {
       : library(std::move(examples)), packed(pack_examples(library)) {}
 };
 
-Library thinned(const Library& library, double spacing, std::size_t most) {
+Library thinned(const Library& library, double spacing, bool smoothed) {
   std::vector<Example> kept;
-  for (const int i : thin_out(library, spacing, most)) {
+  for (const int i :
+       smoothed ? thin_out_smoothed(library) : thin_out(library, spacing, rbf::kMaxExamples)) {
     kept.push_back(library.examples[static_cast<std::size_t>(i)]);
   }
   return library.with(std::move(kept));
@@ -94,14 +95,14 @@ class Part {
       const std::vector<double>& point = library_.examples[i].parameters;
       points.insert(points.end(), point.begin(), point.end());
     }
-    std::map<std::pair<double, std::size_t>, Material> by_spacing;
+    std::map<std::pair<double, bool>, Material> by_spacing;
     for (const WeightCandidate& candidate : candidates_) {
-      const std::size_t most = candidate.smoothing > 0 ? kMaxSmoothed : rbf::kMaxExamples;
-      auto found = by_spacing.find({candidate.spacing, most});
+      const bool smoothed = candidate.smoothing > 0;
+      auto found = by_spacing.find({candidate.spacing, smoothed});
       if (found == by_spacing.end()) {
         found = by_spacing
-                    .emplace(std::pair(candidate.spacing, most),
-                             Material(thinned(all.library, candidate.spacing, most)))
+                    .emplace(std::pair(candidate.spacing, smoothed),
+                             Material(thinned(all.library, candidate.spacing, smoothed)))
                     .first;
       }
       const Material& material = found->second;

@@ -11,7 +11,7 @@
 namespace krok::parametric {
 
 // A way to make weights: kernel and smoothing as in rbf::SolverOptions, from the examples left by
-// thin_out() with this spacing.
+// thin_out() with this spacing, or with smoothing by thin_out_smoothed().
 struct WeightCandidate {
   rbf::Kernel kernel = rbf::Kernel::cubic;
   double smoothing = 0;
@@ -19,10 +19,6 @@ struct WeightCandidate {
 
   bool operator==(const WeightCandidate&) const = default;
 };
-
-// Max examples of smoothed weights, left by thin_out(): the time grows with their third power, and
-// more make no difference that could be measured.
-inline constexpr std::size_t kMaxSmoothed = 500;
 
 struct WeightTrial {
   WeightCandidate candidate;

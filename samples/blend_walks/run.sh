@@ -75,7 +75,7 @@ for weight in "${weights[@]}"; do
   sheet+=("weight_$weight.anim")
 done
 rm -f clocked.anim clocked.keys.json
-"$bin/krok-plot" -q --x weight --by blend --style both -o slide.svg \
+"$bin/krok-plot" -q --x weight --by blend --draw both -o slide.svg \
   --title "Sliding feet over the weight of the quick walk" -- sweep.csv
 "$bin/krok-plot" -q --sheet sweep.png --view left --moments 6 --actor-size 110 -- "${sheet[@]}"
 echo "  slide.svg   foot skate over the weight"

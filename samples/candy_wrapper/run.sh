@@ -49,7 +49,7 @@ for degrees in $(seq 0 15 180); do
   done
 done >>volume.csv
 rm -f pose.glb
-"$bin/krok-plot" -q --x "twist" --by method --style both -o volume.svg \
+"$bin/krok-plot" -q --x "twist" --by method --draw both -o volume.svg \
   --title "Volume lost between elbow and wrist" -- volume.csv
 lost() { awk -F, -v at="$1" -v by="$2" '$1 == at && $2 == by { print $3 " %" }' volume.csv; }
 {

@@ -1,10 +1,11 @@
 """How much a walk moves like the real steps that its library was fitted to.
 
-    measure_style.py BIN_FOLDER LIBRARY.steps [--check] [--variation V] [--distance METRES] [--options "..."]
+    measure_style.py BIN_FOLDER LIBRARY.steps [--check] [--variation V] [--style NAME] [--distance METRES]
+                     [--options "..."]
 
-Walks straight ahead on the level with steps as long as the library's usual ones, and compares its
-steps with the examples that are as long and as straight, a row each for the examples, the walk, and
-the walk of the average (--variation 0):
+Walks straight ahead on the level with steps as long as the library's usual ones (or those of the
+style), and compares its steps with the examples (of the style) that are as long and as straight, a
+row each for the examples, the walk, and the walk of the average (--variation 0):
 
     arms_cm    range of the hands along the way, from the hips, over a step
     hips_m/s   largest vertical speed of the hips in a step
@@ -88,14 +89,18 @@ def examples_of(library, path):
         "<dIIIIII", container.section("INFO", 32))
     names = container.texts("EXNAMES", examples)
     times = container.numbers("KEYTIMES", "d", keytimes, examples)
-    steps, lengths = [], []
-    for motion, name, time in zip(library.examples, names, times):
+    styles = [""] * examples
+    if "EXSTYLES" in container.sections:
+        styles = container.texts("EXSTYLES", examples)
+    steps = []
+    for motion, name, time, style in zip(library.examples, names, times, styles):
         a, b = (int(round(t * motion.rate)) for t in (time[0], time[-1]))
         capture, number, side = name.rsplit(" ", 2)
         step = Step(motion, a, min(b, len(motion.positions) - 1), side, time[-1] - time[0],
                     (capture, int(number)))
         foot = library.feet[swing]["joint"]
         ankles = motion.positions[[a, min(b, len(motion.positions) - 1)], foot]
+        step.style = style
         step.length = 0.5 * np.hypot(*(ankles[1] - ankles[0])[[0, 2]])
         steps.append(step)
     return steps
@@ -151,18 +156,24 @@ def main():
     parser.add_argument("library")
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--variation", default="0.85")
+    parser.add_argument("--style")
     parser.add_argument("--options", default="")
     parser.add_argument("--distance", type=float, default=30)
     arguments = parser.parse_args()
     tool = pathlib.Path(arguments.bin) / "krok-walk"
     library = Library(arguments.library)
     every = examples_of(library, arguments.library)
+    options = arguments.options.split()
+    if arguments.style:
+        wanted = arguments.style.lower()
+        every = ([s for s in every if s.style.lower() == wanted]
+                 or [s for s in every if wanted in s.sequence[0].lower()])
+        options += ["--style", arguments.style]
     usual = np.median([s.length for s in every])
     alike = [s for s in every if abs(s.length - usual) < 0.07 * usual]
     straight = np.median([s.heading for s in alike])
     alike = [s for s in alike if abs(s.heading - straight) < 0.15]
     length = np.mean([s.length for s in alike])
-    options = arguments.options.split()
     rows = {"examples": measures(alike)}
     for name, variation in (("walk", arguments.variation), ("average", "0")):
         rows[name] = measures(walked(tool, arguments.library, length,

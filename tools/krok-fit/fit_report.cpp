@@ -14,8 +14,6 @@ namespace krok::cli::fit {
 
 namespace {
 
-constexpr double kOnePerson = 0.06;  // metres: captures of one person in one mood differ by less
-
 using krok::fit::ParameterError;
 using krok::fit::RefineMetrics;
 
@@ -275,17 +273,10 @@ void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolC
                     readable(1e3 * means.weighted, 3), readable(1e3 * means.linear, 3)),
         "--smoothing auto averages them; examples are then not reproduced exactly");
   }
-  const std::string distance = readable(1e3 * fitted.example_distance, 3);
   context.log(
       fmt::format("  smoothing {}: mean error of the examples' joints is {} mm; --smoothing 0 "
                   "reproduces them exactly",
-                  readable(smoothing), distance));
-  if (fitted.example_distance < kOnePerson) return;
-  context.warn("fit-mixed",
-               fmt::format("steps with similar parameters differ by {} mm: the captures seem to be "
-                           "of several people or moods",
-                           distance),
-               "fit a library of each, or choose one with krok-walk --style-of");
+                  readable(smoothing), readable(1e3 * fitted.example_distance, 3)));
 }
 
 }  // namespace
@@ -305,6 +296,7 @@ Json saved_json(const LibraryInput& input, const FittedLibrary& fitted) {
                         {"parameters", example.parameters}});
   }
   result["examples"] = std::move(examples);
+  if (!input.styles.empty()) result["styles"] = input.styles;
   result["found"] = input.found;
   Json dropped = Json::array();
   for (const parametric::DroppedStep& step : input.dropped) {

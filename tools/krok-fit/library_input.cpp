@@ -8,6 +8,7 @@
 
 #include "parametric/thin_out.h"
 #include "rbf/weight_function.h"
+#include "tools/krok-fit/name_styles.h"
 
 namespace krok::cli::fit {
 
@@ -19,15 +20,12 @@ using parametric::Library;
 
 constexpr double kUsualTolerance = 0.1;  // relative to the usual tolerance: refining is cheap
 
-void thin_out(LibraryInput& input, double spacing, std::size_t most = rbf::kMaxExamples) {
+void keep_examples(LibraryInput& input, const std::vector<int>& kept) {
   std::vector<parametric::Example> chosen;
-  for (const int i : parametric::thin_out(input.library, spacing, most)) {
+  for (const int i : kept) {
     chosen.push_back(std::move(input.library.examples[static_cast<std::size_t>(i)]));
   }
   input.library.examples = std::move(chosen);
-}
-
-void count_mirrored(LibraryInput& input) {
   input.mirrored = static_cast<int>(
       std::ranges::count_if(input.library.examples, &parametric::Example::mirrored));
 }
@@ -182,8 +180,8 @@ class Reader {
     std::vector<parametric::Walk> walks;
     for (const ExampleMotion& motion : motions_) {
       if (!motion.entry->automatic) continue;
-      walks.push_back(
-          {motion.name, &motion.clip, &motion.keys, motion.found ? &*motion.found : nullptr});
+      walks.push_back({motion.name, &motion.clip, &motion.keys,
+                       motion.found ? &*motion.found : nullptr, motion.entry->style});
     }
     parametric::CutOptions options;
     options.swing = swing();
@@ -237,6 +235,7 @@ class Reader {
     auto example = parametric::make_example(input_.library, motion.name, motion.clip,
                                             *std::move(times), motion.keys.contacts);
     if (!example) return at_entry(std::move(example).error(), motion.entry->place);
+    example->style = motion.entry->style;
     input_.library.examples.push_back(*std::move(example));
     return {};
   }
@@ -280,9 +279,11 @@ class Reader {
     } else {
       input_.exact_spacing = description().spacing.value_or(0);
     }
+    if (all_found) {
+      if (Status status = name_styles(input_, context_); !status) return status;
+    }
     if (!description().spacing) input_.all_examples = library.examples;
-    thin_out(input_, input_.exact_spacing);
-    count_mirrored(input_);
+    keep_examples(input_, parametric::thin_out(library, input_.exact_spacing, rbf::kMaxExamples));
     return {};
   }
 
@@ -300,12 +301,18 @@ Result<LibraryInput> read_library(const std::string& path, bool keep_going, Tool
   return Reader(path, keep_going, context).read();
 }
 
-void take_examples(LibraryInput& input, double spacing, std::size_t most) {
+void take_examples(LibraryInput& input, double spacing) {
   if (input.all_examples.empty()) return;
   input.library.examples = input.all_examples;
-  thin_out(input, spacing, most);
-  count_mirrored(input);
+  keep_examples(input, parametric::thin_out(input.library, spacing, rbf::kMaxExamples));
   // Cannot fail: thinning keeps the extremes of each parameter nearly as they are.
+  (void)find_range(input).ok();
+}
+
+void take_smoothed_examples(LibraryInput& input) {
+  if (input.all_examples.empty()) return;
+  input.library.examples = input.all_examples;
+  keep_examples(input, parametric::thin_out_smoothed(input.library));
   (void)find_range(input).ok();
 }
 

@@ -26,7 +26,8 @@ struct LibraryInput {
   double exact_spacing = 0;
   // All examples, if the description gives no spacing.
   std::vector<parametric::Example> all_examples;
-  int mirrored = 0;  // number of mirrored examples
+  int mirrored = 0;             // number of mirrored examples
+  Json styles = Json::array();  // see name_styles(): spreads in metres
   std::vector<RefusedClip> refused;
 };
 
@@ -42,7 +43,9 @@ inline constexpr double kSmoothedSpacing = 1e-3;
 // That of libraries made before, which may be continued.
 inline constexpr double kFormerSmoothedSpacing = 0.01;
 
-// Uses the examples with another spacing, at most so many, unless the description gives a spacing.
-void take_examples(LibraryInput& input, double spacing, std::size_t most);
+// Uses the examples with another spacing, or those of smoothed weights, unless the description
+// gives a spacing.
+void take_examples(LibraryInput& input, double spacing);
+void take_smoothed_examples(LibraryInput& input);
 
 }  // namespace krok::cli::fit

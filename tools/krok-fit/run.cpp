@@ -144,14 +144,14 @@ Result<krok::fit::Refined> resumed(const std::string& path, LibraryInput& input,
   const auto saved = steps::read(file->bytes());
   if (!saved) return Error(saved.error()).in_file(path);
   const bool smoothed = saved->weights && saved->weights->smoothing > 0;
-  if (smoothed) take_examples(input, kSmoothedSpacing, parametric::kMaxSmoothed);
+  if (smoothed) take_smoothed_examples(input);
   bool same = has_examples_of(input.library, saved->library);
   if (!same && smoothed) {
-    take_examples(input, kFormerSmoothedSpacing, rbf::kMaxExamples);
+    take_examples(input, kFormerSmoothedSpacing);
     same = has_examples_of(input.library, saved->library);
   }
   if (!same && !smoothed && input.exact_spacing < kUsualSpacing) {
-    take_examples(input, kUsualSpacing, rbf::kMaxExamples);
+    take_examples(input, kUsualSpacing);
     same = has_examples_of(input.library, saved->library);
   }
   if (!same || !saved->weights) {

@@ -150,7 +150,7 @@ void declare_tables(CommandOptions& command, Options& o) {
                   "condition", "COLUMN=VALUE", parse_condition, {}},
               "Use only rows with this value in the column; repeat for another column, or for "
               "alternative values of the same column");
-  command.add("--style STYLE", table.style,
+  command.add("--draw MARKS", table.style,
               choice<draw::SeriesStyle>({{"line", draw::SeriesStyle::line},
                                          {"points", draw::SeriesStyle::points},
                                          {"both", draw::SeriesStyle::line_and_points}}),
@@ -199,7 +199,7 @@ Status check_inputs(const Options& o) {
   const auto of_others =
       table ? std::vector{"--show",     "--joint", "--euler",  "--from",   "--to",
                           "--contacts", "--map",   "--prints", "--ground", "--difference"}
-            : std::vector{"--x", "--y", "--by", "--where", "--log-x", "--style"};
+            : std::vector{"--x", "--y", "--by", "--where", "--log-x", "--draw"};
   for (const char* option : of_others) {
     if (!o.given(option)) continue;
     return usage(fmt::format("{} is for {}, but the input is {}", option,
@@ -241,7 +241,7 @@ ToolSpec make_spec() {
        "position and rotation of a joint"},
       {"krok-plot walk.csv --where joint=LeftFoot --where joint=RightFoot --y y -o heights.svg",
        "one column of a table, with a line for each of two joints"},
-      {"krok-plot fit.csv --x examples --y error_mm --log-y --style both -o fit.svg",
+      {"krok-plot fit.csv --x examples --y error_mm --log-y --draw both -o fit.svg",
        "any table of numbers; the unit is read from the column's name"},
       {"krok-plot walk.anim --show path,feet --ground hills.exr --prints prints.csv -o ways.svg",
        "a walk on its ground from above, with its footprints, and how high the soles are over it"},

@@ -96,8 +96,9 @@ void declare_steps(CommandOptions& command, Options& o) {
               "0.85");
   command.add("--seed", o.seed, whole(0, 1'000'000'000),
               "Which of several suitable examples steps take", "1");
-  command.add_option("--style-of NAME", o.style_of,
-                     "Take steps' style from captures whose names contain this, in any case");
+  command.add_option("--style NAME", o.style,
+                     "Walk in this style of the libraries, or as in captures whose names contain "
+                     "this, in any case");
   add_map_option(command, o.map);
 }
 

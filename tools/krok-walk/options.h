@@ -34,7 +34,7 @@ struct Options {
   double stretch = 0, clearance = 0;  // metres
   double variation = 0.85;
   std::uint64_t seed = 1;
-  std::string style_of;  // part of captures' names
+  std::string style;  // or part of captures' names
   OrientationEncoding orientation = OrientationEncoding::xyz;
 };
 

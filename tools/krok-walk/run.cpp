@@ -209,6 +209,9 @@ Result<std::vector<gait::StepLibrary>> open_libraries(const Options& options,
     if (!library) return std::move(library).error().in_file(path);
     libraries.push_back(*std::move(library));
   }
+  if (!options.style.empty()) {
+    if (Status status = gait::take_style(libraries, options.style); !status) return status.error();
+  }
   return libraries;
 }
 
@@ -412,7 +415,6 @@ Result<int> run(const Options& options, ToolContext& context) {
   how.clearance = options.clearance;
   how.variation = options.variation;
   how.seed = options.seed;
-  how.style_of = options.style_of;
   const auto walk = gait::Walk::plan(*libraries, *prints, **ground, how);
   if (!walk) return with_hint(walk.error(), options);
   if (Status status = write_all(options, *walk, *prints, **ground, *libraries, context); !status) {

@@ -48,7 +48,7 @@ const std::vector<Value>& values() {
       {"krok-keys", {"--keytime", "left_strike"}, "usage"},
       {"krok-cam", {"--orbit", "0s"}, "usage"},
       {"krok-cam", {"--follow", "hips", "--smooth", "-1"}, "usage"},
-      {"krok-plot", {"--style", "wavy"}, "usage"},
+      {"krok-plot", {"--draw", "wavy"}, "usage"},
       {"krok-plot", {"--from", "-1s"}, "usage"},
       {"krok-plot", {"--to", "5deg"}, "quantity-unit"},
       {"krok-plot", {"--show", "toes"}, "usage"},

@@ -228,7 +228,7 @@ TEST_F(KrokPlot, DrawsATableByColumnNames) {
   EXPECT_THAT(panels(), SizeIs(2));  // a panel for millimetres, one for seconds
   EXPECT_THAT(lines(0), ElementsAre("error", "size"));
   ASSERT_EQ(plot({table, "--x", "examples", "--y", "error", "--y", "size,cost", "--log-x",
-                  "--log-y", "--style", "both"})
+                  "--log-y", "--draw", "both"})
                 .exit_code,
             0);
   EXPECT_THAT(lines(1), ElementsAre("size", "cost"));

@@ -4,11 +4,16 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "core/index.h"
 #include "gait/step_style_internal.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "parametric/example_sums.h"
+#include "parametric/style_groups.h"
 #include "unit/gait/walkers.h"
 
 namespace krok::gait {
@@ -64,6 +69,14 @@ StepLibrary noisy_library(double smoothing = 10) {
   return *std::move(made);
 }
 
+// In one style, or in all.
+std::vector<StepLibrary> noisy_in(const std::string& style) {
+  std::vector<StepLibrary> libraries;
+  libraries.push_back(noisy_library());
+  EXPECT_TRUE(take_style(libraries, style).ok());
+  return libraries;
+}
+
 std::span<const StepLibrary> noisy() {
   static const std::vector<StepLibrary> kLibraries = [] {
     std::vector<StepLibrary> libraries;
@@ -79,9 +92,10 @@ WalkOptions seeded(std::uint64_t seed) {
   return options;
 }
 
-WholeWalk walked(const WalkOptions& options, int steps = 8) {
+WholeWalk walked(const WalkOptions& options, int steps = 8,
+                 std::span<const StepLibrary> libraries = noisy()) {
   auto made =
-      walk(noisy(), test::prints_of({.steps = steps, .length = 0.62}), test::slope(0), options);
+      walk(libraries, test::prints_of({.steps = steps, .length = 0.62}), test::slope(0), options);
   EXPECT_TRUE(made.ok()) << made.error().message;
   return *std::move(made);
 }
@@ -104,18 +118,13 @@ double lean(const Clip& clip) {
 TEST(StepStyle, IsThatOfTheNamedCaptures) {
   WalkOptions options;
   options.variation = 1;
-  options.style_of = "hunched";  // in any case
-  const double hunched = lean(walked(options).clip);
-  options.style_of = "UPRIGHT";
-  const double upright = lean(walked(options).clip);
-  options.style_of.clear();
+  const std::vector<StepLibrary> bent = noisy_in("hunched"), straight = noisy_in("UPRIGHT");
+  const WholeWalk hunched = walked(options, 8, bent), upright = walked(options, 8, straight);
   options.variation = 0;
   const double average = lean(walked(options).clip);
-  EXPECT_NEAR(hunched - upright, kHunched, 0.1 * kHunched);
-  EXPECT_NEAR(average - upright, 0.5 * kHunched, 0.15 * kHunched);
-  options.variation = 1;
-  options.style_of = "hunched";
-  const WalkDetails details = walked(options).details;
+  EXPECT_NEAR(lean(hunched.clip) - lean(upright.clip), kHunched, 0.1 * kHunched);
+  EXPECT_NEAR(average - lean(upright.clip), 0.5 * kHunched, 0.15 * kHunched);
+  const WalkDetails& details = hunched.details;
   EXPECT_FALSE(details.steps.front().example.empty());
   for (const StepReport& step : details.steps) {
     // The last one comes to stand, which no example does.
@@ -158,12 +167,63 @@ TEST(StepStyle, ChangesNothingWhereWeightsMeetTheExamples) {
 }
 
 TEST(StepStyle, RefusesACaptureThatTheLibraryLacks) {
-  WalkOptions options;
-  options.style_of = "tired";
-  const auto made = walk(noisy(), test::prints_of({}), test::slope(0), options);
+  std::vector<StepLibrary> libraries;
+  libraries.push_back(noisy_library());
+  const Status made = take_style(libraries, "tired");
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, "walk-style");
   EXPECT_THAT(made.error().hint, testing::HasSubstr("Hunched walk1"));
+  EXPECT_FALSE(libraries.front().has_style());
+}
+
+// Would fail if a style's name were looked for among captures' names first, or its durations were
+// those of others.
+TEST(StepStyle, IsTheLabelledOneWithItsDurations) {
+  std::vector<StepLibrary> libraries;
+  libraries.push_back(noisy_library());
+  parametric::Library library =
+      libraries.front().library().with(libraries.front().library().examples);
+  for (auto& example : library.examples) {
+    example.style = example.name.starts_with("Hunched ") ? "upright" : "old";
+  }
+  rbf::SolverOptions how;
+  how.smoothing = 10;
+  std::vector<double> parameters;
+  for (const auto& example : library.examples) parameters.push_back(example.parameters.front());
+  const auto solver = rbf::WeightSolver::create(1, parameters, how);
+  ASSERT_TRUE(solver.ok());
+  const RoleMap roles = find_roles(library.skeleton);
+  auto made = StepLibrary::create("noisy", std::move(library), solver->function(), roles);
+  ASSERT_TRUE(made.ok());
+  ASSERT_TRUE(made->take_style("Upright"));
+  const auto& examples = made->library().examples;
+  for (std::size_t i = 0; i < examples.size(); ++i) {
+    EXPECT_EQ(made->in_style(i), examples[i].name.starts_with("Hunched ")) << examples[i].name;
+  }
+}
+
+// Captures of two moods, told apart by their motion alone. Would fail if groups followed the
+// parameters or split captures, or if captures of one mood were divided.
+TEST(StyleGroups, AreThoseOfCapturesThatMoveAlike) {
+  const parametric::Library& library = noisy().front().library();
+  const auto groups = parametric::group_styles(library, parametric::captures_of(library));
+  ASSERT_TRUE(groups.ok()) << groups.error().message;
+  ASSERT_EQ(groups->count, 2);
+  EXPECT_GT(groups->spread, parametric::kAlikeSteps);
+  EXPECT_LT(groups->within, 0.02);
+  std::set<std::pair<int, bool>> seen;
+  std::vector<parametric::Example> upright;
+  for (std::size_t i = 0; i < library.examples.size(); ++i) {
+    const bool hunched = library.examples[i].name.starts_with("Hunched ");
+    seen.emplace(groups->of_example[i], hunched);
+    if (!hunched) upright.push_back(library.examples[i]);
+  }
+  EXPECT_EQ(seen.size(), 2u);
+  const parametric::Library one = library.with(std::move(upright));
+  const auto alike = parametric::group_styles(one, parametric::captures_of(one));
+  ASSERT_TRUE(alike.ok());
+  EXPECT_EQ(alike->count, 1);
+  EXPECT_FALSE(parametric::group_styles(one, std::vector<int>{0}).ok());
 }
 
 // Poses of blends from sums against the blends themselves. Would fail if sums left out more than

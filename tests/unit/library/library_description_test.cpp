@@ -28,7 +28,7 @@ constexpr const char* kGood = R"({
   ],
   "steps": "auto",
   "examples": [
-    {"clip": "walks/*.bvh", "from": "1.5s", "to": "90f"},
+    {"clip": "walks/*.bvh", "from": "1.5s", "to": "90f", "style": "old"},
     {"clip": "one.anim", "name": "slow", "steps": "one", "keys": "one.json",
      "keytimes": {"begin": 0, "touch": "250ms", "end": "40f"}}
   ]
@@ -67,6 +67,8 @@ TEST(LibraryDescription, ReadsWhatTheSpecSays) {
   EXPECT_FALSE(read->parameters[2].least.has_value());
 
   ASSERT_EQ(read->examples.size(), 2u);
+  EXPECT_EQ(read->examples[0].style, "old");
+  EXPECT_EQ(read->examples[1].style, "");
   const ExampleEntry& walks = read->examples[0];
   EXPECT_EQ(walks.clip, "walks/*.bvh");
   EXPECT_TRUE(walks.automatic);

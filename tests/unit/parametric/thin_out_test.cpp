@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -64,6 +65,34 @@ TEST(ThinOut, KeptAreApartAndTheOthersNearThem) {
       EXPECT_LT(nearest, 0.2);
     }
   }
+}
+
+// Would fail if one style took the places of another, or usual steps were lost to unusual ones.
+TEST(ThinOut, SmoothedExamplesAreOfAllStylesAndMostlyUsual) {
+  std::mt19937 random(4);
+  std::normal_distribution<double> usual(0, 1);
+  std::vector<std::vector<double>> points;
+  for (int i = 0; i < 3000; ++i) points.push_back({usual(random), usual(random)});
+  Library library = library_at(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    library.examples[i].style = i < 40 ? "rare" : i < 1000 ? "some" : "most";
+  }
+  const auto kept = thin_out_smoothed(library);
+  EXPECT_LE(kept.size(), kMaxSmoothed);
+  EXPECT_GT(kept.size(), kMaxSmoothed - 30);
+  int rare = 0, some = 0, near = 0;
+  for (const int i : kept) {
+    const auto k = static_cast<std::size_t>(i);
+    rare += k < 40 ? 1 : 0;
+    some += k >= 40 && k < 1000 ? 1 : 0;
+    near += std::hypot(points[k][0], points[k][1]) < 1.5 ? 1 : 0;
+  }
+  EXPECT_GE(rare, 38);
+  EXPECT_NEAR(some, 230, 10);
+  EXPECT_GT(near, static_cast<int>(kept.size()) / 2);
+  EXPECT_TRUE(std::ranges::is_sorted(kept));
+  EXPECT_THAT(thin_out_smoothed(library_at({{0}, {1}, {1}})), ElementsAre(0, 1));
+  EXPECT_THAT(thin_out_smoothed(library_at({})), IsEmpty());
 }
 
 }  // namespace

@@ -100,6 +100,22 @@ TEST(Steps, GivenRolesAreKept) {
   EXPECT_EQ(samples::bytes_of(*back), bytes);
 }
 
+// Without them a walk could not be in one style of a mixed library.
+TEST(Steps, StylesAreKept) {
+  StepsFile file = walk_library(rbf::Kernel::cubic);
+  const std::size_t without = samples::bytes_of(file).size();
+  file.library.examples[1].style = "müde";
+  const auto bytes = samples::bytes_of(file);
+  EXPECT_GT(bytes.size(), without);
+  const auto back = read(bytes);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->library.examples[0].style, "");
+  EXPECT_EQ(back->library.examples[1].style, "müde");
+  EXPECT_EQ(samples::bytes_of(*back), bytes);
+  file.library.examples[1].style = std::string("a\0b", 3);
+  EXPECT_EQ(check(file).error().code, "steps-shape");
+}
+
 TEST(Steps, ReadAndWrittenAgainItIsTheSameFile) {
   const auto bytes = samples::bytes_of(walk_library(rbf::Kernel::cubic));
   EXPECT_EQ(samples::bytes_of(*read(bytes)), bytes);
