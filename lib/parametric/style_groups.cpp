@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "contacts/legs.h"
 #include "core/index.h"
 #include "math/dense_solve.h"
 #include "parametric/bounds.h"

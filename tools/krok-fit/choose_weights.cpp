@@ -71,7 +71,9 @@ WeightsChoice choose_weights(LibraryInput& input, const Options& options, ToolCo
   double spacing = input.exact_spacing;
   if (choice.trials.examples >= kMinInside && choice.trials.groups >= kMinCaptures) {
     choice.is_chosen = true;
-    const std::size_t used = parametric::trial_to_use(choice.trials, kGain);
+    // The first is only preferred if it reproduces the examples.
+    const bool reproduces = candidates.front().smoothing == 0 || options.smooth;
+    const std::size_t used = parametric::trial_to_use(choice.trials, reproduces ? kGain : 0);
     const WeightCandidate& candidate = choice.trials.tried[used].candidate;
     choice.kernel = candidate.kernel;
     choice.smoothing = candidate.smoothing;
