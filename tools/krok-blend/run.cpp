@@ -16,7 +16,6 @@
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
-#include "tools/krok-blend/weighted_input.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/plant_result.h"
 

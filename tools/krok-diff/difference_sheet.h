@@ -73,4 +73,16 @@ Result<Pictures> make_pictures(const DifferenceSheet& sheet, int jobs);
 // Draws the sheet, writes the image and adds it to the report.
 Status write_sheet(const DifferenceSheet& sheet, const SheetOptions& options, ToolContext& context);
 
+// Mesh differences as vertex colours of the first mesh.
+
+// Writes the first scene's meshes, in the pose of the max difference, with each vertex coloured by
+// its max distance over all times (`found` must have kept them), and prints the legend. If no mesh
+// was compared: a warning, and no file.
+Status write_heatmap(const Scene& first, const compare::SceneDifference& found,
+                     const std::string& path, ToolContext& context);
+
+// The same for two scenes that were not compared as such.
+Status write_heatmap(const Scene& first, const Scene& second, const compare::SceneOptions& options,
+                     const std::string& path, ToolContext& context);
+
 }  // namespace krok::cli::diff

@@ -1,4 +1,4 @@
-#include "tools/krok-diff/heatmap.h"
+#include "tools/krok-diff/difference_sheet.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "formats/gltf/coloured_meshes.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-diff/difference_sheet.h"
 
 namespace krok::cli::diff {
 

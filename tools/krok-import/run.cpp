@@ -21,7 +21,6 @@
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
-#include "tools/krok-import/clips.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
 #include "tools/shared/keys_choice.h"

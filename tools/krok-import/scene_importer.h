@@ -13,7 +13,7 @@
 #include "tools/cli/new_folders.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
-#include "tools/krok-import/clips.h"
+#include "tools/krok-import/facts.h"
 #include "tools/krok-import/options.h"
 
 namespace krok::cli::import {

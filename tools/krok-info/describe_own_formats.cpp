@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -8,9 +9,15 @@
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
 #include "formats/container/sections.h"
+#include "formats/correctives/correctives_format.h"
 #include "formats/model/model_format.h"
+#include "formats/morph_exr/morph_exr.h"
+#include "formats/ragdoll/ragdoll_format.h"
+#include "formats/textgrid/textgrid.h"
 #include "tools/krok-info/describe.h"
-#include "tools/krok-info/volumes.h"
+#include "tools/krok-info/description.h"
+
+// Morph targets and labels over time.
 
 namespace krok::cli::info {
 
@@ -30,6 +37,25 @@ void add_orientations(const InputFile& file, Description& out) {
 
 std::string or_none(const std::string& name) {
   return name.empty() ? "(no name)" : name;
+}
+
+std::string_view shape_name(ragdoll::Shape::Kind kind) {
+  switch (kind) {
+    case ragdoll::Shape::Kind::box:
+      return "box";
+    case ragdoll::Shape::Kind::capsule:
+      return "capsule";
+    case ragdoll::Shape::Kind::sphere:
+      break;
+  }
+  return "sphere";
+}
+
+// "8 spherical, 4 revolute".
+std::string list_of(const std::map<std::string, int>& counts) {
+  std::vector<std::string> parts;
+  for (const auto& [name, count] : counts) parts.push_back(fmt::format("{} {}", count, name));
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 }  // namespace
@@ -151,6 +177,107 @@ Result<Description> describe_cam(const InputFile& file, ToolContext&) {
   }
   add_orientations(file, out);
   add_provenance(camera->provenance, out);
+  return out;
+}
+
+Result<Description> describe_correctives(const InputFile& file, ToolContext&) {
+  const auto read = correctives_file::read(file.text());
+  if (!read) return read.error();
+  Description out;
+  out.what = "shapes by pose (.correctives)";
+  out.json["kind"] = "correctives";
+  std::vector<std::string> lines;
+  Json joints = Json::array();
+  for (const JointCorrective& joint : read->joints) {
+    lines.push_back(fmt::format("{}: {} of {}", shown(joint.joint),
+                                counted(joint.target_count(), "target"),
+                                counted(std::ssize(joint.vertices), "vertex", "vertices")));
+    joints.push_back({{"joint", joint.joint},
+                      {"targets", joint.target_count()},
+                      {"vertices", joint.vertices.size()}});
+  }
+  out.add("vertices", fmt::format("{}, of the model", grouped(read->vertex_count)));
+  out.add("joints", std::move(lines));
+  out.json["vertices"] = read->vertex_count;
+  out.json["joints"] = std::move(joints);
+  return out;
+}
+
+Result<Description> describe_morphs(const InputFile& file, ToolContext&) {
+  const auto morphs = morph_exr::read(file.bytes());
+  if (!morphs) return morphs.error();
+  Description out;
+  out.what = "morph targets (.exr)";
+  out.json["kind"] = "morphs";
+  out.add("vertices", fmt::format("{}, of the model", grouped(morphs->vertex_count)));
+  out.json["vertices"] = morphs->vertex_count;
+  out.json["normals"] = !morphs->normals.empty();
+  out.json["targets"] = morphs->names;
+  std::vector<std::string> names;
+  for (const std::string& name : morphs->names) names.push_back(shown(name));
+  out.add("targets", grouped(morphs->target_count()));
+  out.add("", std::move(names));
+  add_provenance(morphs->provenance, out);
+  return out;
+}
+
+Result<Description> describe_textgrid(const InputFile& file, ToolContext&) {
+  const auto grid = textgrid::read(file.text(), file.path());
+  if (!grid) return grid.error();
+  Description out;
+  out.what = "labels over time (TextGrid)";
+  out.json["kind"] = "textgrid";
+  out.add("duration", readable(grid->end - grid->start, 4) + " s");
+  out.json["duration"] = grid->end - grid->start;
+  std::vector<std::string> lines;
+  for (const textgrid::Tier& tier : grid->tiers) {
+    const auto labelled = std::ranges::count_if(
+        tier.intervals, [](const textgrid::Interval& one) { return !one.label.empty(); });
+    lines.push_back(fmt::format(
+        "{}: {}, {} with a label", shown(tier.name),
+        counted(std::ssize(tier.intervals), tier.points ? "point" : "interval"), labelled));
+    out.json["tiers"].push_back({{"name", tier.name},
+                                 {"points", tier.points},
+                                 {"intervals", tier.intervals.size()},
+                                 {"labelled", labelled}});
+  }
+  out.add("tiers", std::move(lines));
+  return out;
+}
+
+Result<Description> describe_ragdoll(const InputFile& file, ToolContext&) {
+  const auto read = ragdoll_file::read(file.text(), nullptr);
+  if (!read) return read.error();
+  Description out;
+  out.what = "bodies and joints (.ragdoll.json)";
+  out.json["kind"] = "ragdoll";
+  double mass = 0;
+  int soft = 0;
+  std::map<std::string, int> shapes, kinds, modes;
+  std::vector<std::string> lines;
+  Json bodies = Json::array();
+  for (const ragdoll::Body& body : read->bodies) {
+    const std::string shape(shape_name(body.shape.kind));
+    mass += body.mass;
+    ++shapes[shape];
+    ++modes[std::string(body_mode_name(body.mode))];
+    lines.push_back(fmt::format("{}: {}, {} kg", body.name, shape, readable(body.mass, 4)));
+    bodies.push_back({{"name", body.name}, {"shape", shape}, {"mass", body.mass}});
+  }
+  for (const ragdoll::JointRule& rule : read->joints) {
+    ++kinds[std::string(joint_kind_name(rule.kind))];
+    soft += rule.soft ? 1 : 0;
+  }
+  out.add("bodies", fmt::format("{}: {}", read->bodies.size(), list_of(shapes)));
+  if (modes.size() > 1 || !modes.contains("simulated")) out.add("modes", list_of(modes));
+  out.add("mass", readable(mass, 6) + " kg");
+  out.add("joints", fmt::format("{}: {}", read->joints.size(),
+                                read->joints.empty() ? "none" : list_of(kinds)));
+  if (soft > 0) out.add("soft limits", counted(soft, "joint"));
+  out.add("parts", std::move(lines));
+  out.json["mass"] = mass;
+  out.json["bodies"] = std::move(bodies);
+  out.json["joints"] = kinds;
   return out;
 }
 

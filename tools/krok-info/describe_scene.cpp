@@ -11,7 +11,7 @@
 #include "nodes/animation_choice.h"
 #include "nodes/evaluate.h"
 #include "tools/krok-info/describe.h"
-#include "tools/krok-info/volumes.h"
+#include "tools/krok-info/description.h"
 
 namespace krok::cli::info {
 

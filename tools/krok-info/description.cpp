@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/numbers.h"
 #include "core/text.h"
@@ -124,6 +125,22 @@ void add_provenance(const Provenance& provenance, Description& out) {
   out.add("options", std::move(options));
   out.add("conversions", provenance.conversions);
   out.add("warnings", provenance.warnings);
+}
+
+void add_volumes(const std::vector<NamedVolume>& volumes, Description& out) {
+  constexpr double kLitres = 1000;  // per cubic metre
+  std::vector<std::string> lines;
+  out.json["volumes"] = Json::array();
+  for (const auto& [mesh, measured] : volumes) {
+    const bool known = measured.closed && std::isfinite(measured.volume);
+    out.json["volumes"].push_back({{"mesh", mesh},
+                                   {"volume", known ? Json(measured.volume) : Json()},
+                                   {"area", measured.area}});
+    if (!known) continue;
+    lines.push_back(fmt::format("{}{} litres", mesh.empty() ? "" : mesh + ": ",
+                                readable(measured.volume * kLitres, 4)));
+  }
+  out.add("volume", std::move(lines));
 }
 
 }  // namespace krok::cli::info

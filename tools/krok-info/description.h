@@ -8,6 +8,7 @@
 #include "capture/convention_choice.h"
 #include "core/numbers.h"
 #include "math/types.h"
+#include "scene/mesh_volume.h"
 #include "scene/provenance.h"
 #include "tools/cli/report.h"
 
@@ -61,5 +62,14 @@ void add_size(std::span<const Point> points, const std::string& measured, Descri
   for (const Point& point : points) box.extend(point.template cast<double>());
   add_size(box, measured, out);
 }
+
+struct NamedVolume {
+  std::string mesh;  // empty if there is only one
+  MeshVolume measured;
+};
+
+// Text: volumes of the closed meshes in litres. JSON: volume (cubic metres; null for open meshes)
+// and area (square metres) of all meshes.
+void add_volumes(const std::vector<NamedVolume>& volumes, Description& out);
 
 }  // namespace krok::cli::info

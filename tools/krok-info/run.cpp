@@ -1,21 +1,188 @@
-#include "tools/krok-info/options.h"
-
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/hash.h"
+#include "core/index.h"
+#include "core/numbers.h"
+#include "core/result.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
+#include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
+#include "math/quaternion.h"
+#include "tools/cli/tool.h"
 #include "tools/krok-info/describe.h"
-#include "tools/krok-info/textconv.h"
+#include "tools/krok-info/options.h"
 
 namespace krok::cli::info {
 
 namespace {
+
+constexpr int kMaxLines = 1990;  // besides those of the header
+constexpr double kPlaces = 1e5;  // a metre, to 0.01 mm
+constexpr double kAngles = 1e3;  // a degree
+constexpr std::string_view kPointer = "version https://git-lfs.github.com/spec/";
+
+// What a joint does in a stretch of time.
+struct Part {
+  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
+  Vec3 low_place = low, high_place = high;
+  std::vector<std::int32_t> values;  // rounded
+};
+
+std::int32_t rounded(double value, double scale) {
+  const double whole = std::clamp(std::round(value * scale), -2e9, 2e9);
+  return static_cast<std::int32_t>(whole);
+}
+
+void add(const Vec3& turn, const Vec3* place, Part& part) {
+  part.low = part.low.cwiseMin(turn), part.high = part.high.cwiseMax(turn);
+  for (int axis = 0; axis < 3; ++axis) part.values.push_back(rounded(turn[axis], kAngles));
+  if (place == nullptr) return;
+  part.low_place = part.low_place.cwiseMin(*place);
+  part.high_place = part.high_place.cwiseMax(*place);
+  for (int axis = 0; axis < 3; ++axis) part.values.push_back(rounded((*place)[axis], kPlaces));
+}
+
+std::string range(const Vec3& low, const Vec3& high, double scale) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis) {
+    text += fmt::format(" {:.1f}..{:.1f}", scale * low[axis] + 0.0, scale * high[axis] + 0.0);
+  }
+  return text;
+}
+
+class Text {
+ public:
+  explicit Text(const FrameSource& frames) : frames_(frames) {
+    const double seconds = std::max(frames.duration(), 1 / frames.rate);
+    shown_ = std::min(frames.joint_count(), kMaxLines);
+    const double stretches = std::max(1, kMaxLines / std::max(1, shown_));
+    stretch_ =
+        std::max(1, static_cast<int>(std::ceil(std::ceil(seconds / stretches) * frames.rate)));
+  }
+
+  Result<std::string> made() {
+    header();
+    const int joints = frames_.joint_count();
+    std::vector<Vec3f> places;
+    std::vector<Quatf> turns;
+    constexpr int kAtOnce = 256;
+    std::vector<Part> parts(at(joints));
+    for (int first = 0; first < frames_.frame_count; first += kAtOnce) {
+      const int count = std::min(kAtOnce, frames_.frame_count - first);
+      places.resize(at(count) * at(joints));
+      turns.resize(places.size());
+      if (Status status = frames_.read(first, count, places, turns); !status) return status.error();
+      for (int f = 0; f < count; ++f) {
+        const auto row = at(f) * at(joints);
+        add_frame(std::span(places).subspan(row, at(joints)),
+                  std::span(turns).subspan(row, at(joints)), parts);
+        if ((first + f + 1) % stretch_ == 0 || first + f + 1 == frames_.frame_count) {
+          finish((first + f) / stretch_ * stretch_, parts);
+        }
+      }
+      if (frames_.release) frames_.release(first + count);
+    }
+    return text_;
+  }
+
+ private:
+  void header() {
+    const Skeleton& skeleton = frames_.skeleton;
+    std::vector<std::int32_t> reference;
+    std::string names;
+    for (int j = 0; j < skeleton.joint_count(); ++j) {
+      const Transform local = skeleton.reference_local(j);
+      names += fmt::format("{}<{};", skeleton.names[at(j)], skeleton.parents[at(j)]);
+      for (int axis = 0; axis < 3; ++axis) {
+        reference.push_back(rounded(local.position[axis], kPlaces));
+      }
+    }
+    text_ = fmt::format("motion: {} joints, {} frames at {} fps\n", skeleton.joint_count(),
+                        frames_.frame_count, readable(frames_.rate));
+    text_ += fmt::format("skeleton: #{}, bones #{}\n",
+                         hex(xxh3(std::as_bytes(std::span(names)))).substr(0, 8),
+                         hex(xxh3(std::as_bytes(std::span(reference)))).substr(0, 8));
+    if (shown_ < skeleton.joint_count()) {
+      text_ += fmt::format("the first {} joints:\n", shown_);
+    }
+  }
+
+  void add_frame(std::span<const Vec3f> places, std::span<const Quatf> turns,
+                 std::vector<Part>& parts) const {
+    for (int j = 0; j < shown_; ++j) {
+      const int parent = frames_.skeleton.parents[at(j)];
+      if (frames_.skeleton.end_sites[at(j)] != 0) continue;
+      const Quat own = turns[at(j)].cast<double>();
+      const Quat local = parent < 0 ? own : turns[at(parent)].cast<double>().conjugate() * own;
+      const Vec3 turn = rotation_vector(normalized_or_identity(local)) / kRadiansPerDegree;
+      const Vec3 place = places[at(j)].cast<double>();
+      add(turn, parent < 0 ? &place : nullptr, parts[at(j)]);
+    }
+  }
+
+  void finish(int first, std::vector<Part>& parts) {
+    for (int j = 0; j < shown_; ++j) {
+      Part& part = parts[at(j)];
+      if (part.values.empty()) continue;
+      text_ += fmt::format("{:.2f} s {}: deg{}", first / frames_.rate,
+                           printable(frames_.skeleton.names[at(j)]), range(part.low, part.high, 1));
+      if (std::isfinite(part.low_place.x())) {
+        text_ += " mm" + range(part.low_place, part.high_place, 1000);
+      }
+      text_ += fmt::format(" #{}\n", hex(xxh3(std::as_bytes(std::span(part.values)))).substr(0, 8));
+      part = {};
+    }
+  }
+
+  const FrameSource& frames_;
+  int shown_ = 0, stretch_ = 1;
+  std::string text_;
+};
+
+// A motion as text for `git diff`, at most 2,000 lines: for each stretch of time (a second, or more
+// of long motions) and each joint the range of its rotation in its parent (rotation vector,
+// degrees) and a checksum of its values to 0.001 degrees, of the root also its place (mm, to
+// 0.01 mm). A change of one joint in one frame changes one line; how a file writes its numbers
+// changes none. A Git LFS pointer and a file that cannot be read are one line.
+//
+// Empty for a file that holds no motion.
+std::optional<std::string> textconv(const InputFile& file) {
+  const std::string_view text = file.text();
+  if (text.starts_with(kPointer)) {
+    std::string line = "Git LFS pointer:";
+    for (const std::string_view key : {"\noid ", "\nsize "}) {
+      const auto begin = text.find(key);
+      if (begin == std::string_view::npos) continue;
+      const auto end = text.find('\n', begin + 1);
+      line += ' ' + printable(text.substr(begin + 1, end - begin - 1));
+    }
+    return line.substr(0, 200) + '\n';
+  }
+  if (!io::format_of(file).reads_motion()) return std::nullopt;
+  io::PlainInputs inputs;
+  std::string made;
+  const auto summary =
+      io::stream_motion(file.path(), inputs, [&](const FrameSource& frames) -> Status {
+        auto result = Text(frames).made();
+        if (!result) return result.error();
+        made = *std::move(result);
+        return {};
+      });
+  if (!summary) {
+    return fmt::format("cannot be read: {} [{}]\n", printable(summary.error().message),
+                       summary.error().code);
+  }
+  return made;
+}
 
 Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
                              ToolContext& context) {

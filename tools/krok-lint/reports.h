@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "core/result.h"
 #include "tools/cli/json.h"
 #include "tools/krok-lint/linted_file.h"
 
@@ -28,5 +29,9 @@ std::string sarif_of(LintedFiles files, const std::string& version);
 
 // JUnit XML: a test suite for each file, a failed test case for each rule with faults.
 std::string junit_of(LintedFiles files);
+
+// An HTML page, without other files: a table of all faults, the worst file first, and for the worst
+// fault of each file five images of the body around its worst moment, for the first 100 files.
+Result<std::string> page_of(LintedFiles files, ToolContext& context);
 
 }  // namespace krok::cli::lint

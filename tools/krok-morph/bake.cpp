@@ -6,7 +6,6 @@
 #include "tools/krok-morph/actions.h"
 #include "tools/krok-morph/motion_file.h"
 #include "tools/krok-morph/shape_file.h"
-#include "tools/krok-morph/target_file.h"
 
 // Bakes animated morph targets.
 

@@ -6,9 +6,8 @@
 #include "core/text.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "tools/krok-morph/actions.h"
-#include "tools/krok-morph/movement.h"
+#include "tools/krok-morph/motion_file.h"
 #include "tools/krok-morph/shape_file.h"
-#include "tools/krok-morph/target_file.h"
 
 // Describes an .exr of morph targets.
 

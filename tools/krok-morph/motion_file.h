@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "core/result.h"
@@ -7,6 +8,7 @@
 #include "scene/model.h"
 #include "scene/morph_set.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/report.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli::morph {
@@ -25,5 +27,21 @@ Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat form
 // Adds glTF with morph targets and weight keys, one per frame.
 Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
                    MotionFormat format, OutputSet& outputs, ToolContext& context);
+
+// How far a target displaces a mesh, in metres.
+struct Movement {
+  int moved = 0;       // vertices displaced by more than 1e-6 m
+  double largest = 0;  // of all vertices
+  int vertex = -1;     // with the largest displacement; -1 if none moves
+  double mean = 0;     // over moved vertices
+};
+
+Movement movement_of(std::span<const Vec3f> base, std::span<const Vec3f> target);
+
+// For reports: "vertices_moved", "largest_distance", "vertex", "mean_distance".
+Json to_json(const Movement& movement);
+
+// "moves 312 vertices, max 12.3 mm (vertex 88), mean 3.1 mm".
+std::string describe(const Movement& movement);
 
 }  // namespace krok::cli::morph

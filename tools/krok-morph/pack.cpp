@@ -5,7 +5,7 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-morph/actions.h"
-#include "tools/krok-morph/movement.h"
+#include "tools/krok-morph/motion_file.h"
 #include "tools/krok-morph/shape_file.h"
 
 // Packs shapes into an .exr of morph targets.

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/file.h"
 #include "core/result.h"
 #include "scene/model.h"
 #include "scene/morph_set.h"
@@ -36,5 +37,12 @@ Status check_vertices(const ShapeFile& base, const MorphSet& morphs, const std::
 
 // Normals of a shape: its own, or else the base's, transformed with the surface.
 std::vector<Vec3f> normals_for(const ShapeFile& base, const ShapeFile& shape);
+
+// An .exr of morph targets and the file it came from.
+struct TargetFile {
+  InputFile file;
+  MorphSet morphs;
+};
+Result<TargetFile> read_targets(const std::string& path, ToolContext& context);
 
 }  // namespace krok::cli::morph

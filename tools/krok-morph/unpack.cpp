@@ -15,7 +15,6 @@
 #include "tools/cli/output_set.h"
 #include "tools/krok-morph/actions.h"
 #include "tools/krok-morph/shape_file.h"
-#include "tools/krok-morph/target_file.h"
 
 // Unpacks morph targets, one file each.
 

@@ -12,8 +12,6 @@
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-plot/charts.h"
-#include "tools/krok-plot/motions.h"
-#include "tools/krok-plot/table_charts.h"
 
 namespace krok::cli::plot {
 

@@ -1,4 +1,4 @@
-#include "tools/krok-plot/table_charts.h"
+#include "tools/krok-plot/charts.h"
 
 #include <fmt/format.h>
 

@@ -3,24 +3,101 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/numbers.h"
 #include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/obj/obj_writer.h"
 #include "formats/pc2/pc2.h"
+#include "motion/sample.h"
+#include "skin/morph.h"
+#include "skin/skin.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-skin/posed_mesh.h"
 #include "tools/krok-skin/small_rig.h"
+#include "tools/krok-skin/subject.h"
 
 namespace krok::cli::skin {
 
 namespace {
+
+// The subject's mesh at times of its motion: morph targets first, then skinning. Owns working
+// memory: use one per thread. Subject and binding must outlive it.
+class PosedMesh {
+ public:
+  PosedMesh(const Subject& subject, const SkinBinding& binding, int jobs);
+
+  // `out` has one element per vertex; normals and tangents if the model has them, or empty.
+  void at_frame(int frame, const SkinnedSurface& out);
+  void at_time(double seconds, const SkinnedSurface& out);
+
+ private:
+  void skin(double frame, std::span<const Stretch> stretches, const SkinnedSurface& out);
+  // The surface before skinning: the model's or, with morph targets, that of `frame`.
+  SkinSurface shape_at(double frame, const SkinnedSurface& out);
+
+  const Subject& subject_;
+  const SkinBinding& binding_;
+  SkinPose pose_;
+  int jobs_;
+  std::vector<Transform> joints_, scratch_;
+  std::vector<Stretch> stretches_;
+  std::vector<float> weights_;
+  std::vector<Vec3f> positions_, normals_;
+};
+
+PosedMesh::PosedMesh(const Subject& subject, const SkinBinding& binding, int jobs)
+    : subject_(subject),
+      binding_(binding),
+      pose_(binding),
+      jobs_(jobs),
+      joints_(subject.clip.skeleton.names.size()),
+      scratch_(3 * joints_.size()) {}
+
+void PosedMesh::at_frame(int frame, const SkinnedSurface& out) {
+  subject_.clip.get_pose(frame, joints_);
+  std::span<const Stretch> stretches = subject_.stretches;
+  if (!stretches.empty()) {
+    stretches = stretches.subspan(static_cast<std::size_t>(frame) * joints_.size(), joints_.size());
+  }
+  skin(frame, stretches, out);
+}
+
+void PosedMesh::at_time(double seconds, const SkinnedSurface& out) {
+  sample(subject_.clip, seconds, joints_, scratch_);
+  const double frame = seconds * subject_.clip.rate;
+  if (!subject_.stretches.empty()) {
+    stretches_.resize(joints_.size());
+    sample(subject_.stretches, frame, stretches_);
+  }
+  skin(frame, stretches_, out);
+}
+
+void PosedMesh::skin(double frame, std::span<const Stretch> stretches, const SkinnedSurface& out) {
+  pose_.set(joints_, stretches);
+  krok::skin(binding_, pose_, shape_at(frame, out), out, jobs_);
+}
+
+SkinSurface PosedMesh::shape_at(double frame, const SkinnedSurface& out) {
+  SkinSurface surface = skin_surface(subject_.model);
+  if (out.normals.empty()) surface.normals = {};
+  if (out.tangents.empty()) surface.tangents = {};
+  if (!subject_.changes_shape()) return surface;
+  weights_at(subject_.weights, frame / subject_.weights.rate, weights_);
+  positions_.resize(surface.positions.size());
+  normals_.resize(surface.normals.size());
+  apply_morphs(subject_.morphs, weights_, {surface.positions, surface.normals},
+               {positions_, normals_}, jobs_);
+  surface.positions = positions_;
+  surface.normals = normals_;
+  return surface;
+}
 
 // Browsers on common hardware fail at about this number of morph targets.
 constexpr int kManyMorphTargets = 1000;

@@ -1,4 +1,4 @@
-#include "tools/krok/completion.h"
+#include "tools/krok/krok.h"
 
 #include <fmt/format.h>
 

@@ -18,8 +18,6 @@
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
 #include "tools/krok/commands.h"
-#include "tools/krok/completion.h"
-#include "tools/krok/git_setup.h"
 #include "tools/krok/program.h"
 
 namespace krok::cli {
