@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/index.h"
 #include "formats/gltf/reduce_tracks.h"
@@ -18,12 +19,12 @@ constexpr double kBitsShare = 0.15;
 constexpr double kDecodingShare = 0.002;
 constexpr int kMinBits = 6, kMaxBits = 23;
 // Of joints without vertices, for what viewers attach to them: metres.
-constexpr double kMinReach = 0.05;
+constexpr double kMinReach = 0.05, kMinShell = 0.03;
 
 // For each joint the largest share of a turn about it that a vertex takes: weight times distance.
 // Joints without vertices still have to be in place, for what viewers attach to them.
 std::vector<double> shells_of(const Model& model) {
-  std::vector<double> shells(model.skeleton.names.size(), 0);
+  std::vector<double> shells(model.skeleton.names.size(), kMinShell);
   const auto places = static_cast<std::size_t>(model.influences_per_vertex);
   for (std::size_t i = 0; i < model.influence_weights.size(); ++i) {
     const double weight = static_cast<double>(model.influence_weights[i]);
@@ -98,6 +99,21 @@ ShapeAtMoment shape_of(const TrackedMesh& mesh) {
   };
 }
 
+// About the bytes of the keys of a file: what compression leaves of each is alike in all.
+double size_of(const JointTracks& tracks) {
+  double bits = 0;
+  for (const JointTrack& track : tracks.joints) {
+    const auto translations = static_cast<double>(track.translations.size());
+    const auto rotations = static_cast<double>(track.rotations.size());
+    bits += 3 * translations * std::clamp(4 - track.translation_exponent, 8, 32);
+    bits += 3 * rotations * (track.rotation_bits == JointTrack::kExact ? 32 : track.rotation_bits);
+    // Keys of their own times.
+    bits +=
+        16 * static_cast<double>(track.translation_frames.size() + track.rotation_frames.size());
+  }
+  return bits / 8;
+}
+
 std::size_t key_count(const JointTracks& tracks) {
   std::size_t count = 0;
   for (const JointTrack& track : tracks.joints) {
@@ -129,33 +145,44 @@ Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMes
   const JointTracks full = tracks;
   const std::vector<double> shells = shells_of(model.model), reaches = reaches_of(model.model);
   MeshReduction best;
-  bool found = false;
-  const auto attempt = [&](double factor) -> Result<bool> {
+  double best_size = std::numeric_limits<double>::infinity();
+  // Keys within `factor` of the tolerance, with bits within `bits_error` metres and then, with
+  // `coarser`, fewer as long as that fits.
+  const auto attempt = [&](double factor, double bits_error, bool coarser) -> Result<bool> {
     JointTracks fewer = full;
-    const double tolerance = factor * options.tolerance;
     auto reduction = reduce_tracks(
-        model.model.skeleton, {.tolerance = tolerance, .shell_distances = shells}, jobs, fewer);
+        model.model.skeleton, {.tolerance = factor * options.tolerance, .shell_distances = shells},
+        jobs, fewer);
     if (!reduction) return std::move(reduction).error();
-    if (options.short_keys) choose_bits(reaches, kBitsShare * tolerance, options.filtered, fewer);
-    const MeshError error = mesh_error(model, full, kept, rounded(fewer, options.filtered), jobs);
-    const bool fits = error.largest <= (1 - kDecodingShare) * options.tolerance;
-    if (fits && (!found || reduction->keys_after < best.keys_after)) {
-      best = {error, reduction->keys_before, reduction->keys_after};
-      tracks = std::move(fewer);
-      found = true;
+    for (bool fits_any = false;; fits_any = true, bits_error *= 2) {
+      if (options.short_keys) choose_bits(reaches, bits_error, options.filtered, fewer);
+      const MeshError error = mesh_error(model, full, kept, rounded(fewer, options.filtered), jobs);
+      if (error.largest > (1 - kDecodingShare) * options.tolerance) return fits_any;
+      if (const double size = size_of(fewer); size < best_size) {
+        best = {error, reduction->keys_before, reduction->keys_after};
+        best_size = size;
+        tracks = fewer;
+      }
+      if (!coarser || bits_error > options.tolerance) return true;
     }
-    return fits;
   };
   // Between what always fits and what never does, by halves of the logarithm.
   double low = 1.0 / 64, high = 4;
   constexpr int kRounds = 6;
   for (int round = 0; round < kRounds; ++round) {
     const double middle = round == 0 ? 1.0 : std::sqrt(low * high);
-    const auto fits = attempt(middle);
+    const auto fits = attempt(middle, kBitsShare * middle * options.tolerance, false);
     if (!fits) return fits.error();
     (*fits ? low : high) = middle;
   }
-  if (found) return best;
+  // What keys leave of the tolerance, and more of it, for fewer bits.
+  for (const double share : {1.0, 0.5, 0.125}) {
+    if (!options.short_keys || !options.filtered) break;
+    const auto fits =
+        attempt(share * low, 2 * kBitsShare * std::min(1.0, low) * options.tolerance, true);
+    if (!fits) return fits.error();
+  }
+  if (std::isfinite(best_size)) return best;
   tracks = full;
   return MeshReduction{mesh_error(model, full, kept, tracks, jobs), key_count(full),
                        key_count(full)};
