@@ -8,6 +8,7 @@
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
 #include "retarget/pose_alignment.h"
+#include "roles/limbs.h"
 
 namespace krok::retarget {
 
@@ -16,6 +17,7 @@ namespace {
 constexpr int kMaxFrames = 2000;
 // Share of the frames, in which a foot is flat on the ground.
 constexpr double kLowest = 0.05;
+constexpr float kUpright = 0.7F;  // cosine of a shank's angle with up, over a foot that stands
 // From the ankle to the ball of a foot on the ground, and by how much feet differ from it.
 constexpr double kUsualPitch = -0.5, kPitchRange = 0.6;
 // Cosine of the angle by which bones may be off a T-pose's.
@@ -394,14 +396,21 @@ class StanceBuilder {
   }
 
   // By pitch. A foot is flat where ankle and ball are both low: on tiptoe and on the heel one of
-  // them is not. Of both feet together, as a take may hold one of them up.
+  // them is not. Of both feet together, as a take may hold one of them up. Nobody stands on the
+  // feet of a leg that lies or kneels.
   std::vector<FootOnGround> feet_on_ground() const {
     std::vector<FootOnGround> frames;
-    for (const Role role : {Role::left_foot, Role::right_foot}) {
+    for (const LegRoles& leg : kLegRoles) {
+      const Role role = leg.foot;
       const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
+      const int knee = roles_.joint(leg.lower);
       if (foot < 0 || front < 0) continue;
       for (int f = 0; f < clip_.frame_count(); f += step_) {
         const auto positions = clip_.frame_positions(f);
+        if (knee >= 0) {
+          const Vec3f shank = positions[at(knee)] - positions[at(foot)];
+          if (shank.y() < kUpright * shank.norm()) continue;
+        }
         const Vec3 bone = (positions[at(front)] - positions[at(foot)]).cast<double>();
         const double sine = bone.y() / std::max(bone.norm(), 1e-9);
         frames.push_back({positions[at(foot)].y() + positions[at(front)].y(),

@@ -600,5 +600,34 @@ TEST(Retarget, TakesTogetherGiveOneStance) {
   EXPECT_EQ(retarget::TakePool(100'000, roles).clip().frame_count(), 0);
 }
 
+// Would fail if feet of a body that lies, which are low in any pose, were taken for feet that
+// stand: a take that ends in a fall had bodies whose toes pointed down.
+TEST(Retarget, AFallAfterAWalkLeavesTheStance) {
+  const Skeleton human = human_skeleton();
+  Skeleton folded = human;
+  for (const char* name : {"LeftUpLeg", "RightUpLeg"}) {
+    folded = posed(folded, name, from_rotation_vector(Vec3(3, 0, 0)));
+  }
+  Clip walk = lively_clip(human, 60), fall = lively_clip(human, 120);
+  for (int f = 60; f < 120; ++f) {
+    Skeleton lying = human;
+    for (const char* name : {"LeftFoot", "RightFoot"}) {
+      lying = posed(lying, name, from_rotation_vector(Vec3(1, 0, 0)));
+    }
+    lying = posed(lying, human.names[0], from_rotation_vector(Vec3(-1.5, 0, 0)));
+    for (Transform& joint : lying.reference) joint.position.y() -= human.reference[0].position.y();
+    fall.set_pose(f, lying.reference);
+  }
+  walk.skeleton = fall.skeleton = folded;
+  const RoleMap roles = find_roles(folded);
+  const auto of_walk = retarget::find_stance(walk, roles, std::nullopt);
+  const auto of_fall = retarget::find_stance(fall, roles, std::nullopt);
+  ASSERT_TRUE(of_walk.ok() && of_fall.ok());
+  for (const char* name : {"LeftFoot", "RightFoot"}) {
+    const auto foot = at(human.find(name));
+    EXPECT_LT(angle_between(of_walk->pose[foot].orientation, of_fall->pose[foot].orientation), 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace krok
