@@ -57,6 +57,12 @@ BoneStyle bone_style(const Skeleton& skeleton) {
   style.colours.assign(skeleton.parents.size(), side_colour(BodySide::middle));
   if (check(skeleton)) {
     std::ranges::transform(body_sides(skeleton), style.colours.begin(), side_colour);
+    const int hips = find_roles(skeleton).joint(Role::hips);
+    for (int joint = hips; joint >= 0;) {
+      const int above = skeleton.parents[static_cast<std::size_t>(joint)];
+      style.parents[static_cast<std::size_t>(joint)] = joint == hips ? -1 : BoneStyle::kLeftOut;
+      joint = above;
+    }
   }
   style.radius = bone_radius(reference_extent(skeleton));
   return style;
@@ -82,6 +88,7 @@ render::Actor bone_actor(const BoneStyle& style, std::span<const Vec3f> position
     }
   }
   for (std::size_t j = 0; j < positions.size(); ++j) {
+    if (style.parents[j] == BoneStyle::kLeftOut) continue;
     const float thick = meeting[j] > 0 ? thickness[j] : radius;
     actor.bones.push_back(
         {positions[j], positions[j], thick, thick, style.colours[j], style.colours[j]});

@@ -24,13 +24,16 @@ double bone_radius(double extent);
 
 // Drawing style of a skeleton.
 struct BoneStyle {
-  std::vector<int> parents;             // [joints], -1 for none
+  // A joint that is not drawn, nor a bone to it.
+  static constexpr int kLeftOut = -2;
+  std::vector<int> parents;             // [joints], -1 for none, or kLeftOut
   std::vector<render::Colour> colours;  // [joints]; a bone has the colour of its child joint
   bool blended = false;                 // bone colours blend from parent to child
   double radius = 0.01;                 // of joints, metres
 };
 
-// Coloured by side, with a radius that suits the skeleton's size. Names that are not unique tell no
+// Coloured by side, with a radius that suits the skeleton's size. Joints above the hips, which may
+// stay where the capture began, are no part of the body and are left out. Names that are not unique tell no
 // sides.
 BoneStyle bone_style(const Skeleton& skeleton);
 
