@@ -164,7 +164,9 @@ CycleCharts cycle_charts(std::span<const ChartedMotion> motions) {
           has_cycle[m] = true;
           if (charts.panels.empty()) {
             ++charts.counts[s];
-            off[s] += 100 * (cycle.off - cycle.strike) / (cycle.next - cycle.strike);
+            const double stance = (cycle.off - cycle.strike) / (cycle.next - cycle.strike);
+            if (stance < 0.5) ++charts.runs;
+            off[s] += 100 * stance;
           }
         }
       }

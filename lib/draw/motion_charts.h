@@ -73,6 +73,7 @@ std::vector<Panel> body_angle_panels(std::span<const ChartedMotion> motions);
 struct CycleCharts {
   std::vector<Panel> panels;    // none without a cycle
   std::array<int, 2> counts{};  // cycles of the left and right side
+  int runs = 0;                 // of both, with the foot on the ground for less than half of it
   int motions = 0;              // that have a cycle
 };
 CycleCharts cycle_charts(std::span<const ChartedMotion> motions);

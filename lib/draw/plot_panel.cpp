@@ -235,7 +235,7 @@ void PanelWriter::series(std::size_t index) {
   const std::string& colour = palette_colour(place);
   const auto runs = runs_of(series, area_);
   if (series.filled) {
-    put("<path fill=\"{}\" fill-opacity=\"0.45\" d=\"{}Z\"/>\n", colour, path_of(runs));
+    put("<path fill=\"{}\" fill-opacity=\"0.25\" d=\"{}Z\"/>\n", colour, path_of(runs));
   }
   if (series.style != SeriesStyle::points) {
     const std::string dash = dash_pattern(series.dash, place);

@@ -47,6 +47,7 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-diff", "--size", "--actor-size"},
     {"krok-diff", "--threshold", "--tolerance"},
     {"krok-diff", "--xml", "--summary OUT.xml"},
+    {"krok-diff", "--eps", "--tolerance"},
     {"krok-edit", "--crop", "--from TIME --to TIME"},
     {"krok-edit", "--cut", "--from TIME --to TIME"},
     {"krok-edit", "--end", "--to"},
@@ -67,6 +68,8 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-edit", "--unit", "krok-import --unit; a motion is in metres"},
     {"krok-edit", "--units", "krok-import --unit; a motion is in metres"},
     {"krok-export", "--angles", "--what angles"},
+    {"krok-export", "--scale", "--unit, or krok-edit --scale before"},
+    {"krok-export", "--to", "--format"},
     {"krok-fit", "--plots", "--plot"},
     {"krok-fit", "--smooth", "--smoothing"},
     {"krok-fit", "--until", "--max-error"},
@@ -85,14 +88,17 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-import", "--units", "--unit"},
     {"krok-import", "--up-axis", "--up"},
     {"krok-import", "--frames", "krok-edit --from TIME --to TIME; 120f is frame 120"},
+    {"krok-import", "--format", "krok-export --format; krok-import writes .anim"},
     {"krok-keys", "--csv", "--table"},
     {"krok-keys", "--gait", "--table"},
     {"krok-keys", "--keys", "--contacts"},
     {"krok-keys", "--set", "--keytime"},
+    {"krok-keys", "--threshold", "--contacts or --keytime"},
     {"krok-lint", "-o", "--html OUT.html, --table OUT.csv or --junit OUT.xml"},
     {"krok-lint", "--csv", "--table"},
     {"krok-lint", "--report", "--html"},
     {"krok-lint", "--format", "--sarif, --junit, --html or --table, each with a file"},
+    {"krok-lint", "--rule", "--only"},
     {"krok-mix", "--keys", "--contacts"},
     {"krok-morph", "--by-order", "--match order"},
     {"krok-plot", "--angles", "--show angles"},
@@ -108,23 +114,31 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-plot", "--table", "--as-table"},
     {"krok-plot", "--what", "--show"},
     {"krok-plot", "--mean-only", "--show cycles, which draws mean and deviation"},
+    {"krok-ragdoll", "--from", "--at"},
     {"krok-render", "--duration", "--from TIME --to TIME"},
     {"krok-render", "--fps", "--rate"},
     {"krok-render", "--sides", "--view"},
     {"krok-render", "--together", "--layout together"},
     {"krok-render", "--resolution", "--size"},
+    {"krok-render", "--camera", "--view, or --cam IN.cam"},
     {"krok-retarget", "--character", "--onto"},
     {"krok-retarget", "--model", "--onto"},
     {"krok-retarget", "--target", "--onto"},
     {"krok-retarget", "--to", "--onto"},
+    {"krok-retarget", "--fps", "krok-edit --rate after it"},
+    {"krok-retarget", "--ik", "the command without it: contacts keep their places"},
+    {"krok-retarget", "--plant", "krok-edit --plant after it"},
+    {"krok-retarget", "--rate", "krok-edit --rate after it"},
     {"krok-skin", "--fps", "--every N, or krok-edit --rate before"},
     {"krok-skin", "--rate", "--every N, or krok-edit --rate before"},
+    {"krok-skin", "--clip-names", "NAME=FILE, such as walk=take_7.anim"},
     {"krok-synth", "--duration", "--set duration=VALUE"},
     {"krok-synth", "--length", "--set length=VALUE"},
     {"krok-synth", "--table", "--points"},
     {"krok-synth", "--turn", "--set turn=VALUE"},
     {"krok-view", "--keys", "--contacts"},
     {"krok-view", "--camera", "krok-render --cam; a page is turned with the mouse"},
+    {"krok-view", "--port", "-o OUT.html: the page is a file"},
     {"krok-walk", "--from", "--start"},
     {"krok-walk", "--style-of", "--style"},
     {"krok-walk", "--to", "--goal"},
@@ -135,6 +149,11 @@ inline constexpr RenamedOption kRenamedOptions[] = {
 
 // What helps who gives a tool more inputs than it takes, or others; empty for most tools.
 inline std::string too_many_hint(std::string_view tool) {
+  if (tool == "krok-fit") {
+    return "the clips are named in a description (.json, formats/library/SPEC.md): {\"schema\": "
+           "\"krok.library/1\", \"steps\": \"auto\", \"parameters\": [...], \"examples\": "
+           "[{\"clip\": \"takes/*.bvh\"}]}";
+  }
   if (tool != "krok-mix") return {};
   return "a timeline is JSON that names its motions (formats/timeline/SPEC.md); krok-blend A B "
          "blends two motions, krok-edit A --append B puts one after the other";

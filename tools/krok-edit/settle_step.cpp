@@ -1,10 +1,36 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include "core/numbers.h"
 #include "settle/settle.h"
 #include "tools/krok-edit/steps.h"
 
 namespace krok::cli::edit {
+
+namespace {
+
+// Warns of slopes and stairs that the motion never comes to.
+void warn_of_level_ground(const Edit& edit, ToolContext& context) {
+  Eigen::AlignedBox3d under;
+  for (int f = 0; f < edit.clip.frame_count(); ++f) {
+    for (const Vec3f& position : edit.clip.frame_positions(f)) {
+      const auto ground = edit.ground->at(position.x(), position.z());
+      if (!ground) continue;
+      under.extend(Vec3(position.x(), ground->height, position.z()));
+      if (under.sizes().y() > 1e-4) return;
+    }
+  }
+  if (under.isEmpty()) return;
+  context.warn("settle-level",
+               fmt::format("--ground is level where the motion is: x {} to {} m, z {} to {} m",
+                           readable(under.min().x(), 3), readable(under.max().x(), 3),
+                           readable(under.min().z(), 3), readable(under.max().z(), 3)),
+               "stairs and slopes begin at z = 1 m: slope:12deg,begin=-2m; or move the motion with "
+               "--at-origin, --move");
+}
+
+}  // namespace
 
 Status settle_on_ground(const Options& options, ToolContext& context, Edit& edit) {
   if (!options.settle) return {};
@@ -12,6 +38,9 @@ Status settle_on_ground(const Options& options, ToolContext& context, Edit& edit
   how.floor = options.floor;
   how.model = edit.model.get();
   how.jobs = context.jobs;
+  if (!options.ground.empty() && !options.ground.text.starts_with("level")) {
+    warn_of_level_ground(edit, context);
+  }
   auto settled = settle(edit.clip, edit.roles, *edit.ground, how);
   if (!settled) return settled.error();
   context.diagnose(settled->warnings);

@@ -148,6 +148,7 @@ class MotionChart {
     Json json;
     json["left"] = cycles.counts[0];
     json["right"] = cycles.counts[1];
+    json["runs"] = cycles.runs;
     json["motions"] = cycles.motions;
     context_.report.result["cycles"] = std::move(json);
     if (cycles.motions < static_cast<int>(motions_.files.size())) {
@@ -156,9 +157,19 @@ class MotionChart {
                                 motions_.files.size() - static_cast<std::size_t>(cycles.motions),
                                 counted(static_cast<long long>(motions_.files.size()), "motion")));
     }
+    const int all = cycles.counts[0] + cycles.counts[1];
+    if (10 * std::min(cycles.runs, all - cycles.runs) > all) {
+      context_.warn("plot-cycles",
+                    fmt::format("{} of {} gait cycles are runs: the mean with walks is neither",
+                                cycles.runs, all),
+                    "give walks or runs alone; krok keys IN... --table OUT.csv names the gait of "
+                    "each file");
+    }
     append(chart_.panels, std::move(cycles.panels));
-    chart_.title = fmt::format("{} left and {} right gait cycles, mean \u00B1 standard deviation",
-                               cycles.counts[0], cycles.counts[1]);
+    chart_.title =
+        fmt::format("{} left and {} right gait cycles{}, mean \u00B1 standard deviation",
+                    cycles.counts[0], cycles.counts[1],
+                    motions_.files.size() > 1 ? fmt::format(" of {} motions", cycles.motions) : "");
     return {};
   }
 

@@ -94,7 +94,9 @@ Status add_charts(const Options& options, ToolContext& context, OutputSet& outpu
   auto chart = make_chart(options, context);
   if (!chart) return chart.error();
   // What is there says what the chart is of.
-  if (!chart->title.empty()) chart->title = usual_title(options.inputs) + ": " + chart->title;
+  if (!chart->title.empty() && options.inputs.size() == 1) {
+    chart->title = usual_title(options.inputs) + ": " + chart->title;
+  }
   if (chart->title.empty()) chart->title = usual_title(options.inputs);
   if (!options.title.empty()) chart->title = options.title;
   lay_out(options, *chart);
