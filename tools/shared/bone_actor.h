@@ -33,8 +33,8 @@ struct BoneStyle {
 };
 
 // Coloured by side, with a radius that suits the skeleton's size. Joints above the hips, which may
-// stay where the capture began, are no part of the body and are left out. Names that are not unique tell no
-// sides.
+// stay where the capture began, are no part of the body and are left out. Names that are not unique
+// tell no sides.
 BoneStyle bone_style(const Skeleton& skeleton);
 
 // A tapered bar from each parent to its child joint and a ball at each joint. Short bones are
