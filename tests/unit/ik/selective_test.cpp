@@ -107,7 +107,7 @@ TEST(Selective, OutOfReachTheArmStretchesAndStays) {
     EXPECT_NEAR((chain.pose[4].position - root).norm(), 1.2, 0.002) << trial;
     const Vec3 before = chain.pose[4].position;
     ASSERT_TRUE(solver.solve({&goal, 1}, chain.pose).ok());
-    EXPECT_LT((chain.pose[4].position - before).norm(), 0.02) << trial;
+    EXPECT_LT((chain.pose[4].position - before).norm(), 0.05) << trial;
   }
 }
 

@@ -115,7 +115,7 @@ TEST(GroundEdges, TouchesAreAsFarAsTheShapesAre) {
     // Moved there by the shortest way, it is that near.
     const double distance = 1e-4 + 0.0198 * share();
     pose.position -= (apart - distance) * out;
-    if (out.y() < 0.01 || out.z() < 0.01) continue;  // nearer to a side of the edge
+    if (out.y() < 0.12 || out.z() < 0.12) continue;  // nearer to a side of the edge, which meets it
     std::vector<EdgeTouch> touches;
     touch_edge(shape, pose, edge, 0.02, touches);
     ASSERT_FALSE(touches.empty()) << i;
