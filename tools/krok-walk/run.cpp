@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/file.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
@@ -145,6 +146,14 @@ Result<gait::Path> make_path(const Options& options, bool backward, ToolContext&
   if (!way) return way.error();
   auto path = gait::Path::create(*way);
   if (!path) return std::move(path.error()).in_file(options.path);
+  constexpr double kShort = 0.5;  // metres: less than a step
+  if (path->length() < kShort && extension(options.path) == ".svg") {
+    Diagnostic small = make_warning(
+        "path-short", fmt::format("the path is {} m long", readable(path->length(), 3)),
+        "--path-scale LENGTH is the length of a unit of the drawing, such as 1m; 1cm without it");
+    small.where.file = options.path;
+    context.diagnose(std::move(small));
+  }
   return path;
 }
 
@@ -185,6 +194,25 @@ Result<std::vector<gait::Print>> choose_prints(const Options& options,
   return planned->prints;
 }
 
+// Says that steps of several styles are mixed.
+void mention_styles(std::span<const gait::StepLibrary> libraries, ToolContext& context) {
+  std::vector<std::string> styles;
+  for (const gait::StepLibrary& library : libraries) {
+    for (const parametric::Example& example : library.library().examples) {
+      if (!example.style.empty()) styles.push_back(example.style);
+    }
+  }
+  std::ranges::sort(styles);
+  styles.erase(std::unique(styles.begin(), styles.end()), styles.end());
+  if (styles.size() < 2) return;
+  constexpr std::size_t kShown = 8;
+  const std::size_t count = styles.size();
+  styles.resize(std::min(kShown, count));
+  for (std::string& style : styles) style = shown(style);
+  context.log(fmt::format("steps of {} styles are mixed ({}{}); --style NAME walks in one", count,
+                          fmt::join(styles, ", "), count > kShown ? ", ..." : ""));
+}
+
 Result<std::vector<gait::StepLibrary>> open_libraries(const Options& options,
                                                       ToolContext& context) {
   const auto find_roles = io::open_role_map(options.map, context);
@@ -211,6 +239,8 @@ Result<std::vector<gait::StepLibrary>> open_libraries(const Options& options,
   }
   if (!options.style.empty()) {
     if (Status status = gait::take_style(libraries, options.style); !status) return status.error();
+  } else {
+    mention_styles(libraries, context);
   }
   return libraries;
 }
