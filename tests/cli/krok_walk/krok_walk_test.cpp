@@ -94,6 +94,9 @@ TEST_F(KrokWalk, FollowsADrawing) {
   walked({"--path", path("way.svg"), "--path-id", "b", "--path-scale", "2cm", "--save-prints",
           path("q.csv")});
   EXPECT_NEAR(prints("q.csv").back().x, 6, 0.2);
+  // Path a is 13 cm long: no unit of a drawing that one walks in.
+  EXPECT_THAT(walk({"--path", path("way.svg"), "-o", path("short.anim")}).err,
+              AllOf(HasSubstr("[path-short]"), HasSubstr("--path-scale")));
   // The way of a motion is another walk's.
   walked({"--path", path("walk.anim"), "-o", path("copy.anim"), "--save-prints", path("r.csv")});
   EXPECT_NEAR(prints("r.csv").back().z, prints("q.csv").back().z, 0.3);
