@@ -323,6 +323,25 @@ void measure_before(const Clip& clip, PlantedFeet& planted) {
   }
 }
 
+void measure_stances(const RoleMap& roles, PlantedFeet& planted) {
+  const auto found = find_contacts(planted.clip, roles);
+  if (!found) return;
+  const std::vector<Keytime> keytimes = find_gait(planted.clip, roles, *found).keytimes;
+  int all = 0, held = 0;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    for (const StanceTimes& stance : stance_times(keytimes, side)) {
+      const int last = static_cast<int>(std::floor(stance.off * planted.clip.rate));
+      for (int f = static_cast<int>(std::ceil(stance.strike * planted.clip.rate)); f <= last; ++f) {
+        ++all;
+        held += std::ranges::any_of(planted.stays, [&](const FixedStay& stay) {
+          return stay.point.side == side && stay.first <= f && f <= stay.last;
+        });
+      }
+    }
+  }
+  if (all > 0) planted.stance_share = static_cast<double>(held) / all;
+}
+
 }  // namespace
 
 Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
@@ -345,6 +364,7 @@ Result<PlantedFeet> plant_feet(const Clip& clip, const RoleMap& roles,
     planted = std::move(again);
     measure_before(clip, planted);
   }
+  measure_stances(roles, planted);
   return planted;
 }
 

@@ -31,6 +31,9 @@ struct PlantedFeet {
   double pelvis_lowered = 0;  // metres, the most in any frame
   double body_steadied = 0;   // metres, root mean square of the jitter taken out of the whole body
   int out_of_reach = 0;       // frames in which a leg is too short for its place
+  // Of the time from strike to toe-off (find_gait()), of both feet, the part in which a point of
+  // the foot stays; in the rest the foot moves as captured. None without a whole stance.
+  std::optional<double> stance_share;
   Diagnostics warnings;
 };
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <algorithm>
 
 #include <span>
@@ -83,6 +85,7 @@ Json planting_json(const PlantedFeet& planted, bool contacts_given) {
   json["pelvis_lowered"] = planted.pelvis_lowered;
   json["body_steadied"] = planted.body_steadied;
   json["frames_out_of_reach"] = planted.out_of_reach;
+  if (planted.stance_share) json["stance_share"] = *planted.stance_share;
   json["stays"] = Json::array();
   for (const FixedStay& stay : planted.stays)
     json["stays"].push_back(stay_json(stay, planted.clip));
@@ -90,10 +93,14 @@ Json planting_json(const PlantedFeet& planted, bool contacts_given) {
 }
 
 std::string planting_line(const PlantedFeet& planted) {
-  std::string line =
-      fmt::format("feet planted in {}: heels and balls drift by up to {} instead of {}",
-                  counted(static_cast<long long>(planted.stays.size()), "stay"),
-                  millimetres(planted.drift_after), millimetres(planted.drift_before));
+  std::string line = fmt::format("feet planted in {}",
+                                 counted(static_cast<long long>(planted.stays.size()), "stay"));
+  if (planted.stance_share) {
+    line += fmt::format(", {:.0f} % of the time from strike to toe-off",
+                        std::floor(100 * *planted.stance_share));
+  }
+  line += fmt::format(": heels and balls drift by up to {} instead of {}",
+                      millimetres(planted.drift_after), millimetres(planted.drift_before));
   double tips = 0;  // about which a foot turns
   for (const FixedStay& stay : planted.stays) {
     if (stay.point.part == FootPart::tip) tips = std::max(tips, stay.drift_after);

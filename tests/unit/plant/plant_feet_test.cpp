@@ -211,6 +211,12 @@ TEST(PlantFeet, ContactsGivenDecide) {
   }
   EXPECT_EQ(balls, 1);
   for (const FixedStay& stay : feet.stays) EXPECT_EQ(stay.point.side, FootSide::left);
+  // What one short contact leaves as captured is not passed over.
+  const PlantedFeet all = planted(input);
+  ASSERT_TRUE(feet.stance_share && all.stance_share);
+  EXPECT_LT(*feet.stance_share, 0.4);
+  EXPECT_GT(*all.stance_share, 0.6);
+  EXPECT_LE(*all.stance_share, 1);
 }
 
 // A leg that is straight already, and whose foot is to stand behind where it is: the pelvis comes
