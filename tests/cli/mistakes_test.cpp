@@ -1,5 +1,7 @@
 // Plausible mistakes on the command line, and what helps against them: near names, completion,
 // colours. Would fail if a typing mistake were answered with a riddle.
+#include <filesystem>
+
 #include "cli/motion_fixture.h"
 #include "support/this_build.h"
 #include "tools/cli/console_progress.h"
@@ -41,6 +43,15 @@ TEST_F(Mistakes, OptionsWithoutTheirValue) {
               HasSubstr("'-o' is the next option"));
   // Numbers below zero are values.
   EXPECT_EQ(run_here("krok-edit", {"in.bvh", "--heading", "-90deg", "-o", "a.anim"}).exit_code, 0);
+}
+
+// Would fail if a folder as input led to an error about the folder, once -o were added.
+TEST_F(Mistakes, FoldersAreForBatchesAndFoldersAreNoFiles) {
+  std::filesystem::create_directory(path("takes"));
+  EXPECT_THAT(refused("krok-edit", {path("takes"), "--mirror"}), HasSubstr("add --out-dir DIR"));
+  EXPECT_THAT(refused("krok-export", {path("takes")}), HasSubstr("add --out-dir DIR"));
+  EXPECT_THAT(refused("krok-lint", {"in.bvh", "--fix", "x.anim"}),
+              HasSubstr("the output is a folder, not x.anim"));
 }
 
 TEST_F(Mistakes, UnknownJointsToo) {

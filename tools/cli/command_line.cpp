@@ -429,7 +429,13 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
                    "-o OUTPUT names another, or replaces it");
     }
   }
-  if (form_ == Form::single && needs_output_ && output.empty()) return no_output();
+  if (form_ == Form::single && needs_output_ && output.empty()) {
+    for (const CLI::Option* option : app_.get_options()) {
+      if (!takes_many_ || !option->get_positional() || option->empty()) continue;
+      return no_output_for(option->results().front());
+    }
+    return no_output();
+  }
   if (Status status = open_folders(); !status) return status.error();
   // Those of a list stand in part on its lines.
   if (form_ == Form::single || form_ == Form::one_file) {

@@ -166,6 +166,10 @@ ValueKind<std::string> output(const std::vector<std::string>& endings) {
     const auto ends_so = [&](const std::string& one) { return ascii_lower(text).ends_with(one); };
     // Devices and names without an extension are taken as they are.
     if (ending.empty() || std::ranges::any_of(endings, ends_so)) return text;
+    if (endings.empty()) {
+      return usage(fmt::format("the output is a folder, not {}", shown(text)),
+                   "give the name of a folder, without an extension");
+    }
     constexpr std::string_view kPictures = " .png .jpg .gif .mp4 .webp .webm .avi .mov ";
     const bool picture = kPictures.find(" " + ascii_lower(ending) + " ") != std::string_view::npos;
     return usage(fmt::format("the output is a {} file, not {}", either_of(endings), shown(text)),

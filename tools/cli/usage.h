@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -15,6 +16,14 @@ inline Error usage(std::string message, std::string hint = {}) {
 // -o is missing.
 inline Error no_output(std::string hint = "add -o OUTPUT") {
   return usage("no output given", std::move(hint));
+}
+
+// The same, where a folder would be an input of batch mode.
+inline Error no_output_for(const std::string& input) {
+  std::error_code unknown;
+  const bool folder = std::filesystem::is_directory(input, unknown);
+  return folder ? no_output("add --out-dir DIR, for an output for each file of the folder")
+                : no_output();
 }
 
 }  // namespace krok::cli

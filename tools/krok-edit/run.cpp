@@ -247,7 +247,7 @@ Result<int> run(const Options& given, ToolContext& context) {
   Options options = given;
   complete_game_loop(options);
   if (options.list_sequences) return list_sequences(options, context);
-  if (context.output.empty()) return no_output();
+  if (context.output.empty()) return no_output_for(options.input);
   if (!has_step(context)) {
     return usage("no step is requested, so the motion would be copied",
                  "krok-edit -h lists the steps; krok-import converts captures to .anim");

@@ -526,7 +526,7 @@ Status Run::check_outputs() const {
     return Error("usage", "--plot cannot be used in batch mode");
   }
   if (options_.changes_motion() && context_.output.empty()) {
-    return no_output();
+    return no_output_for(options_.input);
   }
   if (!options_.changes_motion() && !context_.output.empty()) {
     return Error("usage", "-o is given, but no goals",
