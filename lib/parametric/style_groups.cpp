@@ -19,8 +19,8 @@ namespace krok::parametric {
 
 namespace {
 
-constexpr int kMostGroups = 20;
-constexpr int kMostCaptures = 1000;
+constexpr int kMaxGroups = 20;
+constexpr int kMaxCaptures = 1000;
 constexpr int kGroupingRounds = 3;
 constexpr std::size_t kSampleStride = 4;  // of the samples of an example
 
@@ -165,7 +165,7 @@ std::vector<int> groups_after(const std::vector<std::pair<int, int>>& joins, int
 
 void regroup(const Rows& poses, std::span<const int> captures, int count, StyleGroups& styles) {
   const auto joins = joins_of(means_by(poses, captures, count));
-  const int most = std::min(kMostGroups, count);
+  const int most = std::min(kMaxGroups, count);
   for (styles.count = 1;; ++styles.count) {
     const std::vector<int> groups = groups_after(joins, count, styles.count);
     std::ranges::transform(captures, styles.of_example.begin(),
@@ -199,7 +199,7 @@ Result<StyleGroups> group_styles(const Library& library, std::span<const int> ca
   const Rows plain = without_parameters(poses, parameters, styles.of_example, 1);
   styles.spread = styles.within = spread_within(plain, styles.of_example, 1);
   const int count = 1 + std::ranges::max(captures);
-  if (count < 2 || count > kMostCaptures || styles.spread <= kAlikeSteps) return styles;
+  if (count < 2 || count > kMaxCaptures || styles.spread <= kAlikeSteps) return styles;
   for (int round = 0; round < kGroupingRounds; ++round) {
     const int groups = styles.count;
     regroup(without_parameters(poses, parameters, styles.of_example, groups), captures, count,
