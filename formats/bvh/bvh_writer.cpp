@@ -28,27 +28,28 @@ struct WrittenJoint {
   bool end_site = false;
   bool positions = false;
   Vec3 offset = Vec3::Zero();  // metres
+  double movement = 0;         // metres: the largest distance from the offset in any frame
 };
 
 class Writer {
  public:
-  Writer(const Clip& clip, const WriteOptions& options, OutputFile& file)
-      : clip_(clip),
+  Writer(const FrameSource& source, const WriteOptions& options, OutputFile& file)
+      : source_(source),
         options_(options),
         file_(file),
-        count_(clip.skeleton.names.size()),
+        count_(source.skeleton.names.size()),
         scale_(1.0 / options.unit_metres) {
     // A coarser unit needs more decimals for the same length.
     const double shift = std::log10(options.unit_metres / 0.01);
     length_decimals_ = std::clamp(options.decimals + static_cast<int>(std::lround(shift)), 0, 15);
-    for (const Transform& joint : clip.skeleton.reference) {
+    for (const Transform& joint : source.skeleton.reference) {
       from_reference_.push_back(joint.orientation.normalized().conjugate());
     }
   }
 
   Status write() {
     order_joints();
-    find_moving_translations();
+    if (Status status = find_moving_translations(); !status) return status;
     write_hierarchy();
     write_motion_header();
     if (Status status = flush(); !status) return status;
@@ -56,7 +57,7 @@ class Writer {
   }
 
  private:
-  const Skeleton& skeleton() const { return clip_.skeleton; }
+  const Skeleton& skeleton() const { return source_.skeleton; }
   int parent_of(std::size_t joint) const { return skeleton().parents[joint]; }
 
   // Depth first, children in the clip's order, without recursion.
@@ -87,8 +88,8 @@ class Writer {
 
   // joint_to_world of a frame relative to the reference orientations, so that zero rotations give
   // the reference pose.
-  void folded_pose(int frame, std::span<Transform> pose) const {
-    clip_.get_pose(frame, pose);
+  void folded_pose(const Clip& block, int frame, std::span<Transform> pose) const {
+    block.get_pose(frame, pose);
     for (std::size_t j = 0; j < count_; ++j) {
       pose[j].orientation = pose[j].orientation * from_reference_[j];
     }
@@ -101,28 +102,47 @@ class Writer {
     return parent.orientation.conjugate() * (pose[j].position - parent.position);
   }
 
-  // Stored positions are floats: differences below float precision are not movement.
-  double tolerance() const {
-    float reach = 0;
-    for (const Vec3f& position : clip_.positions) {
-      reach = std::max(reach, position.cwiseAbs().maxCoeff());
-    }
+  Status find_moving_translations() {
+    float farthest = 0;  // of the frames, metres
+    std::vector<Transform> pose(count_);
+    const Status status = for_each_block(source_, options_.jobs, [&](int, const Clip& block) {
+      for (const Vec3f& position : block.positions) {
+        farthest = std::max(farthest, position.cwiseAbs().maxCoeff());
+      }
+      for (int frame = 0; frame < block.frame_count(); ++frame) {
+        folded_pose(block, frame, pose);
+        for (WrittenJoint& joint : written_) {
+          if (joint.positions) continue;
+          joint.movement =
+              std::max(joint.movement, (translation_in_parent(pose, joint) - joint.offset).norm());
+        }
+      }
+      return Status();
+    });
+    if (!status) return status;
+    // Stored positions are floats: differences below float precision are not movement.
     constexpr double kRounding = 16.0 * std::numeric_limits<float>::epsilon();
-    return std::max(options_.translation_tolerance, kRounding * static_cast<double>(reach));
+    const double allowed =
+        std::max(options_.translation_tolerance, kRounding * static_cast<double>(farthest));
+    for (WrittenJoint& joint : written_) {
+      if (joint.movement <= allowed) continue;
+      joint.positions = true;
+      joint.end_site = false;
+    }
+    return check_far(farthest);
   }
 
-  void find_moving_translations() {
-    const double allowed = tolerance();
-    std::vector<Transform> pose(count_);
-    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      folded_pose(frame, pose);
-      for (WrittenJoint& joint : written_) {
-        if (joint.positions) continue;
-        if ((translation_in_parent(pose, joint) - joint.offset).norm() <= allowed) continue;
-        joint.positions = true;
-        joint.end_site = false;
-      }
+  // Readers take numbers that floats hold; those of a joint are relative to its parent.
+  Status check_far(double farthest) const {
+    for (const Transform& joint : skeleton().reference) {
+      farthest = std::max(farthest, joint.position.cwiseAbs().maxCoeff());
     }
+    if (2 * farthest / options_.unit_metres <= std::numeric_limits<float>::max()) return {};
+    return Error(
+        "bvh-far",
+        fmt::format("a joint is {} m from the origin, too far for numbers in units of {} m",
+                    readable(farthest), readable(options_.unit_metres)),
+        "scale the motion, or write it in a larger unit");
   }
 
   // A name on one line, printable and without braces, unique after the replacements.
@@ -198,13 +218,13 @@ class Writer {
   }
 
   void write_motion_header() {
-    text_ += fmt::format("MOTION\nFrames: {}\nFrame Time: {}{}\n", clip_.frame_count(),
+    text_ += fmt::format("MOTION\nFrames: {}\nFrame Time: {}{}\n", source_.frame_count,
                          frame_time_text(), unit_mark(options_.unit_metres));
   }
 
   // Enough digits that 1 / frame time gives the same rate; at least ten, for readers that snap.
   std::string frame_time_text() const {
-    const double frame_time = 1.0 / clip_.rate;
+    const double frame_time = 1.0 / source_.rate;
     return fmt::format("{:.{}g}", frame_time, 17);
   }
 
@@ -217,19 +237,20 @@ class Writer {
   Status write_frames() {
     std::vector<Transform> pose(count_);
     std::vector<Vec3> previous(count_, Vec3::Zero());
-    for (int frame = 0; frame < clip_.frame_count(); ++frame) {
-      folded_pose(frame, pose);
-      bool first = true;
-      for (const WrittenJoint& joint : written_) {
-        if (joint.end_site) continue;
-        if (!first) text_ += ' ';
-        first = false;
-        write_joint(joint, pose, previous[static_cast<std::size_t>(joint.index)]);
+    return for_each_block(source_, options_.jobs, [&](int, const Clip& block) {
+      for (int frame = 0; frame < block.frame_count(); ++frame) {
+        folded_pose(block, frame, pose);
+        bool first = true;
+        for (const WrittenJoint& joint : written_) {
+          if (joint.end_site) continue;
+          if (!first) text_ += ' ';
+          first = false;
+          write_joint(joint, pose, previous[static_cast<std::size_t>(joint.index)]);
+        }
+        text_ += '\n';
       }
-      text_ += '\n';
-      if (Status status = flush(); !status) return status;
-    }
-    return {};
+      return flush();
+    });
   }
 
   void write_joint(const WrittenJoint& joint, std::span<const Transform> pose, Vec3& previous) {
@@ -251,7 +272,7 @@ class Writer {
     }
   }
 
-  const Clip& clip_;
+  const FrameSource& source_;
   const WriteOptions& options_;
   OutputFile& file_;
   std::size_t count_;
@@ -267,6 +288,10 @@ class Writer {
 
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   if (Status status = check(clip); !status) return status;
+  return write(frames_of(clip), options, file);
+}
+
+Status write(const FrameSource& source, const WriteOptions& options, OutputFile& file) {
   if (options.decimals < 1 || options.decimals > 15) {
     return Error("bvh-options", fmt::format("{} decimals, expected 1 to 15", options.decimals));
   }
@@ -279,22 +304,7 @@ Status write(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   if (axes != std::array{1, 1, 1}) {
     return Error("bvh-options", "the rotation order names an axis twice");
   }
-  // Readers take numbers that floats hold; those of a joint are relative to its parent.
-  double farthest = 0;
-  for (const Vec3f& position : clip.positions) {
-    farthest = std::max(farthest, static_cast<double>(position.cwiseAbs().maxCoeff()));
-  }
-  for (const Transform& joint : clip.skeleton.reference) {
-    farthest = std::max(farthest, joint.position.cwiseAbs().maxCoeff());
-  }
-  if (!(2 * farthest / options.unit_metres <= std::numeric_limits<float>::max())) {
-    return Error(
-        "bvh-far",
-        fmt::format("a joint is {} m from the origin, too far for numbers in units of {} m",
-                    readable(farthest), readable(options.unit_metres)),
-        "scale the motion, or write it in a larger unit");
-  }
-  return Writer(clip, options, file).write();
+  return Writer(source, options, file).write();
 }
 
 }  // namespace krok::bvh

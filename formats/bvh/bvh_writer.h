@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "math/euler.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 namespace krok::bvh {
 
@@ -36,6 +37,8 @@ struct WriteOptions {
   // Replaces each space in names. By default spaces are kept; many readers take only the first
   // word of a name, so "_" is safer for them.
   std::string space_in_names = " ";
+
+  int jobs = 1;  // threads that read a FrameSource; the output does not depend on it
 };
 
 // Writes a clip as BVH text in Krok's axes (+Y up, facing +Z): appends to `file`, the caller
@@ -52,5 +55,10 @@ struct WriteOptions {
 // Returns an Error if check() fails, before anything is written; code bvh-options for options out
 // of range, bvh-far for positions that no float holds in the unit.
 Status write(const Clip& clip, const WriteOptions& options, OutputFile& file);
+
+// The same for frames generated on demand, so that memory does not grow with their number. They are
+// read twice: which joints move in their parents is known before the first frame is written. After
+// an Error of the source, `file` is incomplete and must not be committed.
+Status write(const FrameSource& source, const WriteOptions& options, OutputFile& file);
 
 }  // namespace krok::bvh

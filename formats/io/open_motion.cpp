@@ -136,9 +136,16 @@ Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
   }
   // A .anim file's own conversions are those of how it was made.
   if (format.kind == registry::Kind::anim) {
-    const auto opened = anim::open(file.bytes());
+    auto opened = anim::open(file.bytes());
     if (!opened) return Error(opened.error()).in_file(file.path());
     if (!opened->stretched) {
+      // Else an error would get the name of the output that is being written.
+      opened->frames.read = [&file,
+                             read = std::move(opened->frames.read)](auto... block) -> Status {
+        Status status = read(block...);
+        if (!status) return std::move(status).error().in_file(file.path());
+        return status;
+      };
       if (options.stretches != nullptr) options.stretches->clear();
       if (Status status = use(opened->frames); !status) {
         return std::move(status.error()).in_file(file.path());

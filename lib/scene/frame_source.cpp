@@ -36,28 +36,32 @@ Result<Clip> load(const FrameSource& source, int jobs) {
   return clip;
 }
 
-Status read_through(const FrameSource& source, int jobs) {
-  const auto joints = static_cast<std::size_t>(source.joint_count());
+Status for_each_block(const FrameSource& source, int jobs,
+                      const std::function<Status(int first, const Clip& block)>& use) {
   const auto frames = static_cast<std::size_t>(source.frame_count);
-  struct Block {
-    std::vector<Vec3f> positions;
-    std::vector<Quatf> orientations;
-  };
-  std::vector<Block> blocks(slots_for(jobs));
+  Clip empty;
+  empty.skeleton = source.skeleton;
+  empty.rate = source.rate;
+  std::vector<Clip> blocks(slots_for(jobs), empty);
   const auto read = [&](std::size_t block, std::size_t slot) {
     const std::size_t first = block * kFramesAtOnce;
-    const std::size_t count = std::min(kFramesAtOnce, frames - first);
-    blocks[slot].positions.resize(count * joints);
-    blocks[slot].orientations.resize(count * joints);
-    return source.read(static_cast<int>(first), static_cast<int>(count), blocks[slot].positions,
+    const auto count = static_cast<int>(std::min(kFramesAtOnce, frames - first));
+    blocks[slot].resize(count);
+    return source.read(static_cast<int>(first), count, blocks[slot].positions,
                        blocks[slot].orientations);
   };
-  const auto release = [&](std::size_t block, std::size_t) {
-    const std::size_t done = std::min((block + 1) * kFramesAtOnce, frames);
-    if (source.release) source.release(static_cast<int>(done));
-    return Status();
+  const auto pass_on = [&](std::size_t block, std::size_t slot) {
+    const std::size_t first = block * kFramesAtOnce;
+    if (source.release) {
+      source.release(static_cast<int>(std::min(first + kFramesAtOnce, frames)));
+    }
+    return use(static_cast<int>(first), blocks[slot]);
   };
-  return make_in_order((frames + kFramesAtOnce - 1) / kFramesAtOnce, jobs, read, release);
+  return make_in_order((frames + kFramesAtOnce - 1) / kFramesAtOnce, jobs, read, pass_on);
+}
+
+Status read_through(const FrameSource& source, int jobs) {
+  return for_each_block(source, jobs, [](int, const Clip&) { return Status(); });
 }
 
 FrameSource frames_of(const Clip& clip) {

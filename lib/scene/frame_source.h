@@ -34,6 +34,12 @@ struct FrameSource {
 // Loads all frames on `jobs` threads (as in parallel_for), without provenance.
 Result<Clip> load(const FrameSource& source, int jobs);
 
+// Reads the frames in blocks on `jobs` threads and passes them to `use` in order, one block at a
+// time: the number of its first frame, and its frames, valid during the call. An Error of the
+// source or of `use` ends the pass.
+Status for_each_block(const FrameSource& source, int jobs,
+                      const std::function<Status(int first, const Clip& block)>& use);
+
 // Reads all frames and drops them: whether each can be read.
 Status read_through(const FrameSource& source, int jobs);
 

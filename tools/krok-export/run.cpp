@@ -220,15 +220,6 @@ EulerOrder order_of(const std::string& letters) {
   return order;
 }
 
-Status write_bvh(const Clip& clip, const Options& options, double unit_metres, OutputFile& file) {
-  bvh::WriteOptions writing;
-  writing.unit_metres = unit_metres;
-  writing.root_offset = options.root_offset;
-  writing.decimals = options.digits;
-  writing.order = order_of(options.order);
-  return bvh::write(clip, writing, file);
-}
-
 io::MotionSummary facts_of(const Clip& clip) {
   return {clip.skeleton, clip.rate, clip.frame_count(), clip.duration(), {}};
 }
@@ -365,8 +356,8 @@ Status write_arrays(const Clip& clip, const Options& options, ToolContext& conte
 
 // The place of the root at rest moves nothing, so it is left out, but another reference pose comes
 // back.
-void note_root(const Clip& clip, const Options& options, ToolContext& context) {
-  const Vec3& root = clip.skeleton.reference[0].position;
+void note_root(const Skeleton& skeleton, const Options& options, ToolContext& context) {
+  const Vec3& root = skeleton.reference[0].position;
   if (options.root_offset || root.norm() < 1e-5) return;
   Diagnostic note = make_warning(
       "export-root-offset",
@@ -377,19 +368,33 @@ void note_root(const Clip& clip, const Options& options, ToolContext& context) {
   context.diagnose(std::move(note));
 }
 
+Result<io::MotionSummary> export_bvh(const Options& options, ToolContext& context) {
+  bvh::WriteOptions writing;
+  writing.unit_metres = options.unit.metres;
+  writing.root_offset = options.root_offset;
+  writing.decimals = options.digits;
+  writing.order = order_of(options.order);
+  writing.jobs = context.jobs;
+  std::optional<OutputSet> outputs;
+  auto facts = io::stream_motion(options.input, context, [&](const FrameSource& frames) -> Status {
+    if (frames.skeleton.empty()) return empty_error(options.input);
+    outputs.emplace(context);
+    return outputs->add(context.output,
+                        [&](OutputFile& file) { return bvh::write(frames, writing, file); });
+  });
+  if (!facts) return facts;
+  note_root(facts->skeleton, options, context);
+  if (Status status = outputs->finish(); !status) return status.error();
+  return facts;
+}
+
 Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
-                                        double unit_metres, ToolContext& context) {
+                                        ToolContext& context) {
   const auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
-  if (format == ExportFormat::bvh) note_root(*clip, options, context);
-  const Status status =
-      format == ExportFormat::bvh
-          ? write_output(
-                context, context.output,
-                [&](OutputFile& file) { return write_bvh(*clip, options, unit_metres, file); })
-      : format == ExportFormat::npz ? write_arrays(*clip, options, context)
-                                    : write_table(format, *clip, options, context);
+  const Status status = format == ExportFormat::npz ? write_arrays(*clip, options, context)
+                                                    : write_table(format, *clip, options, context);
   if (!status) return status.error();
   return facts_of(*clip);
 }
@@ -425,7 +430,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   std::optional<Reduction> reduction;
   const auto motion = is_glb || *format == ExportFormat::gltf
                           ? export_gltf(is_glb, options, context, reduction)
-                          : export_others(*format, options, options.unit.metres, context);
+                      : *format == ExportFormat::bvh ? export_bvh(options, context)
+                                                     : export_others(*format, options, context);
   if (!motion) return motion.error();
   Json columns = std::move(context.report.result["columns"]);
   context.report.result = result_of(*motion, reduction);

@@ -72,12 +72,14 @@ inline const Diagnostic* find(const Diagnostics& diagnostics, const std::string&
   return nullptr;
 }
 
-inline std::string written(const Clip& clip, const WriteOptions& options = WriteOptions()) {
+// Of a Clip or a FrameSource.
+template <typename Motion>
+std::string written(const Motion& motion, const WriteOptions& options = WriteOptions()) {
   const std::string path =
       testing::TempDir() + "krok_unit_bvh_" + std::to_string(getpid()) + ".bvh";
   auto file = OutputFile::create(path);
   EXPECT_TRUE(file.ok());
-  const Status status = write(clip, options, *file);
+  const Status status = write(motion, options, *file);
   EXPECT_TRUE(status.ok()) << status.error().message;
   EXPECT_TRUE(file->commit().ok());
   std::ifstream in(path, std::ios::binary);

@@ -243,5 +243,21 @@ TEST(BvhWriter, RefusesWhatItCannotWrite) {
   EXPECT_EQ(file->size(), 0u);
 }
 
+TEST(BvhWriter, FramesMadeWhenAskedForGiveTheSameText) {
+  Clip clip = arm_clip(700);
+  clip.positions[2 * 650 + 1].x() += 0.5F;  // a late frame makes the joint one that moves
+  const std::string expected = written(clip);
+  EXPECT_EQ(expected.find("CHANNELS 3"), std::string::npos);
+  for (const int jobs : {1, 2, 5}) {
+    FrameSource source = frames_of(clip);
+    int released = 0;
+    source.release = [&](int frame) { released = frame; };
+    WriteOptions options;
+    options.jobs = jobs;
+    EXPECT_EQ(written(source, options), expected) << jobs;
+    EXPECT_EQ(released, 700);
+  }
+}
+
 }  // namespace
 }  // namespace krok::bvh
