@@ -121,6 +121,9 @@ Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
                                     const std::function<Status(const FrameSource& frames)>& use,
                                     const MotionOptions& options) {
   const Format& format = format_of(file);
+  const auto give = [&](std::function<Provenance()> provenance) {
+    if (options.provenance != nullptr) *options.provenance = std::move(provenance);
+  };
   if (format.open_capture != nullptr && !format.companion) {
     MotionSummary summary;
     std::shared_ptr<Capture> capture;
@@ -128,6 +131,7 @@ Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
         use_capture(file, inputs, reading_for(inputs), false, [&](const OpenedCapture& opened) {
           capture = opened.capture;
           summary = summary_of(opened.frames, capture->clip.provenance.conversions);
+          give([capture] { return capture->clip.provenance; });
           return use(opened.frames);
         });
     if (!status) return status.error();
@@ -147,6 +151,7 @@ Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
         return status;
       };
       if (options.stretches != nullptr) options.stretches->clear();
+      give([&opened] { return opened->provenance; });
       if (Status status = use(opened->frames); !status) {
         return std::move(status.error()).in_file(file.path());
       }
@@ -157,6 +162,7 @@ Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
   }
   const auto clip = open_motion(file, inputs, options);
   if (!clip) return clip.error();
+  give([&clip] { return clip->provenance; });
   const FrameSource frames = frames_of(*clip);
   if (Status status = use(frames); !status) return status.error();
   MotionSummary summary =

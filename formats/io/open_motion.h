@@ -28,6 +28,10 @@ struct MotionOptions {
   // Gets the stretches of the joints, none for rigid ones. Without it they are dropped with a
   // warning (code anim-stretch): the one place where an operation on rigid joints says so.
   Stretches* stretches = nullptr;
+
+  // Gets what gives the motion's provenance while stream_motion() runs; a capture's is complete
+  // once all frames were read.
+  std::function<Provenance()>* provenance = nullptr;
 };
 
 Result<Clip> open_motion(const std::string& path, Inputs& inputs,

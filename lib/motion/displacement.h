@@ -14,8 +14,11 @@ struct Displacement {
 };
 
 // The largest distance between the positions of one of `joints` in two clips at the same frame.
-// Both clips have the same joints and frame count.
+// Both clips have the same joints and frame count. The second form looks at the frames [begin,
+// end).
 Displacement largest_displacement(const Clip& before, const Clip& after,
                                   std::span<const int> joints);
+Displacement largest_displacement(const Clip& before, const Clip& after,
+                                  std::span<const int> joints, int begin, int end);
 
 }  // namespace krok

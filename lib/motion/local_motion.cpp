@@ -58,16 +58,39 @@ void set_local_motion(const LocalMotion& motion, Clip& clip) {
   }
 }
 
-std::vector<std::uint8_t> moving_joints(const LocalMotion& motion) {
+namespace {
+
+bool moves(std::size_t joint, const Eigen::AlignedBox3d& box) {
   constexpr double kStill = 1e-4;
+  return joint == 0 || (!box.isEmpty() && box.sizes().maxCoeff() > kStill);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> moving_joints(const LocalMotion& motion) {
   std::vector<std::uint8_t> moving(static_cast<std::size_t>(motion.joints), 0);
-  for (int j = 0; j < motion.joints; ++j) {
-    const auto places = motion.joint_positions(j);
+  for (std::size_t j = 0; j < moving.size(); ++j) {
     Eigen::AlignedBox3d box;
-    for (const Vec3& place : places) box.extend(place);
-    moving[static_cast<std::size_t>(j)] =
-        j == 0 || (!box.isEmpty() && box.sizes().maxCoeff() > kStill) ? 1 : 0;
+    for (const Vec3& place : motion.joint_positions(static_cast<int>(j))) box.extend(place);
+    moving[j] = moves(j, box) ? 1 : 0;
   }
+  return moving;
+}
+
+LocalBounds::LocalBounds(const Skeleton& skeleton) : boxes_(skeleton.names.size()) {}
+
+void LocalBounds::add(const Clip& part) {
+  std::vector<Transform> world(boxes_.size()), local(boxes_.size());
+  for (int f = 0; f < part.frame_count(); ++f) {
+    part.get_pose(f, world);
+    world_to_local(part.skeleton.parents, world, local);
+    for (std::size_t j = 0; j < boxes_.size(); ++j) boxes_[j].extend(local[j].position);
+  }
+}
+
+std::vector<std::uint8_t> LocalBounds::moving() const {
+  std::vector<std::uint8_t> moving(boxes_.size(), 0);
+  for (std::size_t j = 0; j < boxes_.size(); ++j) moving[j] = moves(j, boxes_[j]) ? 1 : 0;
   return moving;
 }
 

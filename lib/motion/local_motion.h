@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -33,5 +34,16 @@ void set_local_motion(const LocalMotion& motion, Clip& clip);
 // 1 for joints whose position relative to the parent varies by more than 0.1 mm, and for the root.
 // Shape [joints].
 std::vector<std::uint8_t> moving_joints(const LocalMotion& motion);
+
+// The same of a motion that is seen in parts.
+class LocalBounds {
+ public:
+  explicit LocalBounds(const Skeleton& skeleton);
+  void add(const Clip& part);
+  std::vector<std::uint8_t> moving() const;  // as moving_joints()
+
+ private:
+  std::vector<Eigen::AlignedBox3d> boxes_;
+};
 
 }  // namespace krok

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
+#include "scene/frame_blocks.h"
 
 namespace krok {
 
@@ -259,35 +261,71 @@ class AxesFinder {
 constexpr double kStill = 2 * kRadiansPerDegree;     // relative to the parent, over the whole clip
 constexpr double kTwisted = 60 * kRadiansPerDegree;  // the turn by mirroring
 
-// 1 for joints that are not part of the body and do not rotate relative to their parents.
-std::vector<std::uint8_t> still_joints(const Clip& clip, const MirrorPairs& pairs) {
-  std::vector<std::uint8_t> still(clip.skeleton.names.size(), 0);
-  if (pairs.in_body.empty() || clip.frame_count() == 0) return still;
-  std::vector<Transform> pose(still.size());
-  std::vector<Quat> first(still.size());
+constexpr double kFixed = 1e-3;  // radians
+
+// What joints do over the whole motion.
+struct Rests {
+  std::vector<std::uint8_t> still;  // not part of the body, does not rotate in its parent
+  std::vector<std::uint8_t> fixed;  // above the hips, does not rotate in the world
+};
+
+Result<Rests> rests_in(const FrameSource& source, const MirrorPairs& pairs, int jobs) {
+  const std::size_t joints = source.skeleton.names.size();
+  Rests rests = {std::vector<std::uint8_t>(joints, 0), std::vector<std::uint8_t>(joints, 0)};
+  if (source.frame_count == 0) return rests;
+  std::vector<std::size_t> above, outside;
+  for (int j = source.skeleton.parents[at(pairs.carrier)]; j >= 0;
+       j = source.skeleton.parents[at(j)]) {
+    above.push_back(at(j));
+  }
+  for (std::size_t j = 1; j < pairs.in_body.size(); ++j) {
+    if (pairs.in_body[j] == 0) outside.push_back(j);
+  }
+  if (above.empty() && outside.empty()) return rests;
+  for (const std::size_t j : above) rests.fixed[j] = 1;
+  for (const std::size_t j : outside) rests.still[j] = 1;
+  std::vector<Transform> pose(joints);
+  std::vector<Quat> first_local(joints), first_world(joints);
   const auto local = [&](std::size_t j) {
-    const int parent = clip.skeleton.parents[j];
+    const int parent = source.skeleton.parents[j];
     return Quat(pose[at(parent)].orientation.conjugate() * pose[j].orientation);
   };
-  for (int f = 0; f < clip.frame_count(); ++f) {
-    clip.get_pose(f, pose);
-    for (std::size_t j = 1; j < still.size(); ++j) {
-      if (pairs.in_body[j] != 0 || (f > 0 && still[j] == 0)) continue;
-      if (f == 0) first[j] = local(j);
-      still[j] = angle_between(first[j], local(j)) <= kStill ? 1 : 0;
+  const Status status = for_each_block(source, jobs, [&](int first, const Clip& block) {
+    for (int f = 0; f < block.frame_count(); ++f) {
+      block.get_pose(f, pose);
+      for (const std::size_t j : above) {
+        const Quat& now = pose[j].orientation;
+        if (first + f == 0) first_world[j] = now;
+        if (!(angle_between(first_world[j], now) < kFixed)) rests.fixed[j] = 0;
+      }
+      for (const std::size_t j : outside) {
+        if (rests.still[j] == 0) continue;
+        if (first + f == 0) first_local[j] = local(j);
+        rests.still[j] = angle_between(first_local[j], local(j)) <= kStill ? 1 : 0;
+      }
     }
-  }
-  return still;
+    return Status();
+  });
+  if (!status) return status.error();
+  return rests;
 }
 
 // Mirrors poses of one skeleton.
 class PoseMirror {
  public:
-  PoseMirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture)
-      : skeleton_(clip.skeleton),
-        pairs_(pairs),
-        axes_(axes_to_images(clip.skeleton, pairs, posture.empty() ? middle_pose(clip) : posture)) {
-    if (clip.frame_count() > 0) find_axes_above(clip);
+  PoseMirror(const Skeleton& skeleton, const MirrorPairs& pairs, std::span<const Transform> posture)
+      : skeleton_(skeleton), pairs_(pairs), axes_(axes_to_images(skeleton, pairs, posture)) {}
+
+  // The axes of joints above the hips: one that is fixed, or keeps to the hips' ground frame in the
+  // first frame, is turned as before.
+  void find_axes_above(const Clip& first, std::span<const std::uint8_t> fixed) {
+    for (int j = skeleton_.parents[at(pairs_.carrier)]; j >= 0; j = skeleton_.parents[at(j)]) {
+      Quat turn = first.frame_orientations(0)[at(j)].cast<double>().normalized();
+      if (fixed[at(j)] == 0) {
+        turn = ground_frame(first, pairs_.carrier, 0).to_world().orientation.conjugate() * turn;
+      }
+      axes_[at(j)] = image(turn).conjugate() * turn;
+    }
   }
 
   // Leaves still joints turned in their parents as they are where the mirror image of `pose` has
@@ -308,7 +346,7 @@ class PoseMirror {
     }
   }
 
-  void operator()(std::span<const Transform> pose, std::span<Transform> mirrored) {
+  void operator()(std::span<const Transform> pose, std::span<Transform> mirrored) const {
     for (int j = 0; j < skeleton_.joint_count(); ++j) place(j, pose, mirrored);
   }
 
@@ -330,26 +368,6 @@ class PoseMirror {
   }
 
  private:
-  // The axes of joints above the hips: one that stands, or keeps to the hips' ground frame, is
-  // turned as before.
-  void find_axes_above(const Clip& clip) {
-    for (int j = skeleton_.parents[at(pairs_.carrier)]; j >= 0; j = skeleton_.parents[at(j)]) {
-      const Quat first = orientation(clip, 0, j);
-      bool stands = true;
-      for (int f = 1; f < clip.frame_count() && stands; ++f) {
-        stands = angle_between(first, orientation(clip, f, j)) < kStands;
-      }
-      Quat turn = first;
-      if (!stands) {
-        turn = ground_frame(clip, pairs_.carrier, 0).to_world().orientation.conjugate() * first;
-      }
-      axes_[at(j)] = image(turn).conjugate() * turn;
-    }
-  }
-  static Quat orientation(const Clip& clip, int frame, int joint) {
-    return clip.frame_orientations(frame)[at(joint)].cast<double>().normalized();
-  }
-
   // Joints above it are placed already.
   void place(int j, std::span<const Transform> pose, std::span<Transform> mirrored) const {
     const int source = pairs_.partners[at(j)];
@@ -362,10 +380,8 @@ class PoseMirror {
                        normalized_or_identity(image(pose[at(source)].orientation) * axes_[at(j)])};
   }
 
-  static constexpr double kStands = 1e-3;  // radians
-
-  const Skeleton& skeleton_;
-  const MirrorPairs& pairs_;
+  Skeleton skeleton_;
+  MirrorPairs pairs_;
   std::vector<Quat> axes_;
 };
 
@@ -386,19 +402,40 @@ std::vector<Transform> middle_pose(const Clip& clip) {
 }
 
 Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture) {
-  PoseMirror mirror_pose(clip, pairs, posture);
-  Clip result = clip;
-  std::vector<Transform> pose(clip.skeleton.names.size()), mirrored(pose.size());
-  if (clip.frame_count() > 0) {
-    clip.get_pose(clip.frame_count() - 1, pose);
-    mirror_pose.keep_twisted(pose, still_joints(clip, pairs));
+  // Frames of a clip are always there.
+  Clip result = *load(*mirror(frames_of(clip), pairs, 1, posture), 1);
+  result.provenance = clip.provenance;
+  return result;
+}
+
+Result<FrameSource> mirror(const FrameSource& source, const MirrorPairs& pairs, int jobs,
+                           std::span<const Transform> posture) {
+  const auto frame = [&](int number) {
+    return load(part_of(source, number, std::min(source.frame_count, 1)), 1);
+  };
+  const auto first = frame(0), middle = frame(source.frame_count / 2);
+  const auto last = frame(std::max(source.frame_count - 1, 0));
+  for (const auto* read : {&first, &middle, &last}) {
+    if (!*read) return read->error();
   }
-  for (int f = 0; f < clip.frame_count(); ++f) {
-    clip.get_pose(f, pose);
-    mirror_pose(pose, mirrored);
-    result.set_pose(f, mirrored);
+  const auto mirror_pose = std::make_shared<PoseMirror>(
+      source.skeleton, pairs, posture.empty() ? middle_pose(*middle) : posture);
+  if (source.frame_count > 0) {
+    const auto rests = rests_in(source, pairs, jobs);
+    if (!rests) return rests.error();
+    mirror_pose->find_axes_above(*first, rests->fixed);
+    mirror_pose->keep_twisted(middle_pose(*last), rests->still);
   }
-  result.skeleton = mirror_pose.mirrored_skeleton();
+  FrameSource result = changed(source, [mirror_pose](Clip& frames) {
+    std::vector<Transform> pose(frames.skeleton.names.size()), mirrored(pose.size());
+    for (int f = 0; f < frames.frame_count(); ++f) {
+      frames.get_pose(f, pose);
+      (*mirror_pose)(pose, mirrored);
+      frames.set_pose(f, mirrored);
+    }
+    return Status();
+  });
+  result.skeleton = mirror_pose->mirrored_skeleton();
   return result;
 }
 

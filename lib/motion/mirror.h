@@ -6,6 +6,7 @@
 
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 // Mirrors a motion: exchanges left and right.
 
@@ -46,6 +47,11 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // `posture` is that of axes_to_images(), by default the clip's middle_pose(). Clips of one actor
 // that are blended need the same.
 Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture = {});
+
+// The same of frames generated on demand. They are read once beforehand, on `jobs` threads, where
+// joints have to be watched over the whole motion. Errors are those of the source.
+Result<FrameSource> mirror(const FrameSource& source, const MirrorPairs& pairs, int jobs,
+                           std::span<const Transform> posture = {});
 
 // joint_to_world of the frame in the middle; empty without frames.
 std::vector<Transform> middle_pose(const Clip& clip);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "filter/noise_filter.h"
@@ -16,9 +18,8 @@ std::string in_millimetres(double metres) {
 }
 
 // How far foot contacts moved: the error that a filter adds to ground contact.
-Json foot_change(const Clip& before, const Edit& edit, std::string& line) {
+Json foot_change(const Displacement& change, const Edit& edit, std::string& line) {
   const auto feet = foot_joints(edit.clip.skeleton, edit.roles);
-  const Displacement change = largest_displacement(before, edit.clip, feet);
   const std::string& name = edit.clip.skeleton.names[static_cast<std::size_t>(change.joint)];
   const bool known = feet.size() < edit.clip.skeleton.names.size();
   line += change.distance == 0
@@ -30,6 +31,11 @@ Json foot_change(const Clip& before, const Edit& edit, std::string& line) {
   json["joint"] = name;
   json["frame"] = change.frame;
   return json;
+}
+
+Json foot_change(const Clip& before, const Edit& edit, std::string& line) {
+  const auto feet = foot_joints(edit.clip.skeleton, edit.roles);
+  return foot_change(largest_displacement(before, edit.clip, feet), edit, line);
 }
 
 Diagnostic spike_note(const filter::Spike& spike, const Edit& edit, const std::string& file) {
@@ -108,13 +114,37 @@ Status filter_noise(const Options& options, ToolContext& context,
   return {};
 }
 
+// The frames are filtered as they are written, so how far feet moved is known only then.
+Status smooth_frames(const filter::Smoothing& smoothing, std::span<const std::uint8_t> joints,
+                     int jobs, Edit& edit) {
+  const auto largest = std::make_shared<Displacement>();
+  const auto compare = [largest, feet = foot_joints(edit.clip.skeleton, edit.roles)](
+                           const FrameRun& run, const Clip& after) {
+    Displacement change = largest_displacement(run.clip, after, feet, run.kept_begin, run.kept_end);
+    change.frame += run.first;
+    if (change.distance > largest->distance) *largest = change;
+  };
+  edit.when_written = [largest, step = edit.lines.size()](Edit& written) {
+    std::string& line = written.lines[step];
+    written.steps[step]["feet_moved"] = foot_change(*largest, written, line);
+    written.steps[step]["did"] = line;
+  };
+  return edit.take(filter::smooth(*edit.frames, smoothing, joints, jobs, compare));
+}
+
 Status filter_jitter(const Options& options, ToolContext& context,
                      std::span<const std::uint8_t> joints, Edit& edit) {
   const auto smoothing = options.smoothing();
   if (!smoothing) return {};
-  auto smoothed = filter::smooth(edit.clip, *smoothing, joints, thread_count(context.jobs));
-  if (!smoothed) return smoothed.error();
-  std::swap(edit.clip, *smoothed);
+  const int jobs = thread_count(context.jobs);
+  Clip before;
+  if (edit.frames) {
+    if (Status status = smooth_frames(*smoothing, joints, jobs, edit); !status) return status;
+  } else {
+    auto smoothed = filter::smooth(edit.clip, *smoothing, joints, jobs);
+    if (!smoothed) return smoothed.error();
+    before = std::exchange(edit.clip, *std::move(smoothed));
+  }
   long long count = 0;
   for (const std::uint8_t selected : joints) count += selected;
   Json metrics;
@@ -132,17 +162,17 @@ Status filter_jitter(const Options& options, ToolContext& context,
     metrics["degree"] = polynomial.degree;
     line = fmt::format("filtered: Savitzky-Golay, {} frames, degree {}", polynomial.window,
                        polynomial.degree);
-    if (edit.clip.frame_count() < polynomial.window) {
+    if (edit.frame_count() < polynomial.window) {
       context.warn("edit-short",
                    fmt::format("the motion's {} are fewer than the window's {}: not filtered",
-                               counted(edit.clip.frame_count(), "frame"), polynomial.window),
+                               counted(edit.frame_count(), "frame"), polynomial.window),
                    "choose a smaller --window");
       line += " (too short: unchanged)";
     }
   }
   metrics["joints"] = count;
   line += fmt::format(", {}", counted(count, "joint"));
-  metrics["feet_moved"] = foot_change(*smoothed, edit, line);
+  if (!edit.frames) metrics["feet_moved"] = foot_change(before, edit, line);
   edit.note("filter", std::move(metrics), std::move(line));
   return {};
 }

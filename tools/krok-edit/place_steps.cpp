@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/numbers.h"
+#include "core/parallel.h"
 #include "motion/ground_frame.h"
 #include "motion/place.h"
+#include "scene/frame_blocks.h"
 #include "tools/krok-edit/steps.h"
 
 namespace krok::cli::edit {
@@ -91,6 +94,10 @@ Status change_size(const Options& options, ToolContext&, Edit& edit) {
   }
   const double factor = options.scale ? *options.scale : *options.height / height;
   if (Status status = scale_clip(factor, edit.clip); !status) return status;
+  if (edit.frames) {
+    edit.frames = changed(*edit.frames, [factor](Clip& part) { return scale_clip(factor, part); });
+    edit.frames->skeleton = edit.clip.skeleton;
+  }
   if (auto& removed = edit.clip.provenance.removed_root_motion) removed->velocity *= factor;
   Json metrics;
   metrics["factor"] = factor;
@@ -102,12 +109,18 @@ Status change_size(const Options& options, ToolContext&, Edit& edit) {
   return {};
 }
 
-Status change_place(const Options& options, ToolContext&, Edit& edit) {
+Status change_place(const Options& options, ToolContext& context, Edit& edit) {
   Transform move;
   std::string line;
   Clip& clip = edit.clip;
   const auto apply = [&](const Transform& step, const std::string& done) {
     move_clip(step, clip);
+    if (edit.frames) {
+      edit.frames = changed(*edit.frames, [step](Clip& part) {
+        move_clip(step, part);
+        return Status();
+      });
+    }
     move = step * move;
     line += (line.empty() ? "" : ", ") + done;
   };
@@ -134,7 +147,16 @@ Status change_place(const Options& options, ToolContext&, Edit& edit) {
                       readable(options.move.y()), readable(options.move.z())));
   }
   if (options.on_ground) {
-    const Transform lift = onto_ground(clip, foot_joints(clip.skeleton, edit.roles));
+    const auto feet = foot_joints(clip.skeleton, edit.roles);
+    Transform lift = onto_ground(clip, feet);
+    if (edit.frames) {
+      const Status status =
+          for_each_block(*edit.frames, thread_count(context.jobs), [&](int, const Clip& part) {
+            lift.position.y() = std::max(lift.position.y(), onto_ground(part, feet).position.y());
+            return Status();
+          });
+      if (!status) return status;
+    }
     apply(lift, fmt::format("lifted by {} m onto the ground", readable(lift.position.y(), 4)));
   }
   if (line.empty()) return {};

@@ -14,6 +14,7 @@
 #include "formats/io/open_role_map.h"
 #include "formats/sequences/sequences.h"
 #include "motion/ground_frame.h"
+#include "scene/frame_blocks.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
@@ -32,18 +33,22 @@ namespace {
 
 constexpr std::string_view kSequencePlace = "{sequence}";
 
-Json summary_of(const Clip& clip) {
+FrameSource frames_of(const Edit& edit) {
+  return edit.frames ? *edit.frames : krok::frames_of(edit.clip);
+}
+
+Json summary_of(const FrameSource& motion) {
   Json json;
-  json["joints"] = clip.joint_count();
-  json["frames"] = clip.frame_count();
-  json["rate"] = clip.rate;
-  json["duration"] = clip.duration();
+  json["joints"] = motion.joint_count();
+  json["frames"] = motion.frame_count;
+  json["rate"] = motion.rate;
+  json["duration"] = motion.duration();
   return json;
 }
 
-std::string summary_text(const Clip& clip) {
-  return fmt::format("{} at {} fps ({} s)", counted(clip.frame_count(), "frame"),
-                     readable(clip.rate), readable(clip.duration(), 4));
+std::string summary_text(const FrameSource& motion) {
+  return fmt::format("{} at {} fps ({} s)", counted(motion.frame_count, "frame"),
+                     readable(motion.rate), readable(motion.duration(), 4));
 }
 
 // Keeps the provenance of earlier steps, newest last.
@@ -101,18 +106,23 @@ Result<int> list_sequences(const Options& options, ToolContext& context) {
   return kExitDone;
 }
 
+Status find_carrier(const io::FindRoles& find_roles, Edit& edit) {
+  auto roles = find_roles(edit.clip.skeleton);
+  if (!roles) return roles.error();
+  edit.roles = std::move(*roles);
+  edit.carrier = carrying_joint(edit.roles);
+  return {};
+}
+
 // Reads all inputs, each opened once.
-Result<Edit> read_inputs(const Options& options, ToolContext& context) {
+Result<Edit> read_inputs(const InputFile& input, const Options& options, ToolContext& context) {
   Edit edit;
-  auto clip = io::open_motion(options.input, context);
+  auto clip = io::open_motion(input, context);
   if (!clip) return clip.error();
   edit.clip = std::move(*clip);
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
-  auto roles = (*find_roles)(edit.clip.skeleton);
-  if (!roles) return roles.error();
-  edit.roles = std::move(*roles);
-  edit.carrier = carrying_joint(edit.roles);
+  if (Status status = find_carrier(*find_roles, edit); !status) return status.error();
   if (options.plant) {
     auto contacts = read_planting_contacts(options.contacts, options.input, edit.clip, context);
     if (!contacts) return contacts.error();
@@ -160,10 +170,12 @@ struct Edited {
   std::vector<std::string> lines;  // for display
 };
 
-// Applies the steps and adds the result to the outputs.
+// Applies the steps and adds the result to the outputs. `source_provenance`: of a long take, as
+// complete as it is when its frames are written.
 Result<Edited> edit_one(const Options& options, Edit edit, const std::string& output,
-                        ToolContext& context, OutputSet& outputs) {
-  const std::string before = summary_text(edit.clip);
+                        ToolContext& context, OutputSet& outputs,
+                        const std::function<Provenance()>& source_provenance = {}) {
+  const std::string before = summary_text(frames_of(edit));
   // The order given in the help.
   for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
                           take_out_travel, change_size, change_place, settle_on_ground}) {
@@ -171,18 +183,27 @@ Result<Edited> edit_one(const Options& options, Edit edit, const std::string& ou
       return std::move(status.error()).in_file(options.input);
     }
   }
-  edit.clip.provenance = extended(edit.clip.provenance, context.provenance(), edit.lines);
+  const auto provenance = [&] {
+    if (edit.when_written) edit.when_written(edit);
+    if (source_provenance) {
+      edit.clip.provenance.conversions = source_provenance().conversions;
+    }
+    return extended(edit.clip.provenance, context.provenance(), edit.lines);
+  };
   anim::WriteOptions writing;
   writing.orientation = options.orientation;
   writing.jobs = thread_count(context.jobs);
-  const Status status =
-      outputs.add(output, [&](OutputFile& file) { return anim::write(edit.clip, writing, file); });
+  const Status status = outputs.add(output, [&](OutputFile& file) {
+    if (edit.frames) return anim::write(*edit.frames, provenance, writing, file);
+    edit.clip.provenance = provenance();
+    return anim::write(edit.clip, writing, file);
+  });
   if (!status) return status.error();
   Edited edited;
   edited.lines.push_back(fmt::format("{}: {} -> {}: {}", name_of_input(options.input), before,
-                                     output, summary_text(edit.clip)));
+                                     output, summary_text(frames_of(edit))));
   for (const std::string& line : edit.lines) edited.lines.push_back("  " + line);
-  edited.result = summary_of(edit.clip);
+  edited.result = summary_of(frames_of(edit));
   edited.result["steps"] = std::move(edit.steps);
   return edited;
 }
@@ -225,6 +246,46 @@ Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolConte
   return all;
 }
 
+// Inputs of fewer bytes are read whole, which takes less time than a second pass.
+constexpr std::size_t kLongBytes = std::size_t{16} << 20;
+
+Result<int> report(Edited edited, Json input_summary, OutputSet& outputs, ToolContext& context) {
+  if (Status status = outputs.finish(); !status) return status.error();
+  for (const std::string& line : edited.lines) context.log(line);
+  context.report.result = std::move(edited.result);
+  context.report.result["input"] = std::move(input_summary);
+  return kExitDone;
+}
+
+// A long take, whose frames are written as they are read.
+Result<int> edit_stream(const InputFile& input, const Options& options, ToolContext& context) {
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  std::optional<OutputSet> outputs;
+  Edited edited;
+  Json input_summary;
+  std::function<Provenance()> provenance;
+  const auto complete = [&] {
+    context.note_checksum(input);
+    return provenance();
+  };
+  const auto use = [&](const FrameSource& frames) -> Status {
+    Edit edit;
+    if (Status status = edit.take(frames); !status) return status;
+    edit.clip.provenance = provenance();
+    input_summary = summary_of(frames);
+    if (Status status = find_carrier(*find_roles, edit); !status) return status;
+    outputs.emplace(context);
+    auto made = edit_one(options, std::move(edit), context.output, context, *outputs, complete);
+    if (!made) return made.error();
+    edited = *std::move(made);
+    return {};
+  };
+  const auto read = io::stream_motion(input, context, use, {.provenance = &provenance});
+  if (!read) return read.error();
+  return report(std::move(edited), std::move(input_summary), *outputs, context);
+}
+
 // Whether an option is given that is a step, or stores orientations otherwise.
 bool has_step(const ToolContext& context) {
   return std::ranges::any_of(context.result_options.items(), [](const auto& option) {
@@ -233,6 +294,24 @@ bool has_step(const ToolContext& context) {
 }
 
 }  // namespace
+
+Status Edit::take(Result<FrameSource> made) {
+  if (!made) return made.error();
+  Provenance kept = std::move(clip.provenance);
+  auto first = load(part_of(*made, 0, std::min(made->frame_count, 1)), 1);
+  if (!first) return first.error();
+  clip = *std::move(first);
+  clip.provenance = std::move(kept);
+  frames = *std::move(made);
+  return {};
+}
+
+bool is_streamed(const Options& o) {
+  const bool cleans = o.spikes || o.filter == Filter::by_noise || o.plant || o.game_loop;
+  const bool cuts = o.from || o.to || o.cycle != CycleFoot::none || !o.sequences.empty();
+  const bool joins = o.speed != 1 || o.resample || !o.append.empty() || o.loop || o.rounds;
+  return !cleans && !cuts && !joins && !o.in_place && !o.treadmill && !o.settle;
+}
 
 void Edit::note(const char* step, Json metrics, std::string line) {
   Json entry;
@@ -252,20 +331,22 @@ Result<int> run(const Options& given, ToolContext& context) {
     return usage("no step is requested, so the motion would be copied",
                  "krok-edit -h lists the steps; krok-import converts captures to .anim");
   }
-  auto source = read_inputs(options, context);
+  const auto input = context.open_long_input(options.input);
+  if (!input) return input.error();
+  if (is_streamed(options) && input->bytes().size() >= kLongBytes) {
+    return edit_stream(*input, options, context);
+  }
+  context.note_checksum(*input);
+  auto source = read_inputs(*input, options, context);
   if (!source) return source.error();
-  const Json input_summary = summary_of(source->clip);
+  Json input_summary = summary_of(krok::frames_of(source->clip));
   const bool all_sequences = source->sequences && source->sequence.empty();
   OutputSet outputs(context);
   auto edited = all_sequences
                     ? edit_all_sequences(options, std::move(*source), context, outputs)
                     : edit_one(options, std::move(*source), context.output, context, outputs);
   if (!edited) return edited.error();
-  if (Status status = outputs.finish(); !status) return status.error();
-  for (const std::string& line : edited->lines) context.log(line);
-  context.report.result = std::move(edited->result);
-  context.report.result["input"] = input_summary;
-  return kExitDone;
+  return report(*std::move(edited), std::move(input_summary), outputs, context);
 }
 
 }  // namespace krok::cli::edit

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "formats/sequences/sequences.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/model.h"
 #include "scene/motion_keys.h"
 #include "terrain/terrain.h"
@@ -21,6 +23,10 @@ namespace krok::cli::edit {
 // The state of an edit.
 struct Edit {
   Clip clip;
+  // Of a long take: its frames, of which `clip` has only the first. See is_streamed().
+  std::optional<FrameSource> frames;
+  // Adds what is known only when the frames are written to the steps and lines. May be empty.
+  std::function<void(Edit&)> when_written;
   RoleMap roles;
   int carrier = 0;  // the joint whose position is the actor's position
   // Inputs of options, read beforehand.
@@ -38,6 +44,10 @@ struct Edit {
   Json steps = Json::array();
   std::vector<std::string> lines;  // what was done, for display and provenance
 
+  int frame_count() const { return frames ? frames->frame_count : clip.frame_count(); }
+  // Takes the frames that a step makes of a long take.
+  Status take(Result<FrameSource> made);
+
   // Adds `metrics` to the report under the step's name.
   void note(const char* step, Json metrics, std::string line);
 };
@@ -47,6 +57,9 @@ std::string in_degrees(double radians);
 
 // The options that --game-loop sets, where they are not given.
 void complete_game_loop(Options& options);
+
+// Whether all steps can do without the whole motion in memory.
+bool is_streamed(const Options& options);
 
 // Checks that all sequences of the sequences file are within the motion.
 Status check_sequences(const Options& options, const Edit& edit);

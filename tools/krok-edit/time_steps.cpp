@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/numbers.h"
+#include "core/parallel.h"
 #include "motion/cut.h"
 #include "motion/ground_frame.h"
 #include "motion/join.h"
@@ -237,7 +238,12 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
                                   warning.joint);
     context.diagnose(std::move(warning));
   }
-  edit.clip = mirror(edit.clip, pairs);
+  if (edit.frames) {
+    Status status = edit.take(mirror(*edit.frames, pairs, thread_count(context.jobs)));
+    if (!status) return status;
+  } else {
+    edit.clip = mirror(edit.clip, pairs);
+  }
   if (auto& removed = edit.clip.provenance.removed_root_motion) {
     removed->velocity.x() *= -1;
     removed->turn_rate *= -1;

@@ -245,7 +245,7 @@ TEST(BvhWriter, RefusesWhatItCannotWrite) {
 
 TEST(BvhWriter, FramesMadeWhenAskedForGiveTheSameText) {
   Clip clip = arm_clip(700);
-  clip.positions[2 * 650 + 1].x() += 0.5F;  // a late frame makes the joint one that moves
+  clip.frame_positions(650)[1].x() += 0.5F;  // a late frame makes the joint one that moves
   const std::string expected = written(clip);
   EXPECT_EQ(expected.find("CHANNELS 3"), std::string::npos);
   for (const int jobs : {1, 2, 5}) {

@@ -252,6 +252,49 @@ TEST(SmoothClip, TheSameBytesForAnyNumberOfThreads) {
   }
 }
 
+// If a block's overlap were too short, its ends would show as steps.
+TEST(SmoothClip, InBlocksAsInOne) {
+  samples::WalkOptions options = walk_options(1);
+  options.steps = 30;
+  const Clip clip = samples::make_walk(options).value().clip;
+  const int frames = clip.frame_count();
+  for (const Smoothing& smoothing : {Smoothing(Butterworth{6, 4}), Smoothing(Butterworth{9, 8}),
+                                     Smoothing(SavitzkyGolay{11, 3})}) {
+    const Clip whole = smooth(clip, smoothing, {}).value();
+    const auto in_blocks = [&](int block, int jobs, int& watched) {
+      const auto watch = [&](const FrameRun& before, const Clip& after) {
+        EXPECT_EQ(before.clip.frame_count(), after.frame_count());
+        watched += before.kept_end - before.kept_begin;
+      };
+      return load(*smooth(frames_of(clip), smoothing, {}, jobs, watch, block), jobs).value();
+    };
+    int watched = 0;
+    const Clip one = in_blocks(frames, 2, watched);
+    EXPECT_EQ(watched, frames);
+    EXPECT_TRUE(one.positions == whole.positions);
+    EXPECT_TRUE(one.orientations == whole.orientations);
+    for (const int block : {frames - 1, 150, 64}) {
+      watched = 0;
+      const Clip many = in_blocks(block, 1, watched);
+      EXPECT_EQ(watched, frames);
+      constexpr int kNearEnds = 40;
+      double inside = 0, at_ends = 0;  // radians or metres
+      for (int f = 0; f < frames; ++f) {
+        double& largest = f < kNearEnds || f >= frames - kNearEnds ? at_ends : inside;
+        for (std::size_t j = 0; j < clip.skeleton.names.size(); ++j) {
+          const double distance =
+              (many.frame_positions(f)[j] - whole.frame_positions(f)[j]).cast<double>().norm();
+          const double angle = angle_between(many.frame_orientations(f)[j].cast<double>(),
+                                             whole.frame_orientations(f)[j].cast<double>());
+          largest = std::max({largest, distance, angle});
+        }
+      }
+      EXPECT_LT(inside, 1e-6) << block;
+      EXPECT_LT(at_ends, 3e-5) << block;
+    }
+  }
+}
+
 TEST(SmoothClip, NoFramesFewFramesOneJoint) {
   Skeleton single;
   single.add("root", -1, {});

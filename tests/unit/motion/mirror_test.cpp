@@ -403,6 +403,22 @@ TEST(Mirror, ToesAlmostInLineDoNotTwistTheirFoot) {
   EXPECT_LT(largest, 0.001 * kRadiansPerDegree);
 }
 
+TEST(Mirror, FramesMadeWhenAskedForAreTheSame) {
+  const Clip clip = test::swinging_human(300);
+  const MirrorPairs pairs = pairs_of(clip.skeleton);
+  const Clip expected = mirror(clip, pairs);
+  const auto source = mirror(frames_of(clip), pairs, 2);
+  ASSERT_TRUE(source.ok());
+  for (const int jobs : {1, 3}) {
+    const Clip made = load(*source, jobs).value();
+    EXPECT_TRUE(made.positions == expected.positions);
+    EXPECT_TRUE(made.orientations == expected.orientations);
+  }
+  FrameSource broken = frames_of(clip);
+  broken.read = [](auto...) { return Error("test", "is damaged"); };
+  EXPECT_EQ(mirror(broken, pairs, 1).error().code, "test");
+}
+
 TEST(Mirror, OneJointAndNoFrames) {
   Skeleton single;
   single.add("root", -1, {Vec3(0.1, 1, 0), from_rotation_vector(Vec3(1, 2, 3))});

@@ -1,0 +1,111 @@
+#include "scene/frame_blocks.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+namespace krok {
+
+namespace {
+
+class Blocks {
+ public:
+  Blocks(FrameSource source, BlockSize size, int jobs, std::function<Status(FrameRun&)> change)
+      : source_(std::move(source)), size_(size), jobs_(jobs), change_(std::move(change)) {}
+
+  Status read(int first, int count, std::span<Vec3f> positions, std::span<Quatf> orientations) {
+    const auto joints = static_cast<std::size_t>(source_.joint_count());
+    for (int done = 0; done < count;) {
+      const int number = (first + done) / size_.frames;
+      const auto run = run_of(number);
+      if (!run) return run.error();
+      const FrameRun& block = **run;
+      const int begin = first + done - block.first;
+      const int frames = std::min(block.kept_end - begin, count - done);
+      const auto from = static_cast<std::size_t>(begin) * joints;
+      const auto to = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(done) * joints);
+      const std::size_t values = static_cast<std::size_t>(frames) * joints;
+      std::ranges::copy(std::span(block.clip.positions).subspan(from, values),
+                        positions.begin() + to);
+      std::ranges::copy(std::span(block.clip.orientations).subspan(from, values),
+                        orientations.begin() + to);
+      done += frames;
+    }
+    return {};
+  }
+
+ private:
+  Result<std::shared_ptr<const FrameRun>> run_of(int number) {
+    const std::lock_guard lock(mutex_);
+    for (const Made& made : made_) {
+      if (made.run && made.number == number) return made.run;
+    }
+    FrameRun run;
+    const int begin = number * size_.frames;
+    const int end = std::min(source_.frame_count - begin, size_.frames) + begin;
+    run.first = std::max(begin - size_.overlap, 0);
+    const int last = std::min(source_.frame_count - end, size_.overlap) + end;
+    run.kept_begin = begin - run.first;
+    run.kept_end = end - run.first;
+    auto clip = load(part_of(source_, run.first, last - run.first), jobs_);
+    if (!clip) return clip.error();
+    if (source_.release) source_.release(std::max(end - size_.overlap, 0));
+    run.clip = *std::move(clip);
+    if (Status status = change_(run); !status) return status.error();
+    std::swap(made_[0], made_[1]);
+    made_[0] = {number, std::make_shared<const FrameRun>(std::move(run))};
+    return made_[0].run;
+  }
+
+  struct Made {
+    int number = 0;
+    std::shared_ptr<const FrameRun> run;
+  };
+
+  FrameSource source_;
+  BlockSize size_;
+  int jobs_;
+  std::function<Status(FrameRun&)> change_;
+  std::mutex mutex_;
+  std::array<Made, 2> made_;  // the newest first
+};
+
+}  // namespace
+
+FrameSource part_of(const FrameSource& source, int first, int count) {
+  FrameSource part = source;
+  part.frame_count = count;
+  part.release = {};
+  part.read = [read = source.read, start = first](int from, auto... block) {
+    return read(start + from, block...);
+  };
+  return part;
+}
+
+FrameSource changed(const FrameSource& source, std::function<Status(Clip& frames)> change) {
+  FrameSource result = source;
+  result.read = [source, change = std::move(change)](int first, int count,
+                                                     std::span<Vec3f> positions,
+                                                     std::span<Quatf> orientations) -> Status {
+    auto frames = load(part_of(source, first, count), 1);
+    if (!frames) return frames.error();
+    if (Status status = change(*frames); !status) return status;
+    std::ranges::copy(frames->positions, positions.begin());
+    std::ranges::copy(frames->orientations, orientations.begin());
+    return {};
+  };
+  return result;
+}
+
+FrameSource changed_in_blocks(const FrameSource& source, BlockSize size, int jobs,
+                              std::function<Status(FrameRun& run)> change) {
+  const auto blocks = std::make_shared<Blocks>(source, size, jobs, std::move(change));
+  FrameSource result = source;
+  result.release = {};
+  result.read = [blocks](auto... block) { return blocks->read(block...); };
+  return result;
+}
+
+}  // namespace krok

@@ -1,0 +1,52 @@
+// If these fail, the memory of a tool grows with the length of the motion.
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "cli/fixture.h"
+#include "support/this_build.h"
+
+namespace krok::test {
+namespace {
+
+class LongTake : public CliTest {
+ protected:
+  // The peak of memory, in MiB, of a tool with the input `name`.
+  double peak(const std::string& tool, const std::string& name, std::vector<std::string> options) {
+    const pid_t child = fork();
+    if (child == 0) {
+      options.insert(options.begin(), name);
+      options.insert(options.end(), {"-j", "2", "-q", "--json=report.json"});
+      const ToolRun run = run_here(tool, options);
+      struct rusage usage {};
+      getrusage(RUSAGE_CHILDREN, &usage);
+      put("peak", std::to_string(usage.ru_maxrss));
+      _exit(run.exit_code);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0) << tool;
+    return std::stod(get(path("peak"))) / 1024;
+  }
+};
+
+// 700,000 frames are 75 MiB in memory. A capture's pages are released as it is read.
+TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  put("long.bvh", capture(700000));
+  put("short.bvh", capture(20000));
+  const std::vector<std::pair<std::string, std::vector<std::string>>> rows = {
+      {"krok-export", {"-o", "out.bvh"}},
+      {"krok-edit",
+       {"--mirror", "--scale", "2", "--turn", "90deg", "--on-ground", "-o", "out.anim"}},
+      {"krok-edit", {"--filter", "butterworth", "-o", "out.anim"}}};
+  for (const auto& [tool, options] : rows) {
+    const double few = peak(tool, "short.bvh", options), many = peak(tool, "long.bvh", options);
+    EXPECT_LT(many, few + 32) << tool << " " << options[0];
+    EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], 700000);
+  }
+}
+
+}  // namespace
+}  // namespace krok::test
