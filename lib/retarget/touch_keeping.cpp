@@ -49,15 +49,20 @@ std::vector<double> speeds_of(std::span<const Vec3> places, double rate) {
   return speeds;
 }
 
-std::vector<Vec3> track_of(const Clip& clip, const BodyPoint& point) {
+// In the frames of `stay`.
+std::vector<Vec3> track_of(const Clip& clip, const BodyPoint& point, const Stay& stay) {
   std::vector<Vec3> places;
-  places.reserve(at(clip.frame_count()));
-  for (int f = 0; f < clip.frame_count(); ++f) {
+  places.reserve(at(stay.last - stay.first + 1));
+  for (int f = stay.first; f <= stay.last; ++f) {
     const Transform joint{clip.frame_positions(f)[at(point.joint)].cast<double>(),
                           clip.frame_orientations(f)[at(point.joint)].cast<double>()};
     places.push_back(joint * point.offset);
   }
   return places;
+}
+
+std::vector<Vec3> track_of(const Clip& clip, const BodyPoint& point) {
+  return track_of(clip, point, {0, clip.frame_count() - 1});
 }
 
 BesideLine beside_bone(const Vec3& point, int from, int to, std::span<const Transform> pose) {
@@ -447,15 +452,15 @@ std::vector<ContactReport> TouchKeeping::report(const Clip& source, const Clip& 
     report.end = stay.last / source.rate;
     return report;
   };
-  // `wanted` is the source's point, scaled.
+  // In the frames of `stay`; `wanted` is the source's point, scaled.
   const auto report_ground = [&](const char* part, const Stay& stay, std::span<const Vec3> places,
                                  std::span<const Vec3> wanted, double rise) {
     ContactReport report = entry_of(stay, part, "ground");
     double way = 0, source_way = 0;
-    for (int f = stay.first; f <= stay.last; ++f) {
+    for (int f = 0; f <= stay.last - stay.first; ++f) {
       const double off = places[at(f)].y() - wanted[at(f)].y() - rise;
       report.height = std::max(report.height, std::abs(off));
-      if (f == stay.first) continue;
+      if (f == 0) continue;
       way += flat(places[at(f)] - places[at(f - 1)]).norm();
       source_way += flat(wanted[at(f)] - wanted[at(f - 1)]).norm() / scale_;
     }
@@ -464,16 +469,17 @@ std::vector<ContactReport> TouchKeeping::report(const Clip& source, const Clip& 
     reports.push_back(report);
   };
   for (const OnGround& entry : ground_) {
-    const auto places = track_of(result, entry.point.target);
     for (const Stay& stay : entry.touch.stays) {
-      report_ground(name_of(entry.part), stay, places, entry.place, 0);
+      const auto wanted = std::span(entry.place).subspan(at(stay.first));
+      report_ground(name_of(entry.part), stay, track_of(result, entry.point.target, stay), wanted,
+                    0);
     }
   }
   for (const Standing& entry : standing_) {
-    auto wanted = track_of(source, entry.point.source);
+    auto wanted = track_of(source, entry.point.source, entry.stay);
     for (Vec3& place : wanted) place *= scale_;
-    report_ground(entry.part.c_str(), entry.stay, track_of(result, entry.point.target), wanted,
-                  entry.rise);
+    report_ground(entry.part.c_str(), entry.stay, track_of(result, entry.point.target, entry.stay),
+                  wanted, entry.rise);
   }
   std::array<std::vector<Vec3>, 2> from, to;
   for (std::size_t side = 0; side < 2 && (hands_ || !on_body_.empty()); ++side) {
