@@ -125,13 +125,15 @@ class SpikeFinder {
     std::vector<double> usual;
     for (int f = 0; f < count_; ++f) usual.push_back(deviation(f, length));
     limits_.resize(usual.size());
-    std::vector<double> near;
+    std::vector<double> near;  // sorted: the deviations within `around_` of a frame
+    const auto place = [&](double value) { return std::ranges::lower_bound(near, value); };
+    for (int f = 0; f < std::min(around_, count_); ++f)
+      near.insert(place(usual[at(f)]), usual[at(f)]);
     for (int f = 0; f < count_; ++f) {
-      near.assign(usual.begin() + std::max(0, f - around_),
-                  usual.begin() + std::min(count_, f + around_ + 1));
-      const auto middle = near.begin() + static_cast<std::ptrdiff_t>(near.size() / 2);
-      std::nth_element(near.begin(), middle, near.end());
-      limits_[at(f)] = std::max(least_, threshold_ * *middle);
+      const int in = f + around_, out = in - 2 * around_ - 1;
+      if (in < count_) near.insert(place(usual[at(in)]), usual[at(in)]);
+      if (out >= 0) near.erase(place(usual[at(out)]));
+      limits_[at(f)] = std::max(least_, threshold_ * near[near.size() / 2]);
     }
   }
 
