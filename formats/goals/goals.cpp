@@ -50,7 +50,7 @@ struct File {
   std::span<const Character::Socket> sockets = {};
 
   Result<int> joint_named(const Given& given, std::string_view name) const {
-    const int joint = find_joint(name, skeleton, roles);
+    const int joint = find_joint(skeleton, roles, name);
     if (joint >= 0) return joint;
     return given.error(
         "joint", fmt::format("the motion has no joint '{}', nor one of that role", shown(name)),
@@ -275,19 +275,6 @@ struct File {
 };
 
 }  // namespace
-
-int find_joint(std::string_view name, const Skeleton& skeleton, const RoleMap& roles) {
-  const int joint = skeleton.find(name);
-  if (joint >= 0) return joint;
-  std::string words;  // RightHand is right_hand
-  for (const char c : name) {
-    const bool capital = c >= 'A' && c <= 'Z';
-    if (capital && !words.empty() && words.back() != '_') words += '_';
-    words += capital ? static_cast<char>(c - 'A' + 'a') : c;
-  }
-  const auto role = parse_role(words);
-  return role ? roles.joint(*role) : -1;
-}
 
 int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles) {
   const int carrier = carrying_joint(roles);

@@ -41,9 +41,6 @@ Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const Rol
 // The JSON Schema of such files.
 std::string schema();
 
-// A joint by its exact name, otherwise by role (right_hand, or RightHand); -1 for none.
-int find_joint(std::string_view name, const Skeleton& skeleton, const RoleMap& roles);
-
 // From a joint up to, but without, the joint that carries the body: what a reach moves unless the
 // user says otherwise, so that the hips stay where they are. 0 (all) for the carrying joint itself
 // and joints above it.

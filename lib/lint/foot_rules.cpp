@@ -117,6 +117,13 @@ class Slides {
   const Vec3& velocity(int track, int frame) const {
     return soles_.velocities[at(track)][at(frame)];
   }
+  // Whether the hips hardly move while feet slide, as in a motion in place.
+  bool hips_stay(int last) const {
+    Vec3f way = series_.clip.frame_positions(last)[at(series_.carrier)] -
+                series_.clip.frame_positions(first_)[at(series_.carrier)];
+    way.y() = 0;
+    return way.norm() < 0.2 * way_.norm();
+  }
   void end(int frame) {
     if (frames_ >= series_.frames_in(kShortestSlide, 3)) {
       Finding finding;
@@ -127,6 +134,7 @@ class Slides {
       finding.value = way_.norm();
       finding.threshold = series_.threshold(finding.rule) * series_.scale, finding.unit = "m";
       finding.detail = fmt::format("up to {} m/s", readable(fastest_ * series_.rate, 2));
+      if (hips_stay(frame - 1)) finding.detail += ", hips stay: --treadmill if the ground moves";
       if (finding.value > finding.threshold) found_.push_back(finding);
     }
     frames_ = both_ = together_ = 0;

@@ -7,6 +7,7 @@
 #include "core/nearest_name.h"
 #include "core/text.h"
 #include "motion/ground_frame.h"
+#include "roles/roles.h"
 
 namespace krok {
 
@@ -54,10 +55,18 @@ Result<std::vector<std::uint8_t>> select_joints(const Skeleton& skeleton,
       selected[j] = 1;
       any = true;
     }
+    // A name that no joint has may be a role's.
+    if (const auto role = any ? std::nullopt : parse_role(pattern)) {
+      for (const int joint : find_roles(skeleton).joints(*role)) {
+        selected[static_cast<std::size_t>(joint)] = 1;
+        any = true;
+      }
+    }
     if (!any) return no_such_joint(pattern, skeleton);
   }
   for (const std::string& name : selection.below) {
-    const int joint = skeleton.find(name);
+    int joint = skeleton.find(name);
+    if (joint < 0 && parse_role(name)) joint = find_joint(skeleton, find_roles(skeleton), name);
     if (joint < 0) return no_such_joint(name, skeleton);
     const auto within = subtree(skeleton, joint);
     for (std::size_t j = 0; j < selected.size(); ++j) selected[j] |= within[j];

@@ -11,8 +11,10 @@ namespace krok {
 
 // The joints that an operation applies to, selected by name.
 struct JointSelection {
-  std::vector<std::string> patterns;  // names; * matches any characters, ? one
-  std::vector<std::string> below;     // joint names; each selects its subtree
+  // Names; * matches any characters, ? one. A name that no joint has may be a role (see
+  // parse_role).
+  std::vector<std::string> patterns;
+  std::vector<std::string> below;  // joint names or roles; each selects its subtree
 };
 
 // 1 for each joint selected by a pattern or subtree, shape [joints]; all 1 if both lists are empty.

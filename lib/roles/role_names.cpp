@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "core/text.h"
 #include "roles/roles.h"
 
 namespace krok {
@@ -39,6 +40,17 @@ constexpr std::array<std::string_view, 27> kRoleNames = {"none",
                                                          "helper"};
 static_assert(kRoleNames.size() == static_cast<std::size_t>(Role::helper) + 1);
 
+// People name a joint by where it is, roles name it by the part that it turns.
+constexpr std::pair<const char*, const char*> kPlaces[] = {
+    {"shoulder", "upperarm"}, {"elbow", "lowerarm"}, {"wrist", "hand"},
+    {"hip", "upperleg"},      {"knee", "lowerleg"},  {"ankle", "foot"}};
+
+std::string letters_of(std::string_view name) {
+  std::string letters = ascii_lower(name);
+  std::erase_if(letters, [](char c) { return c == '_' || c == ' '; });
+  return letters;
+}
+
 }  // namespace
 
 std::string_view role_name(Role role) {
@@ -53,9 +65,23 @@ int RoleMap::joint(Role role) const {
 }
 
 std::optional<Role> parse_role(std::string_view name) {
-  const auto found = std::find(kRoleNames.begin(), kRoleNames.end(), name);
+  std::string wanted = letters_of(name);
+  for (const std::string side : {"left", "right"}) {
+    if (!wanted.starts_with(side)) continue;
+    for (const auto& [place, part] : kPlaces) {
+      if (wanted == side + place) wanted = side + part;
+    }
+  }
+  const auto found = std::ranges::find(kRoleNames, wanted, letters_of);
   if (found == kRoleNames.end()) return std::nullopt;
   return static_cast<Role>(found - kRoleNames.begin());
+}
+
+int find_joint(const Skeleton& skeleton, const RoleMap& roles, std::string_view name) {
+  const int joint = skeleton.find(name);
+  if (joint >= 0) return joint;
+  const auto role = parse_role(name);
+  return role ? roles.joint(*role) : -1;
 }
 
 bool is_role_of_many(Role role) {

@@ -49,7 +49,9 @@ enum class Role : unsigned char {
 // "left_upper_arm".
 std::string_view role_name(Role role);
 
-// The inverse of role_name; empty for other text.
+// The inverse of role_name, whatever its case and without its underscores, too; knee, elbow, wrist,
+// ankle, hip and shoulder are the joints there: RightHand is right_hand, left knee left_lower_leg.
+// Empty for other text.
 std::optional<Role> parse_role(std::string_view name);
 
 // Whether several joints may have the role: none, root, spine, neck, fingers, toes, end, helper.
@@ -80,6 +82,10 @@ struct RoleMap {
 // A joint's role as one word: "left_upper_arm"; for finger joints "left_index_1"; for other joints
 // beyond the wrist "left_fingers".
 std::string role_label(const RoleMap& map, int joint);
+
+// A joint by its exact name, otherwise the first one of the role that parse_role reads; -1 for
+// none.
+int find_joint(const Skeleton& skeleton, const RoleMap& roles, std::string_view name);
 
 // The roles required for a humanoid that were not found, in the order of Role. Role::head means
 // that neither head nor neck was found.

@@ -161,6 +161,7 @@ Status CommandOptions::take_values() const {
     if (status) continue;
     Error error = std::move(status).error();
     error.message = fmt::format("{}: {}", name_of(*declared.option), error.message);
+    if (error.hint.empty()) error.hint = declared.option->get_description();
     return error;
   }
   return {};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -168,8 +169,9 @@ Result<Shot> from_scene(const Options& options, const InputFile& file, ToolConte
 }
 
 // Finds a joint by name or role.
-Result<int> find_joint(const std::string& name, const Skeleton& skeleton, const RoleMap& roles) {
-  const int joint = goals::find_joint(name, skeleton, roles);
+Result<int> followed_joint(const std::string& name, const Skeleton& skeleton,
+                           const RoleMap& roles) {
+  const int joint = find_joint(skeleton, roles, name);
   if (joint >= 0) return joint;
   const auto role = parse_role(name);
   std::vector<std::string> known = skeleton.names;
@@ -240,7 +242,7 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
   if (filming->moving_centre) {
     const auto joint = filming->follow.empty()
                            ? Result<int>(carrying_joint(*roles))
-                           : find_joint(filming->follow, clip->skeleton, *roles);
+                           : followed_joint(filming->follow, clip->skeleton, *roles);
     if (!joint) return Error(joint.error()).in_file(file.path());
     camera.joint = *joint;
   }
@@ -267,6 +269,10 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
                       ? "all frames"
                       : fmt::format("{} of {}", filmed->frames_shown, counted(frames, "frame")),
                   readable(filmed->distance, 3));
+  if (options.orbit) {
+    shot.words += fmt::format("; orbits by {} degrees",
+                              readable(std::abs(camera.turning) * duration / kRadiansPerDegree, 3));
+  }
   if (!filming->follow.empty() && !options.given("--frame") && !options.given("--distance") &&
       camera.joint != carrying_joint(*roles)) {
     shot.words += " (--frame joint: a close-up)";

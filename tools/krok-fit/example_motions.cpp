@@ -183,7 +183,7 @@ class MotionReader {
     }
     if (motion.has_keys) return {};
     if (!motion.found) {
-      auto keys = krok::cli::find_keys(motion.clip, made_.roles, context_);
+      auto keys = krok::cli::find_keys(motion.path, motion.clip, made_.roles, context_);
       if (!keys) return std::move(keys).error().in_file(motion.path);
       motion.keys = *std::move(keys);
       return {};

@@ -330,7 +330,7 @@ Status Run::read_limits() {
 }
 
 Result<int> Run::joint_of(const std::string& option, const std::string& name) const {
-  const int joint = goals::find_joint(name, clip_.skeleton, roles_);
+  const int joint = find_joint(clip_.skeleton, roles_, name);
   if (joint >= 0) return joint;
   return Error("ik-joint",
                fmt::format("{} {}: the motion has no joint of that name or role", option,

@@ -11,6 +11,8 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/io/open_motion.h"
+#include "motion/ground_frame.h"
+#include "motion/travel.h"
 #include "tools/cli/file_name.h"
 
 namespace krok::cli::lint {
@@ -54,7 +56,12 @@ void lint_file(const InputFile& input, const Options& options, const io::FindRol
   }
   krok::lint::MotionOptions mine = how;
   mine.is_loop = options.loops || is_named_loop(file.path);
-  auto faults = krok::lint::lint_motion(*clip, *roles, mine);
+  // Feet of a motion in place slide as fast as it would travel.
+  std::optional<Clip> travelling;
+  if (const auto& removed = clip->provenance.removed_root_motion) {
+    travelling = carried_along(*clip, carrying_joint(*roles), *removed);
+  }
+  auto faults = krok::lint::lint_motion(travelling ? *travelling : *clip, *roles, mine);
   file.findings = std::move(faults.findings);
   file.notes = std::move(faults.notes);
   if (how.settings.has(krok::lint::Rule::duplicate)) {

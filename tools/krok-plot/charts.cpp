@@ -292,7 +292,7 @@ Result<MotionKeys> read_keys(const std::string& option, const Motions::Motion& f
   }
   if (*beside) return std::move((*beside)->keys);
   if (!needed) return MotionKeys();
-  auto found = find_keys(clip, file.roles, context);
+  auto found = find_keys(file.path, clip, file.roles, context);
   return found ? *std::move(found) : MotionKeys();
 }
 

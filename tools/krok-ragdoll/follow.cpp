@@ -78,7 +78,7 @@ Status choose_modes(const FollowOptions& options, const Skeleton& skeleton, cons
   const BodyMode of_rest = strength > 0 ? BodyMode::powered : BodyMode::simulated;
   std::vector<bool> chosen(bodies.size(), options.simulated.empty());
   for (const std::string& name : options.simulated) {
-    const int joint = goals::find_joint(name, skeleton, roles);
+    const int joint = find_joint(skeleton, roles, name);
     if (joint < 0) {
       return Error(
           "ragdoll-joint",

@@ -166,7 +166,7 @@ void Run::check_ranges(std::span<const Transform> pose) const {
 
 Status Run::add_push(const PushAt& push, Plan& plan) const {
   const Clip& clip = subject_.clip;
-  const int joint = goals::find_joint(push.joint, clip.skeleton, subject_.roles);
+  const int joint = find_joint(clip.skeleton, subject_.roles, push.joint);
   if (joint < 0) {
     return Error("ragdoll-joint",
                  fmt::format("{}: the motion has no joint of that name or role", shown(push.joint)),

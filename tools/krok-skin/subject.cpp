@@ -290,7 +290,7 @@ class Loader {
         thing.socket = socket->name;
         thing.joint = skeleton.find(socket->joint);
       } else {
-        thing.joint = goals::find_joint(given.name, skeleton, find_roles(skeleton));
+        thing.joint = find_joint(skeleton, find_roles(skeleton), given.name);
       }
       if (thing.joint < 0) {
         return Error("skin-attach",

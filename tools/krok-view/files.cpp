@@ -225,7 +225,7 @@ Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice
     if (!sidecar) return std::move(sidecar).error();
     return *sidecar ? std::move((*sidecar)->keys) : MotionKeys();
   }
-  return find_keys(clip, find_roles(clip.skeleton), context);
+  return find_keys(path, clip, find_roles(clip.skeleton), context);
 }
 
 // The page contains the file itself; it is parsed for its errors and for what its keys tell of its

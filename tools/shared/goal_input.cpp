@@ -20,7 +20,7 @@ Status open_other(const std::string& goal_path, const goals::OtherMotion& other,
   auto clip = io::open_motion(below(folder, other.path), context);
   if (!clip) return clip.error();
   const auto roles = find_roles(clip->skeleton);
-  const int joint = goals::find_joint(other.joint, clip->skeleton, roles);
+  const int joint = find_joint(clip->skeleton, roles, other.joint);
   if (joint < 0) {
     Error error("goals-joint",
                 fmt::format("'{}' has no joint '{}', nor one of that role", shown(other.path),

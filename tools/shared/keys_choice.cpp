@@ -27,10 +27,7 @@ Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::stri
   }
   const auto roles = find_roles(clip.skeleton);
   if (!roles) return roles.error();
-  // Warnings refer to this motion, one of several.
-  const Location before = std::exchange(context.subject, Location{.file = path});
-  auto found = find_keys(clip, *roles, context);
-  context.subject = before;
+  auto found = find_keys(path, clip, *roles, context);
   if (!found) {
     context.warn("keys-none", fmt::format("{}: {}", name, found.error().message));
     return none;

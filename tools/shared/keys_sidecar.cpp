@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "contacts/gait_keytimes.h"
 #include "core/numbers.h"
@@ -103,17 +104,21 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
   return std::optional<krok::keys::Sidecar>();
 }
 
-Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context) {
+Result<MotionKeys> find_keys(const std::string& path, const Clip& clip, const RoleMap& roles,
+                             ToolContext& context) {
   if (const auto& removed = clip.provenance.removed_root_motion) {
-    auto keys = find_keys(carried_along(clip, carrying_joint(roles), *removed), roles, context);
+    auto keys =
+        find_keys(path, carried_along(clip, carrying_joint(roles), *removed), roles, context);
     if (keys) place_contacts(clip, keys->contacts);
     return keys;
   }
   auto contacts = find_contacts(clip, roles);
   if (!contacts) return std::move(contacts).error();
-  context.diagnose(contacts->warnings);
   Gait gait = find_gait(clip, roles, *contacts);
+  const Location before = std::exchange(context.subject, Location{.file = path});
+  context.diagnose(contacts->warnings);
   context.diagnose(gait.warnings);
+  context.subject = before;
   return MotionKeys{std::move(contacts->contacts), std::move(gait.keytimes)};
 }
 

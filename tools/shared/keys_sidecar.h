@@ -29,8 +29,10 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
                                                             const Clip& clip, ToolContext& context);
 
 // Detects contacts and keytimes as krok-keys does, with warnings for doubtful results; in a motion
-// in place, while it travels as it did before. Code: contacts-feet.
-Result<MotionKeys> find_keys(const Clip& clip, const RoleMap& roles, ToolContext& context);
+// in place, while it travels as it did before. Warnings name `path`, the motion's. Code:
+// contacts-feet.
+Result<MotionKeys> find_keys(const std::string& path, const Clip& clip, const RoleMap& roles,
+                             ToolContext& context);
 
 // Sets the places of contacts to where the motion has their joints halfway through: those of a
 // motion in place move.

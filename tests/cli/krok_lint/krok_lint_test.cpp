@@ -56,6 +56,21 @@ TEST_F(KrokLint, ExitCodesTellCleanFaultyUnreadableAndPartly) {
   EXPECT_EQ(run_here("krok-lint", {}).exit_code, 2);
 }
 
+// Feet of a motion in place slide backwards. One by krok-edit says how fast it travels; of another
+// program's the slide leads to --treadmill.
+TEST_F(KrokLint, MotionsInPlaceAreNoSlides) {
+  write_walk(8);
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--treadmill", "-o", "place.anim"}).exit_code, 0);
+  const ToolRun own = run_here("krok-lint", {"place.anim", "--only", "foot-slide"});
+  EXPECT_EQ(own.exit_code, 0) << own.out;
+  ASSERT_EQ(run_here("krok-export", {"place.anim", "-o", "place.bvh"}).exit_code, 0);
+  const ToolRun other = run_here("krok-lint", {"place.bvh", "--only", "foot-slide"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.out, HasSubstr("--treadmill if the ground moves"));
+  EXPECT_EQ(run_here("krok-lint", {"place.bvh", "--only", "foot-slide", "--treadmill"}).exit_code,
+            0);
+}
+
 TEST_F(KrokLint, RulesAreChosen) {
   write_spiked("spiked.anim");
   EXPECT_EQ(run_here("krok-lint", {"spiked.anim", "--ignore", "pop"}).exit_code, 0);

@@ -141,6 +141,8 @@ TEST_F(KrokPlot, ShowsJointsByName) {
   EXPECT_EQ(shown[0], "LeftArm");
   EXPECT_EQ(shown[2], "LeftArm (ZXY Euler)");
   EXPECT_THAT(lines(2), ElementsAre("z", "x", "y"));
+  ASSERT_EQ(plot({kWalk, "--joint", "left_lower_arm"}).exit_code, 0);
+  EXPECT_EQ(titles().front(), "LeftForeArm");
   expect_trouble({kWalk, "--joint", "Tail"}, "motion-joint", "Tail");
   expect_trouble({kWalk, "--joint", "Hips", "--euler", "XXY"}, "usage", "--euler");
   expect_trouble({kWalk, "--euler", "XYZ"}, "usage", "--joint");

@@ -89,11 +89,12 @@ TEST(Goals, ARoleIsFoundHoweverItIsWritten) {
   const RoleMap roles = find_roles(skeleton);
   const int arm = skeleton.find("RightForeArm");
   ASSERT_GE(arm, 0);
-  for (const char* name : {"right_lower_arm", "RightLowerArm", "Right_Lower_Arm"}) {
-    EXPECT_EQ(find_joint(name, skeleton, roles), arm) << name;
+  for (const char* name :
+       {"right_lower_arm", "RightLowerArm", "Right_Lower_Arm", "rightlowerarm", "right elbow"}) {
+    EXPECT_EQ(find_joint(skeleton, roles, name), arm) << name;
   }
-  for (const char* name : {"", "rightlowerarm", "RIGHT", "Right_", "LowerArm"}) {
-    EXPECT_EQ(find_joint(name, skeleton, roles), -1) << name;
+  for (const char* name : {"", "RIGHT", "Right_", "LowerArm", "elbow"}) {
+    EXPECT_EQ(find_joint(skeleton, roles, name), -1) << name;
   }
 }
 
