@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/text.h"
+#include "math/window.h"
 #include "motion/ground_frame.h"
 
 namespace krok::gait {
@@ -36,9 +37,7 @@ double usual_toe_out(const parametric::Library& library) {
     const double swing = heading_at(example, library.foot(library.swing), example.keytimes.back());
     turns.push_back((library.swing == FootSide::left ? 1 : -1) * wrapped(swing - stance));
   }
-  const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
-  std::ranges::nth_element(turns, middle);
-  return std::clamp(0.5 * *middle, -kMaxToeOut, kMaxToeOut);
+  return std::clamp(0.5 * upper_median(std::move(turns)), -kMaxToeOut, kMaxToeOut);
 }
 
 FoundStep step_of(const parametric::Library& library, const parametric::Example& example) {
@@ -100,8 +99,17 @@ bool StepLibrary::take_style(std::string_view style) {
       take([&](const auto& example) {
         return ascii_lower(parametric::capture_of(example.name)).find(wanted) != std::string::npos;
       });
-  if (found) in_style_ = std::move(taken);
-  return found;
+  if (!found) return false;
+  // How far toes point outwards is a part of the style. Steps that turn count alike for both.
+  std::vector<double> all, own;
+  for (std::size_t i = 0; i < taken.size(); ++i) {
+    all.push_back(found_steps_[i].turn);
+    if (taken[i] != 0) own.push_back(found_steps_[i].turn);
+  }
+  toe_out_ = std::clamp(usual_toe_out(library()) + 0.5 * (median(own) - median(all)), -kMaxToeOut,
+                        kMaxToeOut);
+  in_style_ = std::move(taken);
+  return true;
 }
 
 Status take_style(std::span<StepLibrary> libraries, std::string_view style) {

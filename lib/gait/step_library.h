@@ -47,7 +47,7 @@ class StepLibrary {
   // Radians by which feet usually point outwards from the way they go.
   double toe_out() const { return toe_out_; }
 
-  // Limits the steps' style, durations and usual lengths to the examples of a style, or of
+  // Limits the steps' style, durations, usual lengths and toe-out to the examples of a style, or of
   // captures whose names contain it, in any case. Returns whether there are any; otherwise all
   // examples count, as before the call.
   bool take_style(std::string_view style);

@@ -19,24 +19,31 @@
 namespace krok::gait {
 namespace {
 
-constexpr double kHunched = 0.5;  // radians
+constexpr double kHunched = 0.5, kToesOut = 0.2;  // radians
 
-// The chest and all above it turned forward about the chest, in every frame.
-void hunch(Clip& clip) {
-  const int chest = find_roles(clip.skeleton).joint(Role::chest);
-  ASSERT_GE(chest, 0);
+// A joint and all below it turned about the joint, in every frame.
+void turn_with_all_below(Clip& clip, Role role, Axis axis, double angle) {
+  const int top = find_roles(clip.skeleton).joint(role);
+  ASSERT_GE(top, 0);
   std::vector<Transform> pose(clip.skeleton.names.size());
   for (int f = 0; f < clip.frame_count(); ++f) {
     clip.get_pose(f, pose);
-    const Quat turn = axis_rotation(Axis::x, kHunched);
-    const Vec3 about = pose[at(chest)].position;
+    const Quat turn = axis_rotation(axis, angle);
+    const Vec3 about = pose[at(top)].position;
     for (int j = 0; j < clip.joint_count(); ++j) {
-      if (j != chest && !is_below(clip.skeleton, j, chest)) continue;
+      if (j != top && !is_below(clip.skeleton, j, top)) continue;
       pose[at(j)].position = about + turn * (pose[at(j)].position - about);
       pose[at(j)].orientation = turn * pose[at(j)].orientation;
     }
     clip.set_pose(f, pose);
   }
+}
+
+// The chest and all above it turned forward, toes outwards.
+void hunch(Clip& clip) {
+  turn_with_all_below(clip, Role::chest, Axis::x, kHunched);
+  turn_with_all_below(clip, Role::left_foot, Axis::y, kToesOut);
+  turn_with_all_below(clip, Role::right_foot, Axis::y, -kToesOut);
 }
 
 // Ten noisy walks, every second one hunched; their steps, which contradict each other, smoothed.
@@ -200,6 +207,18 @@ TEST(StepStyle, IsTheLabelledOneWithItsDurations) {
   for (std::size_t i = 0; i < examples.size(); ++i) {
     EXPECT_EQ(made->in_style(i), examples[i].name.starts_with("Hunched ")) << examples[i].name;
   }
+}
+
+// Would fail if everybody's toes pointed as the average's do.
+TEST(StepStyle, HasItsOwnToeOut) {
+  StepLibrary library = noisy_library();
+  const double usual = library.toe_out();
+  ASSERT_TRUE(library.take_style("Hunched"));
+  const double outwards = library.toe_out();
+  ASSERT_TRUE(library.take_style("upright"));
+  EXPECT_NEAR(outwards - library.toe_out(), kToesOut, 0.02);
+  EXPECT_LT(library.toe_out(), usual);
+  EXPECT_LT(usual, outwards);
 }
 
 // Captures of two moods, told apart by their motion alone. Would fail if groups followed the
