@@ -30,13 +30,13 @@ struct MeshReduceOptions {
 
 // Removes keys of tracks of all frames, and bits of those that stay, while no vertex of `kept`,
 // what is left of `model`, is further than the tolerance from that of `model` with all keys.
-// Joints without vertices keep their place and rotation within about the tolerance at 3 cm from
-// them, for what is attached there. With `short_keys` and `filtered`, what keys leave of the
-// tolerance goes into fewer bits. choose_keys() bounds the error of a sphere around each joint,
-// with the radius of its vertices here, which is more than what a vertex between several joints
-// moves by, or less for vertices far off. So its tolerance is searched for. All keys are kept where
-// `kept` alone is further off.
-// Codes: reduce-tolerance, reduce-stretch (joints that change scale).
+// Joints without vertices keep their place and rotation within a few times the tolerance (about
+// four at most) at 3 cm from them, for what is attached there. With `short_keys` and `filtered`,
+// what keys leave of the tolerance goes into fewer bits. choose_keys() bounds the error of a sphere
+// around each joint, with the radius of its vertices here, which is more than what a vertex between
+// several joints moves by, or less for vertices far off. So its tolerance is searched for. All keys
+// are kept where `kept` alone is further off. Codes: reduce-tolerance, reduce-stretch (joints that
+// change scale).
 Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& kept,
                                       const MeshReduceOptions& options, int jobs,
                                       JointTracks& tracks);

@@ -10,6 +10,7 @@
 #include "core/file.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
+#include "formats/gltf/reduce_for_mesh.h"
 #include "math/quaternion.h"
 #include "nodes/evaluate.h"
 #include "support/folder_test.h"
@@ -77,6 +78,23 @@ TEST_F(ReduceTracks, ShowsTheSameMotionWithinTheToleranceInASmallerFile) {
     EXPECT_EQ(reduction->keys_after, keys);
     EXPECT_EQ(reduction->keys_before, before);
   }
+}
+
+// What is attached to a joint turns with it, whether or not the joint moves a vertex.
+TEST_F(ReduceTracks, JointsWithoutVerticesKeepTheirRotations) {
+  Model model = test::tube_model(test::human_skeleton(), 1, 12, 12);
+  std::ranges::fill(model.influence_joints, std::uint16_t{0});
+  const Clip clip = test::swinging_clip(model.skeleton, 60, 30);
+  const auto tracks = gltf::joint_tracks(clip.skeleton, clip);
+  ASSERT_TRUE(tracks.ok());
+  nodes::Scene all, reduced;
+  write(clip.skeleton, *tracks, all);
+  gltf::JointTracks fewer = *tracks;
+  const gltf::TrackedMesh mesh{model};
+  const double tolerance = 1e-3;
+  ASSERT_TRUE(gltf::reduce_for_mesh(mesh, mesh, {tolerance, true, true}, 2, fewer).ok());
+  write(clip.skeleton, fewer, reduced);
+  EXPECT_LE(largest_error(all, reduced, clip.duration(), 2 * 59), 4 * tolerance);
 }
 
 TEST_F(ReduceTracks, NeverMakesAFileMuchLarger) {
