@@ -127,7 +127,8 @@ std::string role_label(const RoleMap& map, int joint) {
 }
 
 std::optional<GivenRole> parse_role_label(std::string_view label) {
-  if (const auto role = parse_role(label)) return GivenRole{0, *role, {}};
+  const auto whole = parse_role(label);
+  if (whole && role_name(*whole) == label) return GivenRole{0, *whole, {}};
   for (const auto& [side, role] :
        {std::pair<std::string_view, Role>{"left_", Role::left_fingers},
         std::pair<std::string_view, Role>{"right_", Role::right_fingers}}) {
