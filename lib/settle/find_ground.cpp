@@ -190,7 +190,7 @@ Status Settler::find_ground() {
     const Vec3 hips = source_.at(0, f).position;
     const auto found = surface_at(rolled_ ? static_cast<const Terrain&>(*rolled_) : ground_, hips);
     if (!found) ++without_ground_;
-    if (found) ground_below_[at(f)] = follows_ground_ ? 0 : found->height - floor_;
+    if (found) ground_below_[at(f)] = (follows_ground_ ? 0 : found->height - floor_) + lift_[at(f)];
   }
   if (without_ground_ == frames()) {
     const Vec3 hips = source_.at(0, 0).position;
@@ -205,6 +205,30 @@ Status Settler::find_ground() {
   return {};
 }
 
+// How far the body is off the ground as a whole: what all parts that touch are in it by, or, below
+// 0, above it. A body that is lifted stays as it is; by turning joints it would crouch.
+std::vector<double> Settler::common_lift(const Heights& source) const {
+  const auto count = at(frames());
+  std::vector<double> lift(count, std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    for (const retarget::Stay& stay : source.touches[b].stays) {
+      for (int f = stay.first; f <= stay.last; ++f) {
+        const double own = -source.of_bodies[b * count + at(f)];
+        if (!std::isfinite(own)) continue;
+        double& all = lift[at(f)];
+        if (std::isnan(all)) {
+          all = own;
+        } else {
+          all = own * all <= 0 ? 0 : std::abs(own) < std::abs(all) ? own : all;
+        }
+      }
+    }
+  }
+  fill_gaps(lift);
+  const int reach = std::max(1, static_cast<int>(std::lround(kSoft * rooted_.rate)));
+  return mean_within(mean_within(lift, reach), reach);
+}
+
 // How high each point should be over the ground: as in the source, but that parts which touch are
 // lowered or raised until their lowest point lies on it.
 void Settler::set_goals(Heights source) {
@@ -213,6 +237,7 @@ void Settler::set_goals(Heights source) {
   goals_.resize(heights.size());
   weights_.resize(heights.size());
   const auto count = at(frames());
+  lift_ = common_lift(over_source_);
   std::vector<double> raised;  // [bodies x frames]
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto lowest = std::span(over_source_.of_bodies).subspan(b * count, count);
@@ -232,7 +257,9 @@ void Settler::set_goals(Heights source) {
         lowered[at(f)] = std::max(lowered[at(f)], part * (lowest[in_stay] + depth[in_stay]));
       }
     }
-    for (std::size_t f = 0; f < count; ++f) raised.push_back(depth[f] - lowered[f]);
+    for (std::size_t f = 0; f < count; ++f) {
+      raised.push_back(std::max(depth[f], lift_[f]) - std::max(lowered[f], -lift_[f]));
+    }
   }
   for (std::size_t f = 0; f < count; ++f) {
     for (std::size_t p = 0; p < points_.size(); ++p) {

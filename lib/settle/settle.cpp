@@ -173,10 +173,13 @@ Result<Settled> settle(const Clip& clip, const RoleMap& roles, const Terrain& gr
   if (!bodies) return bodies.error();
   settling::Settler settler(clip, roles, ground, options, *std::move(bodies), neutral);
   if (Status status = settler.find_ground(); !status) return status.error();
-  if (!settler.lies_already()) {
-    settler.find_freedoms();
-    settler.solve();
-  }
+  if (settler.lies_already()) return settler.finish();
+  settler.find_freedoms();
+  settler.solve();
+  Settled settled = settler.finish();
+  const auto misfit = [](const GroundFit& fit) { return std::max(fit.depth, fit.hover); };
+  if (misfit(settled.after) <= misfit(settled.before)) return settled;
+  settler.keep_source();
   return settler.finish();
 }
 

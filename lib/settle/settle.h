@@ -67,7 +67,8 @@ struct Settled {
 // an error.
 //
 // A motion that touches `ground` as much and as closely as it does a level floor, with no part
-// deeper than 10 mm, is returned as it is: settling twice is settling once.
+// deeper than 10 mm, is returned as it is: settling twice is settling once. So is one that would
+// come out further off than it is (the larger of depth and hover).
 //
 // Codes: those of check(Clip) and ragdoll::make_bodies(); settle-ground. Warnings: settle-depth and
 // settle-hover, for more than 5 mm with the part and frame; settle-partly, frames with no ground

@@ -62,6 +62,7 @@ class Settler {
   Status find_ground();
   void find_freedoms();
   void solve();
+  void keep_source() { values_.clear(); }  // finish() then gives the motion as it was
   Settled finish();
   bool lies_already() const { return lies_already_; }
 
@@ -84,6 +85,7 @@ class Settler {
   Vec3 slope_under(const SupportPoint& point, const Vec3& place, int frame) const;
   double on_ramp(const SupportPoint& point, int frame) const;  // 0 to 1
   void find_steps();
+  std::vector<double> common_lift(const Heights& source) const;
   void set_goals(Heights source);
   std::vector<Transform> pose_of(const LocalMotion& motion, int frame) const;
   LocalMotion moved() const;
@@ -123,7 +125,8 @@ class Settler {
   double floor_ = 0;
   bool follows_ground_ = false, lies_already_ = false;
   int without_ground_ = 0;            // frames
-  std::vector<double> ground_below_;  // [frames], above the floor
+  std::vector<double> lift_;          // [frames]
+  std::vector<double> ground_below_;  // [frames], above the floor, and the lift: of the hips
   Heights over_source_;
   std::vector<double> goals_, weights_;  // [frames x points]
   std::vector<double> hangs_;            // [bodies x frames], metres below what is beside it

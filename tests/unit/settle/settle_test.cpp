@@ -6,10 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/index.h"
 #include "math/euler.h"
+#include "math/smoother_step.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "ragdoll/clear_ground.h"
@@ -71,6 +73,8 @@ TEST_P(Settle, LiesAndCrawlsWithoutHoverOrDepth) {
     const Settled result = settled(clip, *on);
     EXPECT_LE(result.after.depth, 0.008);
     EXPECT_LE(result.after.hover, 0.008);
+    EXPECT_LE(std::max(result.after.depth, result.after.hover),
+              std::max(result.before.depth, result.before.hover));
     EXPECT_GE(result.touches.size(), 4U);
     const auto measured = heights(result.clip, *on);
     for (const auto& body : measured) {
@@ -89,6 +93,31 @@ TEST_F(Settle, TwiceIsOnce) {
     const auto on = ground(spec);
     const Settled once = settled(rise(samples::Lying::back), *on);
     EXPECT_LT(largest_distance(once.clip, settled(once.clip, *on).clip), 5e-5) << spec;
+  }
+}
+
+// Captures often stand a few centimetres in the floor that their fall ends on. Would fail if they
+// crouched instead of being lifted.
+TEST_F(Settle, WhoStandsInTheGroundIsLifted) {
+  Clip clip = rise(samples::Lying::back);
+  constexpr double kDeep = 0.04;
+  const int frames = clip.frame_count();
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  for (int f = 0; f < frames; ++f) {
+    clip.get_pose(f, pose);
+    const double part = smoother_step(3.0 * f / frames - 1);  // in the middle third
+    for (Transform& joint : pose) joint.position.y() -= kDeep * part;
+    clip.set_pose(f, pose);
+  }
+  const Settled result = settled(clip, *ground("level"));
+  EXPECT_GT(result.before.depth, 0.9 * kDeep);
+  EXPECT_LT(result.after.depth, 0.005);
+  clip.get_pose(frames - 1, pose);
+  std::vector<Transform> lifted = pose;
+  result.clip.get_pose(frames - 1, lifted);
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    EXPECT_NEAR(lifted[j].position.y() - pose[j].position.y(), kDeep, 0.01) << j;
+    EXPECT_LT(lifted[j].orientation.angularDistance(pose[j].orientation), 5 * kRadiansPerDegree);
   }
 }
 
