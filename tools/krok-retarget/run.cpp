@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/file.h"
 #include "core/numbers.h"
 #include "formats/alignment/alignment_format.h"
 #include "formats/anim/anim.h"
@@ -246,6 +247,13 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!source) return source.error();
   const auto target = read_target(options.onto, context);
   if (!target) return target.error();
+  if (source->frame_count() < 2 && target->clip.frame_count() > 1) {
+    context.warn(
+        "retarget-still",
+        fmt::format("{} has no motion, --onto has {}: the result is a still",
+                    base_name(options.input), counted(target->clip.frame_count(), "frame")),
+        "IN is whose motion is wanted, --onto whose body");
+  }
   const auto source_roles = roles_of(source->skeleton, options.map, context);
   if (!source_roles) return source_roles.error();
   const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);

@@ -75,6 +75,16 @@ TEST_F(KrokRetarget, TakesAndTargetMayBeScenes) {
   EXPECT_EQ(clip.frame_count(), walk_.frame_count());
 }
 
+// Would fail if a motion and a body in the wrong order gave a still without a word.
+TEST_F(KrokRetarget, AStillOntoAMotionIsWarnedOf) {
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--to", "0f", "-o", "still.anim"}).exit_code, 0);
+  const ToolRun swapped = retarget({"still.anim", "--onto", "walk.anim", "-o", "out.anim"});
+  EXPECT_EQ(swapped.exit_code, 0);
+  EXPECT_THAT(swapped.err, HasSubstr("[retarget-still]"));
+  const ToolRun meant = retarget({"walk.anim", "--onto", "still.anim", "-o", "out.anim"});
+  EXPECT_THAT(meant.err, Not(HasSubstr("[retarget-still]")));
+}
+
 TEST_F(KrokRetarget, OntoItsOwnSkeletonAMotionComesBack) {
   const auto run = retarget({"walk.anim", "--onto", "walk.anim", "-o", "out.anim"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
