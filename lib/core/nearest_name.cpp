@@ -55,7 +55,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> nam
     const std::size_t found = distance(wanted, other);
     const std::size_t longer = std::max(wanted.size(), other.size());
     const std::size_t near = std::max<std::size_t>(2, longer / 3);
-    const bool half = 2 * found > longer - dashes - (found > 1 ? 1 : 0);
+    const bool half = 2 * found + (found > 1 ? 1 : 0) > longer - dashes;
     if (found > near || half || (!best.empty() && found >= least)) continue;
     best = name;
     least = found;

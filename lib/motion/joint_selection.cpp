@@ -56,8 +56,9 @@ Result<std::vector<std::uint8_t>> select_joints(const Skeleton& skeleton,
       any = true;
     }
     // A name that no joint has may be a role's.
-    if (const auto role = any ? std::nullopt : parse_role(pattern)) {
-      for (const int joint : find_roles(skeleton).joints(*role)) {
+    const Role role = any ? Role::none : parse_role(pattern).value_or(Role::none);
+    if (role != Role::none) {
+      for (const int joint : find_roles(skeleton).joints(role)) {
         selected[static_cast<std::size_t>(joint)] = 1;
         any = true;
       }
@@ -66,7 +67,7 @@ Result<std::vector<std::uint8_t>> select_joints(const Skeleton& skeleton,
   }
   for (const std::string& name : selection.below) {
     int joint = skeleton.find(name);
-    if (joint < 0 && parse_role(name)) joint = find_joint(skeleton, find_roles(skeleton), name);
+    if (joint < 0) joint = find_joint(skeleton, find_roles(skeleton), name);
     if (joint < 0) return no_such_joint(name, skeleton);
     const auto within = subtree(skeleton, joint);
     for (std::size_t j = 0; j < selected.size(); ++j) selected[j] |= within[j];

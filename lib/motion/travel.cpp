@@ -74,4 +74,10 @@ Clip carried_along(const Clip& clip, int carrier, const RootMotion& added) {
   return result;
 }
 
+std::optional<Clip> travelling(const Clip& clip, int carrier) {
+  const auto& removed = clip.provenance.removed_root_motion;
+  if (!removed) return std::nullopt;
+  return carried_along(clip, carrier, *removed);
+}
+
 }  // namespace krok

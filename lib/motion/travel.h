@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "scene/clip.h"
 
 namespace krok {
@@ -19,5 +21,9 @@ Clip in_place(const Clip& clip, int carrier, Travel removed);
 // the carrier's place in the first frame. Where in_place() removed the trend of a straight path, at
 // its mean velocity, this gives the motion before. Provenance no longer has a removed root motion.
 Clip carried_along(const Clip& clip, int carrier, const RootMotion& added);
+
+// A motion in place carried along at the root motion that its provenance says was taken out of it;
+// empty if none was. Feet stay on the ground in it, so it is the one in which steps are judged.
+std::optional<Clip> travelling(const Clip& clip, int carrier);
 
 }  // namespace krok

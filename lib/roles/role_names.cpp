@@ -80,8 +80,8 @@ std::optional<Role> parse_role(std::string_view name) {
 int find_joint(const Skeleton& skeleton, const RoleMap& roles, std::string_view name) {
   const int joint = skeleton.find(name);
   if (joint >= 0) return joint;
-  const auto role = parse_role(name);
-  return role ? roles.joint(*role) : -1;
+  const Role role = parse_role(name).value_or(Role::none);
+  return role == Role::none ? -1 : roles.joint(role);
 }
 
 bool is_role_of_many(Role role) {

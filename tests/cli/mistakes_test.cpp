@@ -54,6 +54,15 @@ TEST_F(Mistakes, FoldersAreForBatchesAndFoldersAreNoFiles) {
               HasSubstr("the output is a folder, not x.anim"));
 }
 
+// Would fail if a word were taken for one that shares half of its letters, or led nowhere.
+TEST_F(Mistakes, AValueThatAnOptionDoesNotTakeShowsWhatTheOptionDoes) {
+  const std::string cycle = refused("krok-edit", {"in.bvh", "--cycle", "best", "-o", "a.anim"});
+  EXPECT_THAT(cycle, Not(HasSubstr("did you mean")));
+  EXPECT_THAT(cycle, HasSubstr("hint: Keep one gait cycle"));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--filter", "6Hz", "-o", "a.anim"}),
+              HasSubstr("butterworth (zero-phase low-pass)"));
+}
+
 TEST_F(Mistakes, UnknownJointsToo) {
   EXPECT_THAT(refused("krok-plot", {"in.bvh", "--joint", "Spin", "-o", "a.svg"}),
               HasSubstr("did you mean 'Spine'?"));

@@ -58,7 +58,8 @@ std::string in_degrees(double radians);
 // The options that --game-loop sets, where they are not given.
 void complete_game_loop(Options& options);
 
-// Whether all steps can do without the whole motion in memory.
+// Whether all steps can do without the whole motion in memory: those that change Edit::frames where
+// it is set. All others are listed there.
 bool is_streamed(const Options& options);
 
 // Checks that all sequences of the sequences file are within the motion.

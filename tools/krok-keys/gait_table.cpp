@@ -114,8 +114,8 @@ Result<int> write_rows(const Options& options, const char* header, Rows* rows_of
 }  // namespace
 
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes) {
-  if (const auto& removed = clip.provenance.removed_root_motion) {
-    return gait_facts(carried_along(clip, carrying_joint(roles), *removed), roles, keytimes);
+  if (const auto moving = travelling(clip, carrying_joint(roles))) {
+    return gait_facts(*moving, roles, keytimes);
   }
   return {gait_metrics(keytimes), step_measures(clip, roles, keytimes), slide_speed(clip, roles)};
 }

@@ -358,14 +358,11 @@ Result<int> run(const Options& options, ToolContext& context) {
   krok::keys::Sidecar sidecar = before->value_or(krok::keys::Sidecar{});
   std::optional<FoundContacts> contacts;
   // In place, feet on the ground move with it: steps are found in the motion as it travels.
-  std::optional<Clip> travelling;
-  if (const auto& removed = clip->provenance.removed_root_motion) {
-    travelling = carried_along(*clip, carrying_joint(*roles), *removed);
-  }
+  const auto moving = travelling(*clip, carrying_joint(*roles));
   if (*finding) {
-    auto found = find(travelling ? *travelling : *clip, *roles, context);
+    auto found = find(moving ? *moving : *clip, *roles, context);
     if (!found) return std::move(found).error().in_file(options.input());
-    if (travelling) place_contacts(*clip, found->keys.contacts);
+    if (moving) place_contacts(*clip, found->keys.contacts);
     sidecar = with_edits(std::move(found->keys), sidecar);
     contacts = std::move(found->contacts);
   } else if (*before && (*before)->has_edits()) {
@@ -376,7 +373,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !status) {
     return status.error();
   }
-  const Status status = write_results(options, travelling ? *travelling : *clip, *roles,
+  const Status status = write_results(options, moving ? *moving : *clip, *roles,
                                       std::move(contacts), sidecar, context);
   if (!status) return status.error();
 

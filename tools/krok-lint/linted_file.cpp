@@ -57,11 +57,8 @@ void lint_file(const InputFile& input, const Options& options, const io::FindRol
   krok::lint::MotionOptions mine = how;
   mine.is_loop = options.loops || is_named_loop(file.path);
   // Feet of a motion in place slide as fast as it would travel.
-  std::optional<Clip> travelling;
-  if (const auto& removed = clip->provenance.removed_root_motion) {
-    travelling = carried_along(*clip, carrying_joint(*roles), *removed);
-  }
-  auto faults = krok::lint::lint_motion(travelling ? *travelling : *clip, *roles, mine);
+  const auto moving = travelling(*clip, carrying_joint(*roles));
+  auto faults = krok::lint::lint_motion(moving ? *moving : *clip, *roles, mine);
   file.findings = std::move(faults.findings);
   file.notes = std::move(faults.notes);
   if (how.settings.has(krok::lint::Rule::duplicate)) {

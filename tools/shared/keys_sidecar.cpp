@@ -106,9 +106,8 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
 
 Result<MotionKeys> find_keys(const std::string& path, const Clip& clip, const RoleMap& roles,
                              ToolContext& context) {
-  if (const auto& removed = clip.provenance.removed_root_motion) {
-    auto keys =
-        find_keys(path, carried_along(clip, carrying_joint(roles), *removed), roles, context);
+  if (const auto moving = travelling(clip, carrying_joint(roles))) {
+    auto keys = find_keys(path, *moving, roles, context);
     if (keys) place_contacts(clip, keys->contacts);
     return keys;
   }

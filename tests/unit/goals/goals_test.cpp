@@ -93,7 +93,7 @@ TEST(Goals, ARoleIsFoundHoweverItIsWritten) {
        {"right_lower_arm", "RightLowerArm", "Right_Lower_Arm", "rightlowerarm", "right elbow"}) {
     EXPECT_EQ(find_joint(skeleton, roles, name), arm) << name;
   }
-  for (const char* name : {"", "RIGHT", "Right_", "LowerArm", "elbow"}) {
+  for (const char* name : {"", "none", "RIGHT", "Right_", "LowerArm", "elbow"}) {
     EXPECT_EQ(find_joint(skeleton, roles, name), -1) << name;
   }
 }
