@@ -73,16 +73,14 @@ void fade_goal(Goal& goal, double strength, const Skeleton& skeleton,
     case Goal::Kind::pole:
       fade_pole(goal, strength, skeleton, pose);
       break;
-    default: {
-      const Vec3 now = joint * goal.point;
-      goal.target = now + strength * (goal.target - now);
+    default:
       goal.orientation = slerp(joint.orientation, goal.orientation, strength);
       break;
-    }
   }
 }
 
 constexpr double kForgets = 0.25;  // seconds, of the frame before
+constexpr int kFirstSolves = 20;   // each as many steps as Options::iterations at most
 // A motion that is beyond its limits by so much, radians, is blended by a goal's strength alone.
 constexpr double kWhollyBlended = 0.1;
 
@@ -235,11 +233,14 @@ class FrameSolver {
 
  private:
   Transform anchor(const KeyedGoal& goal, double time);
-  void list_goals(double time);
+  Status list_goals(double time);
+  bool fades_by_turns(std::size_t g) const;
+  Status fade_by_turns(std::size_t g, bool first, Goal& goal);
+  void turn_given(const std::vector<Vec3>& turns, double part);
+  void list_turns(std::vector<Vec3>& turns);
   void mark_chains();
-  void start_from_before(double strength);
+  void start_from_before();
   void start_limbs();
-  void keep_change(double strength);
   void keep_upright();
   bool blend_in(double strength);
   double excess_of_chains() const;
@@ -252,9 +253,11 @@ class FrameSolver {
   std::vector<Goal> active_;
   std::vector<double> strengths_;
   std::vector<std::uint8_t> in_chain_;  // [joints], of the frame's goals
-  // What goals turned in the frame before, in the joints' frames, and how strong they were.
-  std::vector<Vec3> change_;
-  double strength_before_ = 0;
+  // What each goal turned in the frame before, in the joints' frames: all of them together, or, as
+  // it fades, what it alone turns in this one at full strength. How much of it is in the start.
+  std::vector<std::vector<Vec3>> turns_;  // [goals]
+  std::vector<double> strengths_before_, parts_;
+  std::vector<Vec3> mean_;
 };
 
 // As the motion is given.
@@ -266,22 +269,62 @@ Transform FrameSolver::anchor(const KeyedGoal& goal, double time) {
   return other_[at(goal.relative_to)];
 }
 
-void FrameSolver::list_goals(double time) {
+Status FrameSolver::list_goals(double time) {
   active_.clear();
+  turns_.resize(goals_.size());
+  strengths_before_.resize(goals_.size(), 0.0);
+  parts_.assign(goals_.size(), 0.0);
   for (std::size_t g = 0; g < goals_.size(); ++g) {
-    if (!(strengths_[g] > 0)) continue;
+    const double strength = strengths_[g], before = std::exchange(strengths_before_[g], strength);
+    if (!(before > 0)) turns_[g].assign(given_.size(), Vec3::Zero());
+    if (!(strength > 0)) continue;
     const KeyedGoal& keyed = goals_[g];
     const Transform frame = anchor(keyed, time);
     Goal goal = placed(keyed, time, frame, given_);
-    if (strengths_[g] < 1) fade_goal(goal, strengths_[g], clip_.skeleton, given_);
+    if (strength < 1 && !fades_by_turns(g)) fade_goal(goal, strength, clip_.skeleton, given_);
     if (keyed.relative_to >= 0 && keyed.motion == nullptr) {
       // The solution moves its frame.
       goal.anchor = keyed.relative_to;
       goal.target = frame.inverse() * goal.target;
       goal.orientation = (frame.orientation.conjugate() * goal.orientation).normalized();
     }
+    parts_[g] = std::exp(-1 / (kForgets * clip_.rate));
+    if (fades_by_turns(g)) {
+      if (Status status = fade_by_turns(g, !(before > 0), goal); !status) return status;
+    } else if (strength < before) {
+      parts_[g] *= strength / before;
+    }
     active_.push_back(std::move(goal));
   }
+  return {};
+}
+
+bool FrameSolver::fades_by_turns(std::size_t g) const {
+  const Goal::Kind kind = goals_[g].goal.kind;
+  return strengths_[g] < 1 && (kind == Goal::Kind::position || kind == Goal::Kind::pose);
+}
+
+// The target where the joint is once the turns that the goal alone brings about are made in part.
+// On the straight way between both places a limb would pass its full length, where its middle turns
+// by any angle in no time, or come near the joint that it hangs on.
+Status FrameSolver::fade_by_turns(std::size_t g, bool first, Goal& goal) {
+  std::vector<Vec3>& turns = turns_[g];
+  turn_given(turns, parts_[g]);
+  Vec3 root = solved_.front().position;
+  // A motion may begin as a goal already fades in: far from the solution.
+  for (int solves = first ? kFirstSolves : 1; solves > 0; --solves) {
+    if (auto alone = solver_.solve(std::span(&goal, 1), solved_); !alone) return alone.error();
+  }
+  root = strengths_[g] * (solved_.front().position - root);
+  list_turns(turns);
+  parts_[g] = strengths_[g];
+  turn_given(turns, parts_[g]);
+  for (Transform& joint : solved_) joint.position += root;
+  const Transform frame = goal.anchor >= 0 ? solved_[at(goal.anchor)] : Transform();
+  const Transform& joint = solved_[at(goal.joint)];
+  goal.target = frame.inverse() * (joint * goal.point);
+  goal.orientation = (frame.orientation.conjugate() * joint.orientation).normalized();
+  return {};
 }
 
 void FrameSolver::mark_chains() {
@@ -297,20 +340,46 @@ void FrameSolver::mark_chains() {
   }
 }
 
-// The frame as it was, plus most of what goals changed in the frame before.
-void FrameSolver::start_from_before(double strength) {
-  solved_ = given_;
-  if (change_.empty()) return;
+// The solution starts from the frame as it was, its joints turned by a part of these.
+void FrameSolver::turn_given(const std::vector<Vec3>& turns, double part) {
   const auto& parents = clip_.skeleton.parents;
+  solved_ = given_;
   local_.resize(given_.size());
   world_to_local(parents, given_, local_);
-  const double kept =
-      std::exp(-1 / (kForgets * clip_.rate)) * std::min(1.0, strength / strength_before_);
   for (std::size_t j = 0; j < local_.size(); ++j) {
-    if (in_chain_[j] == 0 || change_[j].isZero()) continue;
-    local_[j].orientation = local_[j].orientation * from_rotation_vector(kept * change_[j]);
+    if (turns[j].isZero()) continue;
+    local_[j].orientation = local_[j].orientation * from_rotation_vector(part * turns[j]);
   }
   local_to_world(parents, local_, solved_);
+}
+
+// What the solution turned.
+void FrameSolver::list_turns(std::vector<Vec3>& turns) {
+  const auto& parents = clip_.skeleton.parents;
+  local_.resize(given_.size());
+  before_solving_.resize(given_.size());
+  world_to_local(parents, solved_, local_);
+  world_to_local(parents, given_, before_solving_);
+  turns.resize(given_.size());
+  for (std::size_t j = 0; j < local_.size(); ++j) {
+    turns[j] = rotation_vector(before_solving_[j].orientation.conjugate() * local_[j].orientation);
+  }
+}
+
+// The frame as it was, plus most of what goals changed in the frame before; of a joint that several
+// turned the mean.
+void FrameSolver::start_from_before() {
+  mean_.assign(given_.size(), Vec3::Zero());
+  for (std::size_t j = 0; j < mean_.size(); ++j) {
+    double weights = 0;
+    for (std::size_t g = 0; g < goals_.size() && in_chain_[j] != 0; ++g) {
+      if (!(strengths_[g] > 0) || turns_[g][j].isZero()) continue;
+      weights += strengths_[g];
+      mean_[j] += strengths_[g] * parts_[g] * turns_[g][j];
+    }
+    if (weights > 0) mean_[j] /= weights;
+  }
+  turn_given(mean_, 1);
   if (solver_.options().method == Method::two_bone) start_limbs();
 }
 
@@ -328,20 +397,6 @@ void FrameSolver::start_limbs() {
         solved_[at(middle)].orientation.conjugate() * given_[at(goal.joint)].orientation;
     local_to_world(parents, local_, solved_);
   }
-}
-
-void FrameSolver::keep_change(double strength) {
-  const auto& parents = clip_.skeleton.parents;
-  local_.resize(given_.size());
-  before_solving_.resize(given_.size());
-  world_to_local(parents, solved_, local_);
-  world_to_local(parents, given_, before_solving_);
-  change_.resize(given_.size());
-  for (std::size_t j = 0; j < local_.size(); ++j) {
-    change_[j] =
-        rotation_vector(before_solving_[j].orientation.conjugate() * local_[j].orientation);
-  }
-  strength_before_ = strength;
 }
 
 // Turns joints back to where they faced, with all that hangs on them, but for what goals are for or
@@ -418,17 +473,20 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
     strength = std::max(strength, strengths_.back());
   }
   if (!(strength > 0)) {
-    change_.clear();
+    std::ranges::fill(strengths_before_, 0.0);
     return {};
   }
   clip_.get_pose(frame, given_);
-  list_goals(time);
+  if (Status status = list_goals(time); !status) return status;
   mark_chains();
-  start_from_before(strength);
+  start_from_before();
   const auto solution = solver_.solve(active_, solved_);
   if (!solution) return solution.error();
   const Outcome* const outcome = *solution;
-  keep_change(strength);
+  list_turns(mean_);
+  for (std::size_t g = 0; g < goals_.size(); ++g) {
+    if (!fades_by_turns(g)) turns_[g] = mean_;
+  }
   keep_upright();
   if (strength >= 1) excess = std::max(excess, excess_of_chains());
   std::vector<Residual> missed = outcome->goals;

@@ -22,8 +22,11 @@ struct GoalKey {
   timeline::Easing easing;  // to the next key
 };
 
-// A goal that moves through keys and fades in and out. While it fades, its target lies between what
-// the motion does by itself and the keys, so that it takes hold and lets go without a jump.
+// A goal that moves through keys and fades in and out, so that it takes hold and lets go without a
+// jump. While it fades, a position or pose is sought where the joint comes to lie once the turns
+// that the goal alone needs are made in part (an arm that straightens for a place out of reach does
+// so as evenly as the fade); of the other kinds the target lies between what the motion does by
+// itself and the keys.
 struct KeyedGoal {
   std::string name;  // for reports
 

@@ -254,6 +254,42 @@ TEST(GoalMotion, NothingFlipsAlongAMovingGoal) {
   }
 }
 
+// While a goal out of reach fades in, each joint turns as evenly as the fade runs: never in a frame
+// by more than the steepest part of it, 15/8 of the mean, and some room. On the straight way to
+// such a place the elbow would snap.
+TEST(GoalMotion, AnArmStraightensAsEvenlyAsTheFadeRuns) {
+  Clip clip = calm_human(90);
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  clip.get_pose(0, pose);
+  for (int f = 1; f < 90; ++f) clip.set_pose(f, pose);
+  const auto local = [&](const Clip& of, int f, std::size_t j) -> Quat {
+    const auto turns = of.frame_orientations(f);
+    const auto parent = at(clip.skeleton.parents[j]);
+    return turns[parent].cast<double>().conjugate() * turns[j].cast<double>();
+  };
+  for (const Method method :
+       {Method::least_squares, Method::selectively_damped, Method::ccd, Method::two_bone}) {
+    for (const double time : {1.0, 0.2}) {  // 0.2: the motion begins as the goal already fades in
+      KeyedGoal goal = reach_of(clip, "LeftHand", time, place(clip, 0, "LeftArm") + Vec3(2, 1, 2));
+      goal.goal.depth = 3;
+      GoalMotionOptions options;
+      options.solver.method = method;
+      const auto made = apply_goals(clip, {&goal, 1}, {}, options);
+      ASSERT_TRUE(made.ok());
+      const int full = static_cast<int>(std::lround(time * 60));
+      for (std::size_t j = 1; j < pose.size(); ++j) {
+        const double whole = angle_between(local(clip, full, j), local(made->clip, full, j));
+        const double steepest = 15.0 / 8 * whole / (0.3 * 60);
+        for (int f = 1; f <= full; ++f) {
+          EXPECT_LT(angle_between(local(made->clip, f - 1, j), local(made->clip, f, j)),
+                    1.2 * steepest + 0.5 * kRadiansPerDegree)
+              << static_cast<int>(method) << " " << clip.skeleton.names[j] << " frame " << f;
+        }
+      }
+    }
+  }
+}
+
 TEST(GoalMotion, WrongKeysAreRefused) {
   const Clip clip = calm_human(30);
   std::vector<KeyedGoal> bad(6, reach_of(clip, "LeftHand", 0.5, Vec3(0, 1, 0)));
