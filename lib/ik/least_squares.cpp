@@ -463,7 +463,10 @@ int LeastSquares::solve(Tree& tree, const Options& options, int& starts) {
   restore(tree, best_);
   tree.forward();
   pull_part_ = 0;
-  return iterations + descend(tree, options, options.iterations - best_iterations, kSettledPart);
+  // Out of reach selective damping comes near quickly and then wanders about the nearest pose.
+  const int left = selective_ ? options.iterations : options.iterations - best_iterations;
+  selective_ = false;
+  return iterations + descend(tree, options, left, kSettledPart);
 }
 
 }  // namespace krok::ik

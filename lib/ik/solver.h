@@ -24,7 +24,8 @@ enum class Method : unsigned char {
   // kinematics", 2005): each singular vector of the derivatives is damped by itself, by how far it
   // would move the effectors for what it brings them nearer. A joint's three turns count as one, so
   // that how it is oriented does not matter; their largest step shrinks while the error grows.
-  // Goals, limits, pull and starts are those of least_squares. For motions in and out of reach.
+  // Goals, limits, pull and starts are those of least_squares, which also settles what is out of
+  // reach, where it would wander about the nearest pose. For motions in and out of reach.
   selectively_damped,
   // Cyclic coordinate descent (Wang and Chen 1991): from the end effectors up, each joint turns the
   // line from it to the effector onto the line to the goal. Where several goals hang on a joint it

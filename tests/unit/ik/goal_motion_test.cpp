@@ -261,7 +261,18 @@ TEST(GoalMotion, AnArmStraightensAsEvenlyAsTheFadeRuns) {
   Clip clip = calm_human(90);
   std::vector<Transform> pose(clip.skeleton.names.size());
   clip.get_pose(0, pose);
-  for (int f = 1; f < 90; ++f) clip.set_pose(f, pose);
+  // An elbow bent by 100 degrees.
+  const int elbow = clip.skeleton.find("LeftForeArm");
+  const Vec3 pivot = pose[at(elbow)].position;
+  const Quat bend = from_rotation_vector(100 * kRadiansPerDegree * Vec3::UnitX());
+  for (int j = elbow; j < clip.skeleton.joint_count(); ++j) {
+    int above = j;
+    while (above > elbow) above = clip.skeleton.parents[at(above)];
+    if (above != elbow) continue;
+    pose[at(j)].position = pivot + bend * (pose[at(j)].position - pivot);
+    pose[at(j)].orientation = bend * pose[at(j)].orientation;
+  }
+  for (int f = 0; f < 90; ++f) clip.set_pose(f, pose);
   const auto local = [&](const Clip& of, int f, std::size_t j) -> Quat {
     const auto turns = of.frame_orientations(f);
     const auto parent = at(clip.skeleton.parents[j]);
