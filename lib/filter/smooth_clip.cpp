@@ -79,17 +79,13 @@ Result<FrameSource> smooth(
   const auto filter = series_filter(smoothing, source.rate);
   if (!filter) return filter.error();
   if (too_short(source.frame_count, smoothing)) return source;
-  LocalBounds bounds(source.skeleton);
-  const Status status = for_each_block(source, jobs, [&](int, const Clip& block) {
-    bounds.add(block);
-    return Status();
-  });
-  if (!status) return status.error();
+  auto moving = moving_joints(source, jobs);
+  if (!moving) return moving.error();
   BlockSize size = {
       block_frames,
       std::visit([&](const auto& chosen) { return overlap_of(chosen, source.rate); }, smoothing)};
   return changed_in_blocks(source, size, jobs,
-                           [filter = *filter, moving = bounds.moving(), jobs, watch,
+                           [filter = *filter, moving = *std::move(moving), jobs, watch,
                             joints = std::vector(joints.begin(), joints.end())](FrameRun& run) {
                              LocalMotion motion = local_motion(run.clip);
                              smooth_joints(filter, joints, moving, jobs, motion);

@@ -39,6 +39,7 @@ class SpikeFinder {
  public:
   SpikeFinder(std::span<Value> series, double threshold, double least, int longest, int around)
       : series_(series),
+        shown_(series),
         count_(static_cast<int>(series.size())),
         threshold_(threshold),
         least_(least),
@@ -52,7 +53,7 @@ class SpikeFinder {
     if (count_ < 5) return runs;
     for (int f = 0; f < count_; ++f) deviations_.push_back(deviation(f, 1));
     for (int length = 1; length <= std::min(std::max(longest_, kPair), count_ - 4); ++length) {
-      set_limits(length);
+      forget_limits(length);
       for (int first = 0; first + length <= count_; ++first) {
         const Run run{first, first + length - 1, 0};
         if (suspicious(first) && is_spike(run)) runs.push_back(replace(run));
@@ -64,8 +65,7 @@ class SpikeFinder {
 
  private:
   static std::size_t at(int frame) { return static_cast<std::size_t>(frame); }
-  const Value& value(int frame) const { return series_[at(frame)]; }
-  double limit(int frame) const { return limits_[at(frame)]; }
+  const Value& value(int frame) const { return shown_[at(frame)]; }
 
   // The frames from which the value at `frame` is predicted without those of `run`: up to two on
   // each side, so two in total if one side has none.
@@ -107,7 +107,7 @@ class SpikeFinder {
   }
 
   // Distance of the frame from the prediction, divided by the limit; over 1 exceeds it.
-  double excess(int frame, const Run& run) const {
+  double excess(int frame, const Run& run) {
     const Support from = support(frame, run);
     if (from.count < 2) return 0;
     const double distance = difference(guess(frame, from), value(frame)).norm();
@@ -120,32 +120,64 @@ class SpikeFinder {
     return difference(guess(frame, support(frame, run)), value(frame)).norm();
   }
 
-  // The usual deviation depends on the length of the gap that is predicted across.
-  void set_limits(int length) {
-    std::vector<double> usual;
-    for (int f = 0; f < count_; ++f) usual.push_back(deviation(f, length));
-    limits_.resize(usual.size());
-    std::vector<double> near;  // sorted: the deviations within `around_` of a frame
-    const auto place = [&](double value) { return std::ranges::lower_bound(near, value); };
-    for (int f = 0; f < std::min(around_, count_); ++f)
-      near.insert(place(usual[at(f)]), usual[at(f)]);
-    for (int f = 0; f < count_; ++f) {
-      const int in = f + around_, out = in - 2 * around_ - 1;
-      if (in < count_) near.insert(place(usual[at(in)]), usual[at(in)]);
-      if (out >= 0) near.erase(place(usual[at(out)]));
-      limits_[at(f)] = std::max(least_, threshold_ * near[near.size() / 2]);
+  // The usual deviation depends on the length of the gap that is predicted across. Limits are those
+  // of the series as it is now, and computed where they are needed: in few frames of most motions.
+  void forget_limits(int length) {
+    length_ = length;
+    before_.assign(series_.begin(), series_.end());
+    if (length == 1) usual_ = deviations_;
+    if (length > 1) usual_.assign(at(count_), kUnknown);
+    limits_.assign(at(count_), kUnknown);
+    near_.clear();
+  }
+
+  double usual(int frame) {
+    double& known = usual_[at(frame)];
+    if (known < 0) {
+      shown_ = before_;
+      known = deviation(frame, length_);
+      shown_ = series_;
+    }
+    return known;
+  }
+
+  double limit(int frame) {
+    double& known = limits_[at(frame)];
+    if (known < 0) {
+      move_to(frame);
+      known = std::max(least_, threshold_ * near_[near_.size() / 2]);
+    }
+    return known;
+  }
+
+  void move_to(int frame) {
+    const auto place = [&](double value) { return std::ranges::lower_bound(near_, value); };
+    if (near_.empty() || frame < centre_ || frame > centre_ + around_) {
+      near_.clear();
+      centre_ = frame;
+      for (int f = std::max(0, frame - around_); f <= std::min(count_ - 1, frame + around_); ++f) {
+        near_.push_back(usual(f));
+      }
+      std::ranges::sort(near_);
+    }
+    while (centre_ < frame) {
+      ++centre_;
+      const int in = centre_ + around_, out = in - 2 * around_ - 1;
+      if (in < count_) near_.insert(place(usual(in)), usual(in));
+      if (out >= 0) near_.erase(place(usual(out)));
     }
   }
 
   // A jump between a frame and the previous one raises the deviation of at least one of them.
-  bool suspicious(int frame) const {
+  bool suspicious(int frame) {
     const auto shows = [&](int f) {
-      return f >= 0 && f < count_ && deviations_[at(f)] > 0.2 * limit(f);
+      return f >= 0 && f < count_ && deviations_[at(f)] > 0.2 * least_ &&
+             deviations_[at(f)] > 0.2 * limit(f);
     };
     return shows(frame) || shows(frame - 1);
   }
 
-  bool is_spike(const Run& run) const {
+  bool is_spike(const Run& run) {
     if (excess(run.first, run) <= 1 || excess(run.last, run) <= 1) return false;
     const int before = run.first - 1, after = run.last + 1;
     if (before < 0 || after >= count_) return run.first == run.last && jumps_at_end(run.first);
@@ -193,30 +225,50 @@ class SpikeFinder {
     return run;
   }
 
+  static constexpr double kUnknown = -1;
+
   std::span<Value> series_;
+  std::span<const Value> shown_;  // what value() reads: the series, or before_
   int count_;
   double threshold_, least_;
   int longest_, around_;
-  std::vector<double> deviations_, limits_;
+  std::vector<double> deviations_;
+  // Of runs of length_ frames, of the series before any of them was replaced.
+  int length_ = 1;
+  std::vector<Value> before_;
+  std::vector<double> usual_, limits_;
+  std::vector<double> near_;  // sorted: the usual deviations within around_ of centre_
+  int centre_ = 0;
 };
 
-}  // namespace
-
-Result<SpikeRemoval> remove_spikes(const Clip& clip, const SpikeOptions& options,
-                                   std::span<const std::uint8_t> joints, int jobs) {
+Status check(const SpikeOptions& options) {
   for (const double value :
        {options.threshold, options.least_angle, options.least_distance, options.longest}) {
     if (!(value > 0) || !std::isfinite(value)) {
       return Error("filter-threshold", "spike thresholds must be positive and finite");
     }
   }
-  LocalMotion motion = local_motion(clip);
-  const std::vector<std::uint8_t> moving = moving_joints(motion);
+  return {};
+}
+
+struct Lengths {
+  int longest, around;  // frames
+};
+
+Lengths lengths_of(const SpikeOptions& options, double rate) {
   const auto frames_of = [&](double seconds, double most) {
-    return static_cast<int>(std::min(most, std::round(seconds * clip.rate)));
+    return static_cast<int>(std::min(most, std::round(seconds * rate)));
   };
-  const int longest = std::max(1, frames_of(options.longest, 32));
-  const int around = std::max(10, frames_of(0.5, 256));
+  return {std::max(1, frames_of(options.longest, 32)), std::max(10, frames_of(0.5, 256))};
+}
+
+// `moving`: as of moving_joints(), of the whole motion; empty: of this clip.
+SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
+                            std::span<const std::uint8_t> joints, std::vector<std::uint8_t> moving,
+                            int jobs) {
+  LocalMotion motion = local_motion(clip);
+  if (moving.empty()) moving = moving_joints(motion);
+  const auto [longest, around] = lengths_of(options, clip.rate);
 
   std::vector<std::vector<Spike>> found(clip.skeleton.names.size());
   parallel_for(found.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
@@ -246,6 +298,42 @@ Result<SpikeRemoval> remove_spikes(const Clip& clip, const SpikeOptions& options
   }
   if (!result.spikes.empty()) set_local_motion(motion, result.clip);
   return result;
+}
+
+}  // namespace
+
+Result<SpikeRemoval> remove_spikes(const Clip& clip, const SpikeOptions& options,
+                                   std::span<const std::uint8_t> joints, int jobs) {
+  if (Status status = check(options); !status) return status.error();
+  return without_spikes(clip, options, joints, {}, jobs);
+}
+
+Result<FrameSource> remove_spikes(
+    const FrameSource& source, const SpikeOptions& options, std::span<const std::uint8_t> joints,
+    int jobs, const std::function<void(const FrameRun& before, const SpikeRemoval& after)>& watch,
+    int block_frames) {
+  if (Status status = check(options); !status) return status.error();
+  auto moving = moving_joints(source, jobs);
+  if (!moving) return moving.error();
+  // A limit is of frames around it, in which shorter spikes were replaced by limits of their own.
+  const auto [longest, around] = lengths_of(options, source.rate);
+  const int reach = std::max(longest, kPair) * (around + longest + 8);
+  return changed_in_blocks(
+      source, {block_frames, reach}, jobs,
+      [moving = *std::move(moving), options, jobs, watch,
+       joints = std::vector(joints.begin(), joints.end())](FrameRun& run) {
+        SpikeRemoval removal = without_spikes(run.clip, options, joints, moving, jobs);
+        std::erase_if(removal.spikes, [&](const Spike& spike) {
+          return spike.first_frame < run.kept_begin || spike.first_frame >= run.kept_end;
+        });
+        for (Spike& spike : removal.spikes) {
+          spike.first_frame += run.first;
+          spike.last_frame += run.first;
+        }
+        if (watch) watch(run, removal);
+        run.clip = std::move(removal.clip);
+        return Status();
+      });
 }
 
 }  // namespace krok::filter

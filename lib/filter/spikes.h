@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_blocks.h"
 
 namespace krok::filter {
 
@@ -48,5 +50,16 @@ struct SpikeRemoval {
 // for options that are not positive and finite.
 Result<SpikeRemoval> remove_spikes(const Clip& clip, const SpikeOptions& options,
                                    std::span<const std::uint8_t> joints, int jobs = 1);
+
+// The same of frames generated on demand, in blocks that overlap by what a spike's limit depends
+// on: the same bytes up to one block; beyond it the same spikes and replacements, and a block
+// without spikes, with its overlap, is unchanged bit for bit. The frames are read once beforehand,
+// for which joints translate. `watch` (optional) gets each block before and after, one at a time,
+// with the spikes that begin in the frames kept of it, numbered in the whole take.
+Result<FrameSource> remove_spikes(
+    const FrameSource& source, const SpikeOptions& options, std::span<const std::uint8_t> joints,
+    int jobs,
+    const std::function<void(const FrameRun& before, const SpikeRemoval& after)>& watch = {},
+    int block_frames = BlockSize().frames / 2);
 
 }  // namespace krok::filter

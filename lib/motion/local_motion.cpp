@@ -77,20 +77,21 @@ std::vector<std::uint8_t> moving_joints(const LocalMotion& motion) {
   return moving;
 }
 
-LocalBounds::LocalBounds(const Skeleton& skeleton) : boxes_(skeleton.names.size()) {}
-
-void LocalBounds::add(const Clip& part) {
-  std::vector<Transform> world(boxes_.size()), local(boxes_.size());
-  for (int f = 0; f < part.frame_count(); ++f) {
-    part.get_pose(f, world);
-    world_to_local(part.skeleton.parents, world, local);
-    for (std::size_t j = 0; j < boxes_.size(); ++j) boxes_[j].extend(local[j].position);
-  }
-}
-
-std::vector<std::uint8_t> LocalBounds::moving() const {
-  std::vector<std::uint8_t> moving(boxes_.size(), 0);
-  for (std::size_t j = 0; j < boxes_.size(); ++j) moving[j] = moves(j, boxes_[j]) ? 1 : 0;
+Result<std::vector<std::uint8_t>> moving_joints(const FrameSource& source, int jobs) {
+  const auto& parents = source.skeleton.parents;
+  std::vector<Eigen::AlignedBox3d> boxes(parents.size());
+  std::vector<Transform> world(boxes.size()), local(boxes.size());
+  const Status status = for_each_block(source, jobs, [&](int, const Clip& block) {
+    for (int f = 0; f < block.frame_count(); ++f) {
+      block.get_pose(f, world);
+      world_to_local(parents, world, local);
+      for (std::size_t j = 0; j < boxes.size(); ++j) boxes[j].extend(local[j].position);
+    }
+    return Status();
+  });
+  if (!status) return status.error();
+  std::vector<std::uint8_t> moving;
+  for (std::size_t j = 0; j < boxes.size(); ++j) moving.push_back(moves(j, boxes[j]) ? 1 : 0);
   return moving;
 }
 

@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 namespace krok {
 
@@ -35,15 +37,7 @@ void set_local_motion(const LocalMotion& motion, Clip& clip);
 // Shape [joints].
 std::vector<std::uint8_t> moving_joints(const LocalMotion& motion);
 
-// The same of a motion that is seen in parts.
-class LocalBounds {
- public:
-  explicit LocalBounds(const Skeleton& skeleton);
-  void add(const Clip& part);
-  std::vector<std::uint8_t> moving() const;  // as moving_joints()
-
- private:
-  std::vector<Eigen::AlignedBox3d> boxes_;
-};
+// The same of frames generated on demand, which are read once. Errors are those of the source.
+Result<std::vector<std::uint8_t>> moving_joints(const FrameSource& source, int jobs);
 
 }  // namespace krok

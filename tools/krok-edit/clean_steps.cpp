@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <tuple>
 #include <utility>
 
 #include "core/numbers.h"
@@ -80,11 +84,66 @@ std::string report_spikes(const std::vector<filter::Spike>& spikes, const Option
                      counted(frames, "joint's frame", "joints' frames"));
 }
 
+// What cleaning changed in a long take, known when its frames are written.
+class Changes {
+ public:
+  explicit Changes(const Edit& edit) : feet_(foot_joints(edit.clip.skeleton, edit.roles)) {}
+
+  // A block may be made more than once.
+  void add(const FrameRun& before, const Clip& after, std::vector<filter::Spike> spikes = {}) {
+    Displacement change =
+        largest_displacement(before.clip, after, feet_, before.kept_begin, before.kept_end);
+    change.frame += before.first;
+    if (change.distance > largest_.distance) largest_ = change;
+    spikes_[before.first + before.kept_begin] = std::move(spikes);
+  }
+
+  const Displacement& largest() const { return largest_; }
+
+  // In the order of filter::SpikeRemoval.
+  std::vector<filter::Spike> spikes() const {
+    std::vector<filter::Spike> all;
+    for (const auto& [frame, of_block] : spikes_) {
+      all.insert(all.end(), of_block.begin(), of_block.end());
+    }
+    std::ranges::stable_sort(all, {}, [](const filter::Spike& spike) {
+      return std::tuple(spike.joint, spike.of_position);
+    });
+    return all;
+  }
+
+ private:
+  std::vector<int> feet_;
+  Displacement largest_;
+  std::map<int, std::vector<filter::Spike>> spikes_;  // by the first frame kept of their block
+};
+
+// The spikes are reported as the frames are written.
+Status remove_spikes_of_frames(const filter::SpikeOptions& finding, const Options& options,
+                               ToolContext& context, std::span<const std::uint8_t> joints,
+                               Edit& edit) {
+  const auto changes = std::make_shared<Changes>(edit);
+  const auto watch = [changes](const FrameRun& before, const filter::SpikeRemoval& after) {
+    changes->add(before, after.clip, after.spikes);
+  };
+  edit.note("spikes", {{"threshold", finding.threshold}}, "");
+  edit.complete_note([changes, &options, &context](Edit& written, Json& metrics) {
+    std::string line = report_spikes(changes->spikes(), options, context, written, metrics);
+    if (!metrics["spikes"].empty()) {
+      metrics["feet_moved"] = foot_change(changes->largest(), written, line);
+    }
+    return line;
+  });
+  return edit.take(
+      filter::remove_spikes(*edit.frames, finding, joints, thread_count(context.jobs), watch));
+}
+
 Status remove_spikes(const Options& options, ToolContext& context,
                      std::span<const std::uint8_t> joints, Edit& edit) {
   if (!options.spikes) return {};
   filter::SpikeOptions finding;
   finding.threshold = options.spike_threshold;
+  if (edit.frames) return remove_spikes_of_frames(finding, options, context, joints, edit);
   auto removal = filter::remove_spikes(edit.clip, finding, joints, thread_count(context.jobs));
   if (!removal) return removal.error();
   Json metrics;
@@ -116,20 +175,11 @@ Status filter_noise(const Options& options, ToolContext& context,
 
 // The frames are filtered as they are written, so how far feet moved is known only then.
 Status smooth_frames(const filter::Smoothing& smoothing, std::span<const std::uint8_t> joints,
-                     int jobs, Edit& edit) {
-  const auto largest = std::make_shared<Displacement>();
-  const auto compare = [largest, feet = foot_joints(edit.clip.skeleton, edit.roles)](
-                           const FrameRun& run, const Clip& after) {
-    Displacement change = largest_displacement(run.clip, after, feet, run.kept_begin, run.kept_end);
-    change.frame += run.first;
-    if (change.distance > largest->distance) *largest = change;
+                     int jobs, const std::shared_ptr<Changes>& changes, Edit& edit) {
+  const auto watch = [changes](const FrameRun& before, const Clip& after) {
+    changes->add(before, after);
   };
-  edit.when_written = [largest, step = edit.lines.size()](Edit& written) {
-    std::string& line = written.lines[step];
-    written.steps[step]["feet_moved"] = foot_change(*largest, written, line);
-    written.steps[step]["did"] = line;
-  };
-  return edit.take(filter::smooth(*edit.frames, smoothing, joints, jobs, compare));
+  return edit.take(filter::smooth(*edit.frames, smoothing, joints, jobs, watch));
 }
 
 Status filter_jitter(const Options& options, ToolContext& context,
@@ -138,8 +188,11 @@ Status filter_jitter(const Options& options, ToolContext& context,
   if (!smoothing) return {};
   const int jobs = thread_count(context.jobs);
   Clip before;
+  const auto changes = std::make_shared<Changes>(edit);
   if (edit.frames) {
-    if (Status status = smooth_frames(*smoothing, joints, jobs, edit); !status) return status;
+    if (Status status = smooth_frames(*smoothing, joints, jobs, changes, edit); !status) {
+      return status;
+    }
   } else {
     auto smoothed = filter::smooth(edit.clip, *smoothing, joints, jobs);
     if (!smoothed) return smoothed.error();
@@ -173,7 +226,14 @@ Status filter_jitter(const Options& options, ToolContext& context,
   metrics["joints"] = count;
   line += fmt::format(", {}", counted(count, "joint"));
   if (!edit.frames) metrics["feet_moved"] = foot_change(before, edit, line);
-  edit.note("filter", std::move(metrics), std::move(line));
+  edit.note("filter", std::move(metrics), line);
+  if (edit.frames) {
+    edit.complete_note([changes, line](Edit& written, Json& made) {
+      std::string whole = line;
+      made["feet_moved"] = foot_change(changes->largest(), written, whole);
+      return whole;
+    });
+  }
   return {};
 }
 

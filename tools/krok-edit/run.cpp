@@ -307,7 +307,7 @@ Status Edit::take(Result<FrameSource> made) {
 }
 
 bool is_streamed(const Options& o) {
-  const bool cleans = o.spikes || o.filter == Filter::by_noise || o.plant || o.game_loop;
+  const bool cleans = o.filter == Filter::by_noise || o.plant || o.game_loop;
   const bool cuts = o.from || o.to || o.cycle != CycleFoot::none || !o.sequences.empty();
   const bool joins = o.speed != 1 || o.resample || !o.append.empty() || o.loop || o.rounds;
   return !cleans && !cuts && !joins && !o.in_place && !o.treadmill && !o.settle;
@@ -320,6 +320,16 @@ void Edit::note(const char* step, Json metrics, std::string line) {
   for (auto& [key, value] : metrics.items()) entry[key] = std::move(value);
   steps.push_back(std::move(entry));
   lines.push_back(std::move(line));
+}
+
+void Edit::complete_note(std::function<std::string(Edit&, Json& metrics)> complete) {
+  when_written = [before = std::move(when_written), complete = std::move(complete),
+                  number = lines.size() - 1](Edit& written) {
+    if (before) before(written);
+    Json& step = written.steps[number];
+    written.lines[number] = complete(written, step);
+    step["did"] = written.lines[number];
+  };
 }
 
 Result<int> run(const Options& given, ToolContext& context) {

@@ -50,6 +50,9 @@ struct Edit {
 
   // Adds `metrics` to the report under the step's name.
   void note(const char* step, Json metrics, std::string line);
+  // Completes the last note when the frames are written: its metrics, and its line, which is
+  // returned.
+  void complete_note(std::function<std::string(Edit&, Json& metrics)> complete);
 };
 
 // "12.5 deg"; "0 deg" below 1e-4 degrees.

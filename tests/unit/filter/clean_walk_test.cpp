@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "filter/smooth_clip.h"
 #include "filter/spikes.h"
@@ -292,6 +293,42 @@ TEST(SmoothClip, InBlocksAsInOne) {
       EXPECT_LT(inside, 1e-6) << block;
       EXPECT_LT(at_ends, 3e-5) << block;
     }
+  }
+}
+
+// If a block's overlap were too short, spikes near its ends would be missed, found twice, or be
+// replaced by another value on either side.
+TEST(CleanWalk, SpikesInBlocksAsInOne) {
+  samples::WalkOptions options = walk_options(0.3);
+  options.steps = 30;
+  const Clip truth = samples::make_walk(options).value().clip;
+  const Clip clip = with_spikes(truth, planted(truth));
+  const auto whole = remove_spikes(clip, {}, {});
+  expect_found(whole->spikes, planted(truth));
+  for (const int block : {clip.frame_count(), 151, 63}) {
+    std::vector<Spike> spikes;
+    const auto watch = [&](const FrameRun&, const SpikeRemoval& after) {
+      spikes.insert(spikes.end(), after.spikes.begin(), after.spikes.end());
+    };
+    const Clip made =
+        load(*remove_spikes(frames_of(clip), {}, {}, 2, watch, block), block < 100 ? 1 : 2).value();
+    std::ranges::stable_sort(
+        spikes, {}, [](const Spike& spike) { return std::tuple(spike.joint, spike.of_position); });
+    ASSERT_EQ(spikes.size(), whole->spikes.size()) << block;
+    for (std::size_t i = 0; i < spikes.size(); ++i) {
+      EXPECT_EQ(spikes[i].joint, whole->spikes[i].joint);
+      EXPECT_EQ(spikes[i].first_frame, whole->spikes[i].first_frame);
+      EXPECT_EQ(spikes[i].last_frame, whole->spikes[i].last_frame);
+      EXPECT_EQ(spikes[i].size, whole->spikes[i].size);
+    }
+    double largest = 0;
+    for (std::size_t i = 0; i < made.orientations.size(); ++i) {
+      largest = std::max({largest,
+                          angle_between(made.orientations[i].cast<double>(),
+                                        whole->clip.orientations[i].cast<double>()),
+                          (made.positions[i] - whole->clip.positions[i]).cast<double>().norm()});
+    }
+    EXPECT_LT(largest, block == clip.frame_count() ? 1e-12 : 1e-6) << block;
   }
 }
 
