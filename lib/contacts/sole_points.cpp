@@ -263,17 +263,19 @@ Feet find_feet(const Clip& clip, const RoleMap& roles, const UpOfGround& up) {
   return feet;
 }
 
+bool jumps_at_start(std::span<const Vec3> track, double leg_length) {
+  if (track.size() <= 3) return false;
+  const double after = std::max((track[2] - track[1]).norm(), (track[3] - track[2]).norm());
+  return (track[1] - track[0]).norm() > 3 * after + kJump * leg_length;
+}
+
 std::vector<Vec3> track_of(const Clip& clip, const SolePoint& point, double leg_length) {
   std::vector<Vec3> track;
   track.reserve(static_cast<std::size_t>(clip.frame_count()));
   for (int f = 0; f < clip.frame_count(); ++f) {
     track.push_back(joint_at(clip, f, point.joint) * point.offset);
   }
-  if (track.size() > 3) {
-    const double after = std::max((track[2] - track[1]).norm(), (track[3] - track[2]).norm());
-    const bool jumps = (track[1] - track[0]).norm() > 3 * after + kJump * leg_length;
-    if (jumps) track[0] = 2 * track[1] - track[2];
-  }
+  if (jumps_at_start(track, leg_length)) track[0] = 2 * track[1] - track[2];
   return track;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "roles/roles.h"
@@ -49,9 +50,12 @@ using UpOfGround = std::function<Vec3(const Vec3& point)>;
 // as it does.
 Feet find_feet(const Clip& clip, const RoleMap& roles, const UpOfGround& up);
 
-// Position of a point in each frame, shape [frames]. A first frame from which the point jumps (a
-// rest pose before the capture: by over three times the larger of the next two steps plus a tenth
-// of a leg) is replaced by linear extrapolation from the next two frames.
+// Whether a point jumps from the first frame, as from a rest pose before the capture: by over three
+// times the larger of the next two steps plus a tenth of a leg. False for fewer than four places.
+bool jumps_at_start(std::span<const Vec3> track, double leg_length);
+
+// Position of a point in each frame, shape [frames]. A first frame from which it jumps is replaced
+// by linear extrapolation from the next two frames.
 std::vector<Vec3> track_of(const Clip& clip, const SolePoint& point, double leg_length);
 
 }  // namespace krok

@@ -99,7 +99,8 @@ std::vector<LegPlacement::Point> LegPlacement::points_of_foot(const Actor& actor
 std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Actor& target,
                                                  std::span<const Quat> turns, double scale,
                                                  const Floor& source_floor,
-                                                 const Floor& target_floor, bool is_left) {
+                                                 const Floor& target_floor, bool is_left,
+                                                 const std::optional<Vec3>& heel) {
   const auto& [upper, lower, foot, toes] = kLegRoles[is_left ? 0 : 1];
   const int upper_joint = target.roles.joint(upper), lower_joint = target.roles.joint(lower);
   const int ankle_joint = target.roles.joint(foot);
@@ -118,7 +119,7 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
   leg.leg_ = (from(leg.source_knee_) - from(source.roles.joint(upper))).norm() +
              (from(leg.source_ankle_) - from(leg.source_knee_)).norm();
   leg.source_front_ = foot_front(source.skeleton, source.roles, foot);
-  leg.find_soles(source, target, turns[at(ankle_joint)], foot);
+  leg.find_soles(source, target, turns[at(ankle_joint)], foot, heel);
 
   leg.source_points_ =
       points_of_foot(source, leg.source_ankle_, lowest_of_foot(source, foot) - source_floor.sole);
@@ -127,8 +128,8 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
   return leg;
 }
 
-void LegPlacement::find_soles(const Actor& source, const Actor& target, const Quat& turn,
-                              Role foot) {
+void LegPlacement::find_soles(const Actor& source, const Actor& target, const Quat& turn, Role foot,
+                              const std::optional<Vec3>& heel) {
   const auto reach = [&](const Actor& actor, int front) {
     const int ankle = actor.roles.joint(foot);
     return front < 0 ? Vec3(Vec3::Zero())
@@ -152,19 +153,36 @@ void LegPlacement::find_soles(const Actor& source, const Actor& target, const Qu
     heading = flat(place(Role::left_upper_leg) - place(Role::right_upper_leg)).cross(kUp);
     heading = heading.stableNormalized();
   }
+  const Vec3 left = kUp.cross(heading);
   const Quat source_back = source.pose[at(source_ankle_)].orientation.conjugate();
   const Quat target_back = (turn * target.pose[at(limb_.end())].orientation).conjugate();
-  const Vec3 source_down = -ankle_over_floor(source, foot, source_floor_) * kUp;
-  const Vec3 target_down = -ankle_over_floor(target, foot, target_floor_) * kUp;
-  const auto point = [&](double part) {
-    return Sole{source_back * (part * source_ball * heading + source_down),
-                target_back * (part * target_ball * heading + target_down),
-                part * (target_ball - scale_ * source_ball)};
+  onto_target_ = source_back * target_back.conjugate();
+  const double source_height = ankle_over_floor(source, foot, source_floor_);
+  const double target_height = ankle_over_floor(target, foot, target_floor_);
+  const double higher = target_height - scale_ * source_height;
+  // From the ankles, in the world, the foot flat.
+  const auto sole = [&](const Vec3& from, const Vec3& to) {
+    const Vec3 apart = higher * kUp - scale_ * from + to;
+    return Sole{source_back * from, target_back * to,
+                Vec3(apart.dot(left), apart.y(), apart.dot(heading))};
   };
-  ball_ = point(1);
-  heel_ = point(-0.3);  // behind the ankle, a typical proportion
+  const auto toes_of = [&](const Actor& actor, int front, const Quat& turned) {
+    const Transform& ankle = actor.pose[at(actor.roles.joint(foot))];
+    return Vec3(turned * Vec3(actor.pose[at(front)].position - ankle.position));
+  };
+  if (source_toes && target_toes) {
+    const int front = foot_front(target.skeleton, target.roles, foot);
+    ball_ = sole(toes_of(source, source_front_, Quat::Identity()), toes_of(target, front, turn));
+  } else {
+    ball_ = sole(source_ball * heading - source_height * kUp,
+                 target_ball * heading - target_height * kUp);
+  }
+  // Otherwise behind the ankle, a typical proportion.
+  const Vec3 behind = heel ? Vec3(source_back.conjugate() * *heel)
+                           : Vec3(-0.3 * source_ball * heading - source_height * kUp);
+  heel_ = sole(behind, scale_ * behind - higher * kUp);
   ahead_ = source_back * heading;
-  sideways_ = source_back * kUp.cross(heading);
+  sideways_ = source_back * left;
 }
 
 double LegPlacement::depth(std::span<const Transform> pose, const std::vector<Point>& points,
@@ -176,10 +194,18 @@ double LegPlacement::depth(std::span<const Transform> pose, const std::vector<Po
   return deepest;
 }
 
-std::array<std::vector<double>, 2> LegPlacement::standing(const Clip& source,
-                                                          std::span<const Contact> contacts) const {
+// From the foot's lateral axis, because a foot rolling over its toes briefly points back.
+Vec3 LegPlacement::heading_of(const Quat& source_ankle) const {
+  return flat((source_ankle * sideways_).cross(kUp)).stableNormalized();
+}
+
+LegPlacement::Stances LegPlacement::find_stances(const Clip& source,
+                                                 std::span<const Contact> contacts) {
   const int frames = source.frame_count();
   std::vector<double> near(at(frames)), still(at(frames), 0.0), upright(at(frames));
+  std::vector<double> rolls(at(frames));
+  std::vector<char> heel(at(frames), 0), front(at(frames), 0);
+  std::vector<double> left, ahead;  // of the ankle placed by the heel, from that by the ball
   for (const Contact& contact : contacts) {
     const bool own = std::ranges::any_of(
         source_points_, [&](const Point& point) { return point.joint == contact.joint; });
@@ -187,6 +213,7 @@ std::array<std::vector<double>, 2> LegPlacement::standing(const Clip& source,
     const int last = std::min(frames - 1, static_cast<int>(std::floor(contact.end * source.rate)));
     for (auto f = static_cast<int>(std::ceil(contact.start * source.rate)); f <= last; ++f) {
       still[at(f)] = 1;
+      (contact.joint == source_ankle_ ? heel : front)[at(f)] = 1;
     }
   }
   std::vector<Transform> pose(source.skeleton.names.size());
@@ -197,28 +224,73 @@ std::array<std::vector<double>, 2> LegPlacement::standing(const Clip& source,
     const Vec3 shank = pose[at(source_ankle_)].position - pose[at(source_knee_)].position;
     const double lean = kPi / 2 + elevation(shank);  // angle from straight down
     upright[at(f)] = 1 - smooth_step(60 * kRadiansPerDegree, 85 * kRadiansPerDegree, lean);
+    const double rolled = -elevation(pose[at(source_ankle_)].orientation * ahead_);
+    rolls[at(f)] = smooth_step(0, 6 * kRadiansPerDegree, rolled);
+    if (heel[at(f)] != front[at(f)]) rolls[at(f)] = front[at(f)];
+    if (heel[at(f)] == 0 || front[at(f)] == 0) continue;
+    const Quat& ankle = pose[at(source_ankle_)].orientation;
+    const Vec3 heading = heading_of(ankle);
+    const auto over = [&](const Sole& sole) {
+      return Vec3(ankle * (scale_ * sole.source - onto_target_ * sole.target));
+    };
+    const Vec3 apart = over(heel_) - over(ball_);
+    left.push_back(apart.dot(kUp.cross(heading)));
+    ahead.push_back(apart.dot(heading));
+  }
+  if (!left.empty()) {
+    ball_.apart.x() = heel_.apart.x() + median(left);
+    ball_.apart.z() = heel_.apart.z() + median(ahead);
   }
   const int reach = softening_reach(source.rate);
-  std::array<std::vector<double>, 2> result = {softened(near, reach), softened(still, reach)};
-  for (std::vector<double>& weights : result) {
-    for (std::size_t f = 0; f < weights.size(); ++f) weights[f] *= upright[f];
+  const auto for_runs = [&](char of, const auto& body) {
+    for (int f = 0; f < frames; ++f) {
+      int end = f;
+      while (end < frames && heel[at(end)] == of && front[at(end)] == of) ++end;
+      if (end == f) continue;
+      const double before = rolls[at(std::max(f - 1, 0))],
+                   after = rolls[at(std::min(end, frames - 1))];
+      body(f, end, f > 0 ? before : after, end < frames ? after : before);
+      f = end;
+    }
+  };
+  // While both stand, either may be placed: from one to the other by then.
+  for_runs(1, [&](int begin, int end, double before, double after) {
+    for (int f = begin; f < end; ++f) {
+      rolls[at(f)] = before + (after - before) * smooth_step(begin - 1, end, f);
+    }
+  });
+  // In the air from and to what stands before and after, without a jump.
+  for_runs(0, [&](int begin, int end, double before, double after) {
+    if (begin > 0) before -= rolls[at(begin)];
+    if (end < frames) after -= rolls[at(end - 1)];
+    for (int f = begin; f < end; ++f) {
+      if (begin > 0) rolls[at(f)] += before * (1 - smooth_step(begin - 1, begin + reach, f));
+      if (end < frames) rolls[at(f)] += after * smooth_step(end - 1 - reach, end, f);
+      rolls[at(f)] = std::clamp(rolls[at(f)], 0.0, 1.0);
+    }
+  });
+  const std::vector<double> stands = softened(near, reach);
+  Stances result{std::vector<FootStance>(at(frames)), softened(still, reach)};
+  for (std::size_t f = 0; f < at(frames); ++f) {
+    result.feet[f] = {upright[f] * stands[f], rolls[f]};
+    result.bearing[f] *= upright[f];
   }
   return result;
 }
 
 void LegPlacement::add_lack(std::span<const Transform> source_pose,
-                            std::span<const Transform> target_pose, double standing, double bearing,
-                            ShiftSolver& solver) const {
+                            std::span<const Transform> target_pose, const FootStance& stance,
+                            double bearing, ShiftSolver& solver) const {
   if (!(bearing > 0)) return;
   const Vec3& ankle = target_pose[at(limb_.end())].position;
   const Vec3 along = (ankle - target_pose[at(limb_.upper())].position).stableNormalized();
-  solver.add(bearing, along, 0, goal_of(source_pose, target_pose, standing) - ankle, {});
+  solver.add(bearing, along, 0, goal_of(source_pose, target_pose, stance) - ankle, {});
 }
 
 double LegPlacement::lack(std::span<const Transform> source_pose,
-                          std::span<const Transform> target_pose, double standing) const {
+                          std::span<const Transform> target_pose, const FootStance& stance) const {
   const auto place_of = [&](int joint) { return target_pose[at(joint)].position; };
-  const Vec3 to_goal = goal_of(source_pose, target_pose, standing) - place_of(limb_.upper());
+  const Vec3 to_goal = goal_of(source_pose, target_pose, stance) - place_of(limb_.upper());
   // The present extension, or nearly the full length if that is more.
   const double reach =
       std::max((place_of(limb_.end()) - place_of(limb_.upper())).norm() * (1 + 1e-9),
@@ -226,11 +298,11 @@ double LegPlacement::lack(std::span<const Transform> source_pose,
                         (place_of(limb_.end()) - place_of(limb_.lower())).norm()));
   const double beside = flat(to_goal).squaredNorm();
   if (to_goal.norm() <= reach || to_goal.y() >= 0 || beside >= reach * reach) return 0;
-  return standing * (-to_goal.y() - std::sqrt(reach * reach - beside));
+  return stance.standing * (-to_goal.y() - std::sqrt(reach * reach - beside));
 }
 
 Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
-                           std::span<const Transform> target_pose, double standing) const {
+                           std::span<const Transform> target_pose, const FootStance& stance) const {
   const Vec3 ankle = target_pose[at(limb_.end())].position;
   const auto scaled = [&](const Vec3& point) {
     return Vec3(scale_ * point.x(),
@@ -239,17 +311,15 @@ Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
   };
 
   const Transform& source_ankle = source_pose[at(source_ankle_)];
-  const double rolled = -elevation(source_ankle.orientation * ahead_);
-  const double on_ball = smooth_step(0, 6 * kRadiansPerDegree, rolled);
-  // From the foot's lateral axis, because a foot rolling over its toes briefly points back.
-  const Vec3 heading = flat((source_ankle.orientation * sideways_).cross(kUp)).stableNormalized();
+  const Vec3 heading = heading_of(source_ankle.orientation);
   const auto ankle_over = [&](const Sole& sole) {
-    return Vec3(scaled(source_ankle * sole.source) + sole.longer * heading -
+    const Vec3 apart = sole.apart.x() * kUp.cross(heading) + sole.apart.y() * kUp;
+    return Vec3(scaled(source_ankle * sole.source) + apart + sole.apart.z() * heading -
                 target_pose[at(limb_.end())].orientation * sole.target);
   };
   const Vec3 by_heel = ankle_over(heel_);
-  Vec3 goal = by_heel + on_ball * (ankle_over(ball_) - by_heel);
-  goal = ankle + standing * (goal - ankle);
+  Vec3 goal = by_heel + stance.on_ball * (ankle_over(ball_) - by_heel);
+  goal = ankle + stance.standing * (goal - ankle);
   const double allowed =
       std::min(0.0, scale_ * depth(source_pose, source_points_, source_floor_.motion));
   const double lies =
@@ -259,10 +329,11 @@ Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
 }
 
 LegPlacement::Outcome LegPlacement::place(std::span<const Transform> source_pose,
-                                          std::span<const Transform> local, double standing,
-                                          double part, std::span<Transform> target_pose) const {
+                                          std::span<const Transform> local,
+                                          const FootStance& stance, double part,
+                                          std::span<Transform> target_pose) const {
   const Vec3 way =
-      goal_of(source_pose, target_pose, standing) - target_pose[at(limb_.end())].position;
+      goal_of(source_pose, target_pose, stance) - target_pose[at(limb_.end())].position;
   return limb_.move_end(part * way, local, target_pose);
 }
 

@@ -8,6 +8,7 @@
 
 #include "retarget/moved_limb.h"
 #include "retarget/pose_alignment.h"
+#include "retarget/touches.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
@@ -15,7 +16,8 @@
 // Foot planting: places the target's feet where the source's are.
 //
 // The heel's goal is the source's heel, scaled, on the floor; while the source's foot is rolled
-// over its ball, the ball is placed instead. The ankle's goal follows from it, so a planted foot
+// over its ball, the ball is placed instead: the joint of the toes, which lie on the floor, where
+// both have one. The ankle's goal follows from it, so a planted foot
 // stays still whatever the height of the ankle and the length of the foot. Then the foot is raised
 // if one of its joints would be deeper in the floor than the source's. Two-bone inverse kinematics
 // moves the ankle there, weighted by the foot's stance; knees keep the plane they bend in, feet
@@ -51,37 +53,52 @@ int softening_reach(double rate);
 // on either side, averaged over as many.
 std::vector<double> softened(const std::vector<double>& values, int reach);
 
+// How a foot stands in a frame, each from 0 to 1.
+struct FootStance {
+  double standing = 0;  // how far its place is kept
+  double on_ball = 0;   // whether the ball is placed, or the heel (0)
+};
+
 // One leg of source and target.
 class LegPlacement {
  public:
   // `turns` aligns the target's reference pose, `scale` is lengths of the target over those of the
-  // source. Empty if either skeleton lacks a joint of this leg.
+  // source. `heel` is what of the source's foot stands where its heel does, in the ankle's frame;
+  // without it a typical one. Empty if either skeleton lacks a joint of this leg.
   static std::optional<LegPlacement> create(const Actor& source, const Actor& target,
                                             std::span<const Quat> turns, double scale,
                                             const Floor& source_floor, const Floor& target_floor,
-                                            bool is_left);
+                                            bool is_left, const std::optional<Vec3>& heel);
+
+  // The heel of both.
+  PointPair heel() const { return {{source_ankle_, heel_.source}, {limb_.end(), heel_.target}}; }
 
   using Outcome = MovedLimb::Outcome;  // of the ankle
 
   // Stance weight of the foot in each frame of the source, 0 to 1: in its contacts and while it is
   // near the floor, with soft starts and ends; less if the shank lies, as in kneeling, and none in
-  // flight. The second one is that of its contacts alone. `contacts` are those of the source.
-  std::array<std::vector<double>, 2> standing(const Clip& source,
-                                              std::span<const Contact> contacts) const;
+  // flight. `bearing` is that of its contacts alone. `contacts` are those of the source.
+  struct Stances {
+    std::vector<FootStance> feet;
+    std::vector<double> bearing;
+  };
+  // Heel and ball are placed alike from here on where both of them stand, however the foot is
+  // pitched there.
+  Stances find_stances(const Clip& source, std::span<const Contact> contacts);
 
   // Adds what the leg needs of the hips to be as bent as the source's.
   void add_lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
-                double standing, double bearing, ShiftSolver& solver) const;
+                const FootStance& stance, double bearing, ShiftSolver& solver) const;
 
   // By how much the hips must be lowered for the leg to reach its goal, metres; 0 if it does.
   double lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
-              double standing) const;
+              const FootStance& stance) const;
 
-  // Moves the leg of a target pose to where the source's foot is in `source_pose`, weighted by
-  // `standing`; only a `part` of that way where the leg kneels (0: wholly). Both poses are
+  // Moves the leg of a target pose to where the source's foot is in `source_pose`, as far as it
+  // stands; only a `part` of that way where the leg kneels (0: wholly). Both poses are
   // joint_to_world, shape [joints]; `local` is the target's reference joint_to_parent.
   Outcome place(std::span<const Transform> source_pose, std::span<const Transform> local,
-                double standing, double part, std::span<Transform> target_pose) const;
+                const FootStance& stance, double part, std::span<Transform> target_pose) const;
 
  private:
   explicit LegPlacement(MovedLimb limb) : limb_(std::move(limb)) {}
@@ -93,18 +110,22 @@ class LegPlacement {
   };
   static std::vector<Point> points_of_foot(const Actor& actor, int ankle, double floor);
 
-  // A point of the sole on the floor, in the frames of both ankles.
+  // A point that a foot turns about as it rolls, in the frames of both ankles.
   struct Sole {
     Vec3 source = Vec3::Zero();
     Vec3 target = Vec3::Zero();
-    double longer = 0;  // how much further ahead the target's is than the scaled source's
+    // Where the target's is from the scaled source's while the foot is flat: to the left, up,
+    // ahead.
+    Vec3 apart = Vec3::Zero();
   };
-  void find_soles(const Actor& source, const Actor& target, const Quat& turn, Role foot);
+  void find_soles(const Actor& source, const Actor& target, const Quat& turn, Role foot,
+                  const std::optional<Vec3>& heel);
 
   Vec3 goal_of(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
-               double standing) const;
+               const FootStance& stance) const;
   double depth(std::span<const Transform> pose, const std::vector<Point>& points,
                double floor) const;
+  Vec3 heading_of(const Quat& source_ankle) const;
 
   MovedLimb limb_;
   double scale_ = 1;
@@ -113,8 +134,9 @@ class LegPlacement {
   int source_knee_ = -1, source_ankle_ = -1;
   int source_front_ = -1;  // toes, or the end site of the foot, or -1
   Sole heel_, ball_;
-  Vec3 ahead_ = Vec3::Zero();     // heading of the source's foot, in its ankle's frame
-  Vec3 sideways_ = Vec3::Zero();  // left of ahead_, in the same frame
+  Quat onto_target_ = Quat::Identity();  // from the source's ankle's frame to the target's
+  Vec3 ahead_ = Vec3::Zero();            // heading of the source's foot, in its ankle's frame
+  Vec3 sideways_ = Vec3::Zero();         // left of ahead_, in the same frame
   std::vector<Point> source_points_, target_points_;
 };
 

@@ -52,7 +52,8 @@ class FrameTransfer {
       for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
         const PlacedLeg& leg = plan_.legs[i];
         const double kneels = touches ? plan_.touches->kneels(frame, leg.is_left) : 0;
-        outcomes[f][i] = leg.placement.place(from, plan_.local, leg.standing[f], 1 - kneels, pose);
+        outcomes[f][i] =
+            leg.placement.place(from, plan_.local, leg.stances.feet[f], 1 - kneels, pose);
       }
       if (touches) {
         plan_.touches->place_feet(frame, plan_.local, pose);
@@ -171,7 +172,7 @@ class FrameTransfer {
         shift_body(shifts[f], pose);
         ShiftSolver solver(plan_.leg_length);
         for (const PlacedLeg& leg : plan_.legs) {
-          leg.placement.add_lack(from, pose, leg.standing[f], leg.bearing[f], solver);
+          leg.placement.add_lack(from, pose, leg.stances.feet[f], leg.stances.bearing[f], solver);
         }
         if (plan_.touches) plan_.touches->add_lacks(static_cast<int>(f), pose, solver);
         more[f] = solver.solve();
@@ -195,7 +196,7 @@ class FrameTransfer {
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       if (!shifts_.empty()) shift_body(shifts_[f], pose);
       for (const PlacedLeg& leg : plan_.legs) {
-        drops[f] = std::max(drops[f], leg.placement.lack(from, pose, leg.standing[f]));
+        drops[f] = std::max(drops[f], leg.placement.lack(from, pose, leg.stances.feet[f]));
       }
     });
     const double most = 0.06 * plan_.leg_length;

@@ -16,8 +16,7 @@ namespace krok::retarget {
 
 struct PlacedLeg {
   LegPlacement placement;
-  std::vector<double> standing;  // [frames], how far its place is kept
-  std::vector<double> bearing;   // [frames], how far it stands still
+  LegPlacement::Stances stances;
   bool is_left = false;
 };
 

@@ -196,27 +196,39 @@ class Transfer {
     plan_.leg_length = leg_length(target_, target_roles_);
     std::array<std::vector<double>, 2> stands;
     std::vector<Contact> contacts;
-    if (auto found = find_contacts(source_, source_roles_)) contacts = std::move(found->contacts);
-    if (options_.feet == Feet::keep) stands = prepare_legs(from, to, contacts);
+    std::array<std::optional<Vec3>, 2> heel_of_source;
+    if (auto found = find_contacts(source_, source_roles_)) {
+      contacts = std::move(found->contacts);
+      for (const auto& [point, speed, height] : found->tracks) {
+        if (point.part == FootPart::heel)
+          heel_of_source[static_cast<std::size_t>(point.side)] = point.offset;
+      }
+    }
+    std::array<std::optional<PointPair>, 2> heels;
+    if (options_.feet == Feet::keep) stands = prepare_legs(from, to, contacts, heel_of_source);
+    for (const PlacedLeg& leg : plan_.legs) heels[leg.is_left ? 0 : 1] = leg.placement.heel();
     if (options_.touches == Touches::free) return;
     plan_.touches.emplace(source_, from, to, report_.scale, source_floor_.motion,
                           leg_length(source_.skeleton, source_roles_), stands,
                           options_.feet == Feet::keep);
     plan_.touches->report_feet(contacts, from, to, source_floor_, target_floor_, source_.rate,
-                               stands);
+                               stands, heels);
   }
 
   // How much both feet stand, [2][frames], empty where a leg is missing.
   std::array<std::vector<double>, 2> prepare_legs(const Actor& from, const Actor& to,
-                                                  std::span<const Contact> contacts) {
+                                                  std::span<const Contact> contacts,
+                                                  std::span<const std::optional<Vec3>> heels) {
     std::array<std::vector<double>, 2> standing;
     for (const bool is_left : {true, false}) {
       auto leg = LegPlacement::create(from, to, turns_, report_.scale, source_floor_, target_floor_,
-                                      is_left);
+                                      is_left, heels[is_left ? 0 : 1]);
       if (!leg) continue;
-      auto [stands, bears] = leg->standing(source_, contacts);
-      standing[is_left ? 0 : 1] = stands;
-      plan_.legs.push_back({std::move(*leg), std::move(stands), std::move(bears), is_left});
+      auto stances = leg->find_stances(source_, contacts);
+      for (const FootStance& foot : stances.feet) {
+        standing[is_left ? 0 : 1].push_back(foot.standing);
+      }
+      plan_.legs.push_back({std::move(*leg), std::move(stances), is_left});
     }
     return standing;
   }

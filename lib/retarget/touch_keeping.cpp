@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contacts/sole_points.h"
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
@@ -126,7 +127,10 @@ std::vector<BodyShift> smoothed(const std::vector<BodyShift>& shifts, int reach)
 TouchKeeping::TouchKeeping(const Clip& clip, const Actor& source, const Actor& target, double scale,
                            double floor, double leg, std::span<const std::vector<double>> standing,
                            bool on_ground)
-    : points_(body_points(source, target)), scale_(scale), parents_(target.skeleton.parents) {
+    : points_(body_points(source, target)),
+      scale_(scale),
+      leg_(leg),
+      parents_(target.skeleton.parents) {
   const auto limb = [&](Role upper, Role lower, Role end, const Vec3& hinge) {
     const int a = target.roles.joint(upper), b = target.roles.joint(lower),
               c = target.roles.joint(end);
@@ -414,7 +418,8 @@ void TouchKeeping::place_arms(int frame, std::span<const Transform> source_pose,
 void TouchKeeping::report_feet(std::span<const Contact> contacts, const Actor& source,
                                const Actor& target, const Floor& source_floor,
                                const Floor& target_floor, double rate,
-                               std::span<const std::vector<double>> standing) {
+                               std::span<const std::vector<double>> standing,
+                               const std::array<std::optional<PointPair>, 2>& heels) {
   for (const Contact& contact : contacts) {
     const Role role = source.roles.roles[at(contact.joint)];
     for (const bool is_left : {true, false}) {
@@ -431,8 +436,12 @@ void TouchKeeping::report_feet(std::span<const Contact> contacts, const Actor& s
       entry.point = {at_joint(contact.joint), at_joint(onto)};
       entry.stay = {static_cast<int>(std::ceil(contact.start * rate - 1e-6)),
                     static_cast<int>(std::floor(contact.end * rate + 1e-6))};
-      entry.rise =
-          height(target, onto, target_floor) - scale_ * height(source, contact.joint, source_floor);
+      if (const auto& heel = heels[is_left ? 0 : 1]; heel && role == leg.foot) {
+        entry.point = *heel;
+      } else {
+        entry.rise = height(target, onto, target_floor) -
+                     scale_ * height(source, contact.joint, source_floor);
+      }
       // A foot that lies on the ground, as in kneeling, is found on its own.
       const std::vector<double>& stands = standing[is_left ? 0 : 1];
       const int middle = (entry.stay.first + entry.stay.last) / 2;
@@ -476,10 +485,15 @@ std::vector<ContactReport> TouchKeeping::report(const Clip& source, const Clip& 
     }
   }
   for (const Standing& entry : standing_) {
-    auto wanted = track_of(source, entry.point.source, entry.stay);
+    Stay stay = entry.stay;
+    const Stay first{0, std::min(3, source.frame_count() - 1)};
+    const bool jumps =
+        stay.first == 0 && jumps_at_start(track_of(source, entry.point.source, first), leg_);
+    if (jumps && ++stay.first >= stay.last) continue;
+    auto wanted = track_of(source, entry.point.source, stay);
     for (Vec3& place : wanted) place *= scale_;
-    report_ground(entry.part.c_str(), entry.stay, track_of(result, entry.point.target, entry.stay),
-                  wanted, entry.rise);
+    report_ground(entry.part.c_str(), stay, track_of(result, entry.point.target, stay), wanted,
+                  entry.rise);
   }
   std::array<std::vector<Vec3>, 2> from, to;
   for (std::size_t side = 0; side < 2 && (hands_ || !on_body_.empty()); ++side) {

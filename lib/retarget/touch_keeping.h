@@ -89,10 +89,11 @@ class TouchKeeping {
                   std::span<const Transform> local, std::span<Transform> pose) const;
 
   // Adds contacts of feet that stand, kept elsewhere, to what is reported. Heights are those above
-  // the actors' floors, `standing` as above.
+  // the actors' floors, `standing` as above, `heels` what the ankles' contacts are of.
   void report_feet(std::span<const Contact> contacts, const Actor& source, const Actor& target,
                    const Floor& source_floor, const Floor& target_floor, double rate,
-                   std::span<const std::vector<double>> standing);
+                   std::span<const std::vector<double>> standing,
+                   const std::array<std::optional<PointPair>, 2>& heels);
 
   // Every stay, as it is in `result`.
   std::vector<ContactReport> report(const Clip& source, const Clip& result) const;
@@ -129,6 +130,7 @@ class TouchKeeping {
 
   std::array<PointPair, kBodyParts> points_;
   double scale_ = 1;
+  double leg_ = 0;  // metres, of the source
   std::vector<int> parents_;  // [target joints]
   int pivot_ = -1;
   std::vector<char> turns_with_trunk_;  // [target joints], 1: turns; 2: only moves along

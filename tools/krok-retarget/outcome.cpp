@@ -67,16 +67,18 @@ Json foot_json(const std::optional<krok::retarget::FootReport>& foot) {
 }
 
 // The largest of every measure over all contacts.
-std::string contacts_text(const std::vector<krok::retarget::ContactReport>& contacts) {
+std::string contacts_text(const std::vector<krok::retarget::ContactReport>& contacts,
+                          double scale) {
   if (contacts.empty()) return {};
   double slide = 0, height = 0, apart = 0;
   for (const krok::retarget::ContactReport& contact : contacts) {
-    slide = std::max(slide, contact.slide - contact.source_slide);
+    slide = std::max(slide, contact.slide - scale * contact.source_slide);
     height = std::max(height, contact.height);
     apart = std::max(apart, contact.apart);
   }
   return fmt::format(
-      ", {} contacts: slide at most {}/s more than the input's, heights within {}, distances of "
+      ", {} contacts: slide at most {}/s more than the input's, scaled, heights within {}, "
+      "distances of "
       "hands within {}",
       contacts.size(), millimetres(slide), millimetres(height), millimetres(apart));
 }
@@ -115,7 +117,7 @@ std::string summary(const Outcome& outcome) {
     }
     if (miss > 0.005) text += fmt::format(" (legs too short by {})", millimetres(miss));
   }
-  return text + contacts_text(report.contacts);
+  return text + contacts_text(report.contacts, report.scale);
 }
 
 std::string table(const Outcome& outcome) {

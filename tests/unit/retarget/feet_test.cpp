@@ -150,6 +150,30 @@ TEST_P(FeetOf, StandWhereTheSourceStands) {
 INSTANTIATE_TEST_SUITE_P(Actors, FeetOf, testing::ValuesIn(kFigures),
                          [](const auto& test_case) { return std::string(test_case.param.name); });
 
+// Heels and balls that stand as the foot rolls over them: whatever stands in the source stands in
+// the target, though its ankles and toes are of another height.
+TEST(Feet, RollOverHeelAndBallWhateverTheHeightOfTheirJoints) {
+  const samples::Walk walk = walk_of({});
+  for (const double higher : {0.03, -0.015}) {
+    Skeleton target = actor_of(1.6, 1, 1, 1.25, 1);
+    for (const std::string side : {"Left", "Right"}) {
+      for (const char* joint : {"Foot", "ToeBase"}) {
+        target.reference[at(target.find("rig:" + side + joint))].position.y() += higher;
+      }
+    }
+    const auto result = transfer(walk.clip, target);
+    ASSERT_TRUE(result.ok());
+    int standing = 0;
+    for (const retarget::ContactReport& contact : result->report.contacts) {
+      if (contact.on != "ground" || contact.end - contact.start < 0.1) continue;
+      ++standing;
+      EXPECT_LT(contact.slide, result->report.scale * contact.source_slide + 0.006)
+          << contact.part << " " << contact.start << " " << higher;
+    }
+    EXPECT_GE(standing, 8);
+  }
+}
+
 TEST(Feet, LeftFreeTheySlideWhichShowsThatTheTestCanFail) {
   const samples::Walk walk = walk_of({});
   const Skeleton target = actor_of(1.75, 0.92, 1.1, 1.35, 1);
