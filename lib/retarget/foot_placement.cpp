@@ -109,7 +109,7 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
   }
   const auto to = [&](Role role) { return target.pose[at(target.roles.joint(role))].position; };
   const Vec3 left = to(Role::left_upper_leg) - to(Role::right_upper_leg);
-  LegPlacement leg(MovedLimb(target, upper_joint, lower_joint, ankle_joint, left));
+  LegPlacement leg(MovedLimb(target, upper_joint, lower_joint, ankle_joint, left, ankle_joint));
   leg.scale_ = scale;
   leg.source_floor_ = source_floor;
   leg.target_floor_ = target_floor;

@@ -35,11 +35,12 @@ std::vector<int> joints_below(const Skeleton& skeleton, int root) {
   return joints;
 }
 
-MovedLimb::MovedLimb(const Actor& actor, int upper, int lower, int end, const Vec3& hinge)
-    : upper_(upper), lower_(lower), end_(end) {
+MovedLimb::MovedLimb(const Actor& actor, int upper, int lower, int end, const Vec3& hinge,
+                     int carrier)
+    : upper_(upper), lower_(lower), end_(end), carrier_(carrier) {
   const Vec3 bone = actor.pose[at(lower)].position - actor.pose[at(upper)].position;
   const Vec3 square = hinge - bone * (hinge.dot(bone) / std::max(bone.squaredNorm(), 1e-12));
-  hinge_ = actor.pose[at(upper)].orientation.conjugate() * square.normalized();
+  hinge_ = actor.pose[at(carrier)].orientation.conjugate() * square.normalized();
   const std::vector<int> below_lower = joints_below(actor.skeleton, lower);
   const std::vector<int> below_end = joints_below(actor.skeleton, end);
   for (const int joint : joints_below(actor.skeleton, upper)) {
@@ -73,7 +74,7 @@ MovedLimb::Outcome MovedLimb::move_end(const Vec3& wanted, std::span<const Trans
 
   // The direction of the middle joint: its present one if bent, from its hinge if straight.
   const Vec3 line = (end - root).stableNormalized();
-  const Vec3 by_hinge = line.cross(pose[at(upper_)].orientation * hinge_).stableNormalized();
+  const Vec3 by_hinge = line.cross(pose[at(carrier_)].orientation * hinge_).stableNormalized();
   const Vec3 bent = upper_bone - line * line.dot(upper_bone);
   // The direction of a knee within 25 degrees of straight is unreliable.
   const double straight = 1 - smooth_step(0.05 * full, 0.11 * full, bent.norm());

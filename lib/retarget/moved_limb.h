@@ -18,8 +18,10 @@ class MovedLimb {
  public:
   // Thigh, shank and foot, or upper arm, forearm and hand; each must descend from the one before.
   // `hinge` is the direction of the middle joint's axis in the pose of `actor`, about which the
-  // lower bone swings back (knees: to the character's left), world.
-  MovedLimb(const Actor& actor, int upper, int lower, int end, const Vec3& hinge);
+  // lower bone swings back (knees: to the character's left), world. While
+  // the limb is straight the axis is carried by `carrier`: the upper joint, or the end (a foot,
+  // which points where the knee does, whereas captures turn a straight thigh about itself at will).
+  MovedLimb(const Actor& actor, int upper, int lower, int end, const Vec3& hinge, int carrier);
 
   int upper() const { return upper_; }
   int lower() const { return lower_; }
@@ -60,8 +62,8 @@ class MovedLimb {
   void turn(const Quat& upper, const Quat& lower, std::span<const Transform> local,
             std::span<Transform> pose) const;
 
-  int upper_, lower_, end_;
-  Vec3 hinge_;               // in the frame of the upper joint
+  int upper_, lower_, end_, carrier_;
+  Vec3 hinge_;               // in the carrier's frame
   std::vector<Link> links_;  // the limb's joints, parents first, starting with upper_
 };
 

@@ -135,7 +135,7 @@ TouchKeeping::TouchKeeping(const Clip& clip, const Actor& source, const Actor& t
     const int a = target.roles.joint(upper), b = target.roles.joint(lower),
               c = target.roles.joint(end);
     return a < 0 || b < 0 || c < 0 ? std::nullopt
-                                   : std::optional(MovedLimb(target, a, b, c, hinge));
+                                   : std::optional(MovedLimb(target, a, b, c, hinge, a));
   };
   const auto place = [&](Role role) { return target.pose[at(target.roles.joint(role))].position; };
   const Vec3 left = place(Role::left_upper_leg) - place(Role::right_upper_leg);

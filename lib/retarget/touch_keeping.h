@@ -130,7 +130,7 @@ class TouchKeeping {
 
   std::array<PointPair, kBodyParts> points_;
   double scale_ = 1;
-  double leg_ = 0;  // metres, of the source
+  double leg_ = 0;            // metres, of the source
   std::vector<int> parents_;  // [target joints]
   int pivot_ = -1;
   std::vector<char> turns_with_trunk_;  // [target joints], 1: turns; 2: only moves along

@@ -230,13 +230,14 @@ TEST_F(Results, WithoutMemoryAToolSaysSoAndLeavesNothing) {
   const auto limited = [&](int kibibytes, const std::string& command) {
     return shell("ulimit -c 0; ulimit -v " + std::to_string(kibibytes) + "; " + command);
   };
-  // The least with which the program can be loaded.
+  // The least with which the program can be loaded; where libraries come to lie differs from run to
+  // run, and those that need memory while they are loaded (Assimp) end the program.
   int least = 0;
   for (int step = 1 << 20; step >= 64; step /= 2) {
     if (limited(least + step, "krok-import --version").exit_code != 0) least += step;
   }
   int failed = 0;
-  for (int more = 200; more < 16000; more += more < 4000 ? 200 : 1000) {
+  for (int more = 1400; more < 16000; more += more < 4000 ? 200 : 1000) {
     const std::string before = get(path("out.anim"));
     const ToolRun run = limited(least + more, "krok-import in.bvh -o out.anim -j 2 -q");
     ASSERT_TRUE(run.exit_code == 0 || run.exit_code == 2) << more << ": " << run.err;
