@@ -18,9 +18,9 @@ class MovedLimb {
  public:
   // Thigh, shank and foot, or upper arm, forearm and hand; each must descend from the one before.
   // `hinge` is the direction of the middle joint's axis in the pose of `actor`, about which the
-  // lower bone swings back (knees: to the character's left), world. While
-  // the limb is straight the axis is carried by `carrier`: the upper joint, or the end (a foot,
-  // which points where the knee does, whereas captures turn a straight thigh about itself at will).
+  // lower bone swings back (knees: to the character's left), world. While the limb is straight the
+  // axis is carried by `carrier`: the upper joint, or the end (a foot, which points where the knee
+  // does, whereas captures turn a straight thigh about itself at will).
   MovedLimb(const Actor& actor, int upper, int lower, int end, const Vec3& hinge, int carrier);
 
   int upper() const { return upper_; }
