@@ -29,12 +29,14 @@ ToolSpec make_spec() {
   spec.details =
       "Motions (.anim), models (.model), cameras (.cam), step libraries (.steps), materials "
       "(.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5), "
-      "morph targets (.exr), labels over time (.TextGrid), captures (.bvh, .asf, .amc).";
+      "morph targets (.exr), labels over time (.TextGrid), captures (.bvh, .asf, .amc). More than "
+      "four files are shown as a table, with -v each in full.";
   spec.inputs = "FILE...";
   spec.folder_endings = io::endings([](const io::Format& format) { return !format.companion; });
   spec.examples = {
       {"krok-info walk.anim", "frames, rate, duration, size, provenance and joint roles"},
       {"krok-info -v capture.bvh", "also each joint with its role, and the reader's notes"},
+      {"krok-info captures/", "a table of all files in a folder, their kinds, rates and duration"},
       {"krok-info --json *.model > models.json", "the same as JSON for scripts"}};
   spec.has_output = false;
   return spec;

@@ -19,6 +19,7 @@
 #include "math/quaternion.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-info/describe.h"
+#include "tools/krok-info/folder_summary.h"
 #include "tools/krok-info/options.h"
 
 namespace krok::cli::info {
@@ -264,12 +265,16 @@ Result<int> run(const Options& options, ToolContext& context) {
   Json files = Json::array();
   bool failed = false;
   bool first = true;
+  // More are shown as a table.
+  constexpr std::size_t kInFull = 4;
+  const bool in_full = context.verbose || options.files.size() <= kInFull;
   for (const std::string& path : options.files) {
     auto description = describe_path(path, how, context);
     Json entry = {{"path", path}};
     if (description) {
       entry.update(description->json);
-      if (!context.quiet) context.print((first ? "" : "\n") + to_text(path, *description));
+      if (in_full && !context.quiet)
+        context.print((first ? "" : "\n") + to_text(path, *description));
       first = false;
     } else {
       failed = true;
@@ -278,6 +283,7 @@ Result<int> run(const Options& options, ToolContext& context) {
     }
     files.push_back(std::move(entry));
   }
+  if (!in_full && !context.quiet) context.print(folder_summary(files));
   context.report.result["files"] = std::move(files);
   return failed ? kExitTrouble : kExitDone;
 }

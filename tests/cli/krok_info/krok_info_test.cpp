@@ -213,6 +213,21 @@ TEST_F(KrokInfo, GoesOnAfterAFileThatFails) {
   EXPECT_THAT(result.out, HasSubstr("a camera"));
 }
 
+// Many files are a table with what they are together; each in full where that is asked for.
+TEST_F(KrokInfo, ManyFilesAreATable) {
+  std::filesystem::create_directories(path("many"));
+  for (const char* name : {"a", "b", "c", "d"}) {
+    std::filesystem::copy(kFrozen + "motion.anim", path("many/" + std::string(name) + ".anim"));
+  }
+  std::filesystem::copy(kFrozen + "full.model", path("many/e.model"));
+  const Outcome all = run(path("many"));
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_NE(all.out.find("\n\n5 files: 4 anim, 1 model\n"), std::string::npos) << all.out;
+  EXPECT_EQ(std::count(all.out.begin(), all.out.end(), '\n'), 1 + 5 + 1 + 3) << all.out;
+  EXPECT_NE(all.out.find("d.anim"), std::string::npos) << all.out;
+  EXPECT_NE(run("-v " + path("many")).out.find("orientations"), std::string::npos);
+}
+
 TEST_F(KrokInfo, JsonTellsOfFilesThatFail) {
   const Outcome result = run("--json " + path("none.anim") + " " + kFrozen + "camera.cam");
   EXPECT_EQ(result.exit_code, 2);
