@@ -282,7 +282,7 @@ Result<int> run_correctives(const Options& options, ToolContext& context) {
   if (!ending.empty() && ending != ".correctives") {
     return usage(fmt::format("the output is a .correctives file, not {}", shown(context.output)));
   }
-  const auto fit = PosesReader(options.library, context).fit(options);
+  const auto fit = PosesReader(options.first(), context).fit(options);
   if (!fit) return fit.error();
   const auto text = correctives_file::write(fit->correctives);
   if (!text) return text.error();

@@ -132,7 +132,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
     const auto solver = rbf::WeightSolver::create(
         library.dimensions(), parameters_of(library),
         {fitted.choice.kernel, input.lower, input.upper, fitted.choice.smoothing});
-    if (!solver) return explained(solver.error(), input).in_file(options.library);
+    if (!solver) return explained(solver.error(), input).in_file(options.first());
     fitted.start.function = solver->function();
   }
 
@@ -159,7 +159,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
   if (!refined) {
     // An error in the saved weights is not an error in the description.
     const bool saved = start != nullptr && refined.error().code.starts_with("rbf-");
-    return std::move(refined).error().in_file(saved ? options.resume : options.library);
+    return std::move(refined).error().in_file(saved ? options.resume : options.first());
   }
   fitted.refined = *std::move(refined);
   if (options.polish) {
@@ -167,7 +167,7 @@ Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& opti
     auto polished = krok::fit::polish(fitted.refined, measure_of(measure), how);
     context.progress->advance(1);
     context.progress->end();
-    if (!polished) return std::move(polished).error().in_file(options.library);
+    if (!polished) return std::move(polished).error().in_file(options.first());
     fitted.refined = *std::move(polished);
   }
   fitted.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "formats/io/formats.h"
+#include "math/types.h"
 #include "parametric/thin_out.h"
 #include "rbf/weight_function.h"
 #include "tools/krok-fit/name_styles.h"
@@ -88,13 +90,14 @@ parametric::StepGait gait_of(library::StepKind kind) {
 
 class Reader {
  public:
-  Reader(std::string path, bool keep_going, ToolContext& context)
-      : path_(std::move(path)), keep_going_(keep_going), context_(context) {}
+  Reader(const std::vector<std::string>& inputs, bool keep_going, ToolContext& context)
+      : inputs_(inputs), keep_going_(keep_going), context_(context) {}
 
   Result<LibraryInput> read() {
-    Status status = read_description();
+    Status status = find_description();
     if (status) status = read_motions();
     if (status) status = make_library();
+    if (status && path_.empty()) status = leave_out_what_hardly_varies();
     if (status) status = choose();
     if (status) status = find_range(input_);
     if (!status) return status.error();
@@ -107,26 +110,51 @@ class Reader {
     return description().swing == library::Side::left ? FootSide::left : FootSide::right;
   }
 
-  Status read_description() {
+  Status find_description() {
+    if (inputs_.size() > 1) return describe_motions();
+    const auto file = context_.open_input(inputs_.front());
+    if (!file) return file.error();
+    if (io::is_motion(*file)) return describe_motions();
+    path_ = inputs_.front();
+    return read_description(*file);
+  }
+
+  // What one would write of walks of which nothing else is known.
+  Status describe_motions() {
+    LibraryDescription& made = input_.description;
+    made.mirror = true;
+    for (const auto& [name, measures] :
+         {std::pair("length", "step.length"), std::pair("turn", "step.path_turn")}) {
+      ParameterEntry& parameter = made.parameters.emplace_back();
+      parameter.name = name;
+      parameter.measures = measures;
+    }
+    for (const std::string& path : inputs_) {
+      if (path.ends_with(".json")) {
+        return usage("a library description is the only input",
+                     "it names its motions: \"examples\": [{\"clip\": \"takes/*.bvh\"}]");
+      }
+      library::ExampleEntry& example = made.examples.emplace_back();
+      example.clip = path;
+      example.automatic = true;
+    }
+    return {};
+  }
+
+  Status read_description(const InputFile& file) {
     const char* const hint =
-        "give a description (.json) of the clips, see formats/library/SPEC.md: "
+        "give motions, or a description (.json) of them, see formats/library/SPEC.md: "
         "{\"schema\": \"krok.library/1\", \"steps\": \"auto\", \"parameters\": [...], "
         "\"examples\": [{\"clip\": \"takes/*.bvh\"}]}";
-    const auto file = context_.open_input(path_);
-    if (!file) {
-      Error error = file.error();
-      if (error.code == "file-directory") error.hint = hint;
-      return error;
-    }
-    if (const auto kind = registry::kind_of_content(file->bytes());
-        kind != registry::Kind::unknown && !file->text().starts_with('{')) {
+    if (const auto kind = registry::kind_of_content(file.bytes());
+        kind != registry::Kind::unknown && !file.text().starts_with('{')) {
       return Error("fit-description",
                    fmt::format("is {}, not a library description",
-                               registry::describe_content(file->bytes())),
+                               registry::describe_content(file.bytes())),
                    hint)
           .in_file(path_);
     }
-    auto description = library::read(file->text(), path_);
+    auto description = library::read(file.text(), path_);
     if (!description) return description.error();
     input_.description = *std::move(description);
     return {};
@@ -140,6 +168,29 @@ class Reader {
     input_.roles = std::move(read->roles);
     input_.refused = std::move(read->refused);
     return {};
+  }
+
+  // Of walks that all go straight on, the turn says nothing.
+  Status leave_out_what_hardly_varies() {
+    constexpr double kLeastTurn = 1 * kRadiansPerDegree, kLeastLength = 0.01;  // metres
+    std::vector<ParameterEntry>& entries = input_.description.parameters;
+    std::vector<ParameterEntry> kept;
+    for (std::size_t d = 0; d < entries.size(); ++d) {
+      const auto value = [d](const parametric::Example& e) { return e.parameters[d]; };
+      const auto [least, most] = std::ranges::minmax(input_.library.examples, {}, value);
+      const bool turn = entries[d].name == "turn";
+      if (value(most) - value(least) > (turn ? kLeastTurn : kLeastLength)) {
+        kept.push_back(entries[d]);
+      }
+    }
+    if (kept.size() == entries.size()) return {};
+    if (kept.empty()) {
+      return Error("library-examples", "all steps have the same length and turn",
+                   "add motions that vary them, or describe other parameters "
+                   "(formats/library/SPEC.md)");
+    }
+    entries = std::move(kept);
+    return make_library();
   }
 
   std::vector<std::string> measures() const {
@@ -287,7 +338,8 @@ class Reader {
     return {};
   }
 
-  std::string path_;
+  const std::vector<std::string>& inputs_;
+  std::string path_;  // of the description; empty: none
   bool keep_going_;
   ToolContext& context_;
   LibraryInput input_;
@@ -297,8 +349,9 @@ class Reader {
 
 }  // namespace
 
-Result<LibraryInput> read_library(const std::string& path, bool keep_going, ToolContext& context) {
-  return Reader(path, keep_going, context).read();
+Result<LibraryInput> read_library(const std::vector<std::string>& inputs, bool keep_going,
+                                  ToolContext& context) {
+  return Reader(inputs, keep_going, context).read();
 }
 
 void take_examples(LibraryInput& input, double spacing) {

@@ -31,11 +31,13 @@ struct LibraryInput {
   std::vector<RefusedClip> refused;
 };
 
-// Reads the description at `path` and the motions, relative to its folder. An unsuitable motion,
-// such as one on another skeleton, is an Error, or with `keep_going` a warning, and left out.
-// Codes: those of library::read and of reading motions; library-clip for a pattern without matches;
-// library-keytimes, library-examples; those of parametric::cut_steps and make_example.
-Result<LibraryInput> read_library(const std::string& path, bool keep_going, ToolContext& context);
+// Reads the description that is the one input, and the motions, relative to its folder; or motions
+// that are the inputs, as if described by the lengths and turns of their steps. An unsuitable
+// motion, such as one on another skeleton, is an Error, or with `keep_going` a warning, and left
+// out. Codes: those of library::read and of reading motions; library-clip for a pattern without
+// matches; library-keytimes, library-examples; those of parametric::cut_steps and make_example.
+Result<LibraryInput> read_library(const std::vector<std::string>& inputs, bool keep_going,
+                                  ToolContext& context);
 
 // Spacing of detected steps that weights interpolate, and of examples that they smooth.
 inline constexpr double kUsualSpacing = 0.15;

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "formats/io/formats.h"
 #include "tools/cli/option_kinds.h"
 
 namespace krok::cli::fit {
@@ -53,9 +54,11 @@ void declare_refinement(CommandOptions& command, Options& o) {
 void declare(CommandOptions& command, Options& options) {
   command
       .add_option(
-          "library IN.json", options.library,
-          "Library description (JSON): examples and parameters; or sculpted poses of a model "
-          "(formats/correctives/SPEC.md), of which correctives for krok-skin are made")
+          "library IN", options.inputs,
+          "Library description (JSON): examples and parameters; or motions, or a folder of them, "
+          "of "
+          "whose steps, mirrored ones too, a library by length and turn is made; or sculpted poses "
+          "of a model (formats/correctives/SPEC.md), of which correctives for krok-skin are made")
       .required();
   command.add_flag(
       "--keep-going", options.keep_going,
@@ -77,8 +80,11 @@ ToolSpec make_spec() {
   spec.details =
       "krok-synth then makes motions for any parameters between them. Of sculpted poses of a model "
       "it makes correctives, morph targets by pose, which krok-skin adds.";
-  spec.inputs = "LIBRARY.json";
+  spec.inputs = "LIBRARY.json|IN...";
+  spec.folder_endings = io::motion_endings();
   spec.examples = {
+      {"krok-fit walks/ -o walking.steps",
+       "the steps of all walks in a folder, by their length and turn"},
       {"krok-fit walking.json -o walking.steps",
        "uses the examples in the description and refines until the tolerances are met"},
       {"krok-fit walking.json -o walking.steps --refine 80 --max-error 0.5mm --plot charts",

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 #include "rbf/weight_function.h"
@@ -12,7 +13,7 @@
 namespace krok::cli::fit {
 
 struct Options {
-  std::string library;  // path of the description
+  std::vector<std::string> inputs;  // a description, or motions
   bool keep_going = false;
   std::optional<rbf::Kernel> kernel;  // not set: automatic
   std::optional<int> refine;          // max points to insert; not set: 40 per parameter
@@ -23,6 +24,8 @@ struct Options {
   bool polish = true;  // optimise inserted weights jointly after refinement
   std::string resume;  // a library to continue from
   std::string plots;   // output folder
+
+  const std::string& first() const { return inputs.front(); }
 };
 
 // Max examples for leave-one-out errors: the time grows with the fourth power of their number.

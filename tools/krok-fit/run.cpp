@@ -194,14 +194,15 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (describes_poses(options.library)) return run_correctives(options, context);
+  if (options.inputs.size() == 1 && describes_poses(options.first()))
+    return run_correctives(options, context);
   std::error_code unknown;
-  if (options.library != "-" && !std::filesystem::exists(options.library, unknown)) {
-    return Error("file-missing", "no such file", "check the path").in_file(options.library);
+  if (options.first() != "-" && !std::filesystem::exists(options.first(), unknown)) {
+    return Error("file-missing", "no such file", "check the path").in_file(options.first());
   }
   Status kind = check_output_kind(context.output, "-o", registry::Kind::steps);
   if (!kind) return kind.error();
-  auto input = read_library(options.library, options.keep_going, context);
+  auto input = read_library(options.inputs, options.keep_going, context);
   if (!input) return input.error();
   std::optional<krok::fit::Refined> start;
   if (!options.resume.empty()) {

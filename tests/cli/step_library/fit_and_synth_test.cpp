@@ -4,7 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/step_library/library_fixture.h"
@@ -351,6 +353,38 @@ TEST_F(StepLibrary, ChartsAreWritten) {
     EXPECT_THAT(std::string(file->text()), HasSubstr("</svg>"));
     EXPECT_THAT(std::string(file->text()), Not(HasSubstr("nan")));
   }
+}
+
+// A folder of walks needs no description: its library is the one by length and, where they turn, by
+// turn, of both feet.
+TEST_F(StepLibrary, AFolderOfWalksNeedsNoDescription) {
+  const auto fitted = [&](const std::string& name) {
+    const ToolRun run = run_tool("krok-fit", {path("walks"), "-o", path(name), "--json"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.exit_code == 0 ? json::parse(run.out)["result"] : json();
+  };
+  std::filesystem::create_directory(path("walks"));
+  for (const char* length : {"50", "60", "70"}) {
+    make_walk(length, "0");
+    std::filesystem::rename(path("walk_" + std::string(length) + "_0.bvh"),
+                            path("walks/" + std::string(length) + ".bvh"));
+  }
+  write("walks/notes.txt", "not a motion");
+  const json straight = fitted("straight.steps");
+  ASSERT_EQ(straight["parameters"].size(), 1u);
+  EXPECT_NEAR(straight["parameters"][0]["from"].get<double>(), 0.5, 0.02);
+  EXPECT_NEAR(straight["parameters"][0]["to"].get<double>(), 0.7, 0.02);
+  for (const char* turn : {"-15", "15"}) {
+    const ToolRun made =
+        run({test::make_walk(), "--steps", "4", "--turn", std::string(turn) + "deg", "-q", "-o",
+             path("walks/bend" + std::string(turn) + ".bvh")});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+  }
+  const json bent = fitted("bent.steps");
+  ASSERT_EQ(bent["parameters"].size(), 2u);
+  EXPECT_EQ(bent["parameters"][1]["name"], "turn");
+  EXPECT_TRUE(
+      std::ranges::any_of(bent["examples"], [](const json& e) { return e["mirrored"] == true; }));
 }
 
 // Would fail if weights were shown of the first nine examples only.
