@@ -268,7 +268,7 @@ SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
                             int jobs) {
   LocalMotion motion = local_motion(clip);
   if (moving.empty()) moving = moving_joints(motion);
-  const auto [longest, around] = lengths_of(options, clip.rate);
+  const Lengths lengths = lengths_of(options, clip.rate);
 
   std::vector<std::vector<Spike>> found(clip.skeleton.names.size());
   parallel_for(found.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
@@ -281,12 +281,12 @@ SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
         }
       };
       note(SpikeFinder<Quat>(motion.joint_orientations(joint), options.threshold,
-                             options.least_angle, longest, around)
+                             options.least_angle, lengths.longest, lengths.around)
                .remove(),
            false);
       if (moving[j] == 0) continue;
       note(SpikeFinder<Vec3>(motion.joint_positions(joint), options.threshold,
-                             options.least_distance, longest, around)
+                             options.least_distance, lengths.longest, lengths.around)
                .remove(),
            true);
     }
