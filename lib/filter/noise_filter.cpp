@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <tuple>
 
 #include "core/index.h"
@@ -24,6 +26,18 @@ constexpr int kNear = 5;  // frames on either side, of which two may be as far o
 constexpr double kMinNoiseAngle = 1e-3 * kRadiansPerDegree, kMinNoiseDistance = 1e-5;
 constexpr int kSpikeRounds = 6;  // each replaces the largest of neighbouring outliers
 
+// What the noise of a Track is like: its deviation, and by which risks strengths are chosen, for
+// the course that spikes are far from and in without_noise().
+struct NoiseLevel {
+  double noise = 0;
+  Risks course;
+  GroupRisks smoothing;
+};
+
+bool is_noise(double deviation, bool of_position) {
+  return deviation > (of_position ? kMinNoiseDistance : kMinNoiseAngle);
+}
+
 // The rotations or positions of one joint as vectors, [frames x 3].
 class Track {
  public:
@@ -36,10 +50,11 @@ class Track {
     }
   }
 
-  void find_spikes(const WhittakerLadder& ladder);
-  void unroll();
-  double noise() const { return noise_; }
-  bool is_noisy() const { return noise_ > (of_position_ ? kMinNoiseDistance : kMinNoiseAngle); }
+  // `known` (optional): instead of what these frames show.
+  void find_spikes(const WhittakerLadder& ladder, const NoiseLevel* known);
+  double noise() const { return level_.noise; }
+  bool is_noisy() const { return is_noise(noise(), of_position_); }
+  NoiseLevel& level() { return level_; }
   bool of_position() const { return of_position_; }
   const MatrixXd& vectors() const { return vectors_; }
   void set(const MatrixXd& vectors);
@@ -49,6 +64,7 @@ class Track {
   int size() const {
     return static_cast<int>(of_position_ ? positions_.size() : rotations_.size());
   }
+  void unroll();
   bool replace_outliers(const WhittakerLadder& ladder);
   void replace(int frame, const Vec3& vector);
 
@@ -59,7 +75,8 @@ class Track {
   std::span<Quat> rotations_;
   std::vector<Quat> course_;
   MatrixXd rolled_out_, vectors_;
-  double noise_ = 0;
+  NoiseLevel level_;
+  bool is_known_ = false;
   std::vector<Spike> spikes_;
   std::vector<double> weights_;  // 0 for frames that were spikes
 };
@@ -83,7 +100,7 @@ void Track::unroll() {
       vectors_.row(f) = (sum + rotation_vector(course.conjugate() * rotations_[at(f)])).transpose();
     }
   }
-  noise_ = noise_deviation(vectors_);
+  if (!is_known_) level_.noise = noise_deviation(vectors_);
 }
 
 void Track::replace(int frame, const Vec3& vector) {
@@ -102,7 +119,9 @@ void Track::set(const MatrixXd& vectors) {
 
 // Distances of frames from the course of the others, which a frame's own share is taken out of.
 bool Track::replace_outliers(const WhittakerLadder& ladder) {
-  const Whittaker& smoother = ladder.choose(vectors_, noise_);
+  const Risks risks = is_known_ ? level_.course : ladder.risks(vectors_, noise());
+  if (level_.course.empty()) level_.course = risks;
+  const Whittaker& smoother = ladder.choose(risks);
   MatrixXd smooth = vectors_;
   for (int axis = 0; axis < 3; ++axis) smoother.smooth({smooth.col(axis).data(), at(size())});
   const double others = 1 - std::min(0.95, smoother.freedom() / size());
@@ -112,7 +131,7 @@ bool Track::replace_outliers(const WhittakerLadder& ladder) {
   }
   const SpikeOptions usual;
   const double limit =
-      std::max(of_position_ ? usual.least_distance : usual.least_angle, kDeviations * noise_);
+      std::max(of_position_ ? usual.least_distance : usual.least_angle, kDeviations * noise());
   const int around = std::max(10, static_cast<int>(std::lround(0.5 * rate_)));
   const int longest = std::max(1, static_cast<int>(std::lround(usual.longest * rate_)));
   std::vector<int> found;
@@ -153,7 +172,10 @@ bool Track::replace_outliers(const WhittakerLadder& ladder) {
   return true;
 }
 
-void Track::find_spikes(const WhittakerLadder& ladder) {
+void Track::find_spikes(const WhittakerLadder& ladder, const NoiseLevel* known) {
+  is_known_ = known != nullptr;
+  if (is_known_) level_ = *known;
+  if (is_known_ && !is_noisy()) return;
   weights_.assign(at(size()), 1.0);
   for (int round = 0; round < kSpikeRounds; ++round) {
     unroll();
@@ -168,55 +190,186 @@ void sort_spikes(std::vector<Spike>& spikes) {
   });
 }
 
+// Of noisy tracks the median of rotations, and the first position, which is the root's.
+void set_noise(std::span<const NoiseLevel> levels, std::span<const std::uint8_t> of_position,
+               double& angle, double& distance) {
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const bool position = of_position[i] != 0;
+    if (!is_noise(levels[i].noise, position)) continue;
+    if (!position) angles.push_back(levels[i].noise);
+    if (position && distance == 0) distance = levels[i].noise;
+  }
+  if (angles.empty()) return;
+  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
+  std::ranges::nth_element(angles, middle);
+  angle = *middle;
+}
+
+struct Denoised {
+  NoiseRemoval removal;
+  std::vector<NoiseLevel> levels;         // [tracks]
+  std::vector<std::uint8_t> of_position;  // [tracks]
+};
+
+// Steps 2 to 4 of a clip without plain spikes. `moving`: as of moving_joints(), of the whole
+// motion; `known`: the tracks' levels, empty: those that this clip shows.
+Denoised denoise(Clip clip, std::span<const std::uint8_t> joints,
+                 std::span<const std::uint8_t> moving, int jobs,
+                 std::span<const NoiseLevel> known) {
+  Denoised result;
+  NoiseRemoval& made = result.removal;
+  made.clip = std::move(clip);
+  LocalMotion motion = local_motion(made.clip);
+  const double rate = made.clip.rate;
+  std::vector<Track> tracks;
+  for (int j = 0; j < motion.joints; ++j) {
+    if (!joints.empty() && joints[at(j)] == 0) continue;
+    tracks.emplace_back(motion, j, false, rate);
+    if (moving[at(j)] != 0) tracks.emplace_back(motion, j, true, rate);
+  }
+  const WhittakerLadder ladder(motion.frames);
+  parallel_for(tracks.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      tracks[i].find_spikes(ladder, known.empty() ? nullptr : &known[i]);
+    }
+  });
+  std::vector<Track*> noisy;
+  for (Track& track : tracks) {
+    made.spikes.insert(made.spikes.end(), track.spikes().begin(), track.spikes().end());
+    if (track.is_noisy()) noisy.push_back(&track);
+  }
+  if (!noisy.empty()) {
+    MatrixXd series(motion.frames, 3 * static_cast<Eigen::Index>(noisy.size()));
+    std::vector<GroupRisks> risks, found;
+    for (std::size_t i = 0; i < noisy.size(); ++i) {
+      series.middleCols(static_cast<Eigen::Index>(3 * i), 3) =
+          noisy[i]->vectors() / noisy[i]->noise();
+      if (!known.empty()) risks.push_back(noisy[i]->level().smoothing);
+    }
+    series = without_noise(series, rate, jobs, risks, &found);
+    for (std::size_t i = 0; i < noisy.size(); ++i) {
+      noisy[i]->set(series.middleCols(static_cast<Eigen::Index>(3 * i), 3) * noisy[i]->noise());
+      noisy[i]->level().smoothing = std::move(found[i]);
+    }
+    set_local_motion(motion, made.clip);
+  }
+  for (Track& track : tracks) {
+    result.of_position.push_back(track.of_position() ? 1 : 0);
+    result.levels.push_back(std::move(track.level()));
+  }
+  set_noise(result.levels, result.of_position, made.angle, made.distance);
+  return result;
+}
+
+void add(const Risks& more, double times, Risks& sum) {
+  sum.resize(std::max(sum.size(), more.size()), 0.0);
+  for (std::size_t i = 0; i < more.size(); ++i) sum[i] += times * more[i];
+}
+
+constexpr int kSamples = 8, kMinSample = 256, kMaxSample = 2048;  // frames
+// Frames over which what the end of a block changes falls to a hundredth with the strongest
+// smoother of a WhittakerLadder; with usual ones a tenth of them.
+constexpr int kReach = 1200;
+
+// From samples spread evenly over the motion: of deviations the median, of risks the sum.
+Result<Denoised> sample_levels(const FrameSource& source, std::span<const std::uint8_t> joints,
+                               std::span<const std::uint8_t> moving, int jobs) {
+  const int frames = std::min(source.frame_count,
+                              std::clamp(source.frame_count / kSamples, kMinSample, kMaxSample));
+  Denoised all;
+  std::vector<std::vector<double>> noises;
+  for (int sample = 0; sample < kSamples; ++sample) {
+    const auto first = static_cast<int>(static_cast<long long>(source.frame_count - frames) *
+                                        sample / (kSamples - 1));
+    auto clip = load(part_of(source, first, frames), jobs);
+    if (!clip) return clip.error();
+    Denoised one = denoise(*std::move(clip), joints, moving, jobs, {});
+    noises.resize(one.levels.size());
+    all.levels.resize(one.levels.size());
+    all.of_position = std::move(one.of_position);
+    for (std::size_t i = 0; i < one.levels.size(); ++i) {
+      const NoiseLevel& level = one.levels[i];
+      noises[i].push_back(level.noise);
+      add(level.course, 1, all.levels[i].course);
+      // Those of without_noise() are in units of the noise.
+      const double square = level.noise * level.noise;
+      add(level.smoothing.common, square, all.levels[i].smoothing.common);
+      add(level.smoothing.own, square, all.levels[i].smoothing.own);
+    }
+  }
+  for (std::size_t i = 0; i < noises.size(); ++i) {
+    std::ranges::sort(noises[i]);
+    all.levels[i].noise = noises[i][noises[i].size() / 2];
+  }
+  set_noise(all.levels, all.of_position, all.removal.angle, all.removal.distance);
+  return all;
+}
+
 }  // namespace
 
 Result<NoiseRemoval> remove_noise(const Clip& clip, std::span<const std::uint8_t> joints,
                                   int jobs) {
   auto removal = remove_spikes(clip, {}, joints, jobs);
   if (!removal) return removal.error();
-  NoiseRemoval result{std::move(removal->clip), std::move(removal->spikes), 0, 0};
-  if (clip.frame_count() < kMinFrames) return result;
-  LocalMotion motion = local_motion(result.clip);
-  const std::vector<std::uint8_t> moving = moving_joints(motion);
-  std::vector<Track> tracks;
-  for (int j = 0; j < motion.joints; ++j) {
-    if (!joints.empty() && joints[at(j)] == 0) continue;
-    tracks.emplace_back(motion, j, false, clip.rate);
-    if (moving[at(j)] != 0) tracks.emplace_back(motion, j, true, clip.rate);
+  if (clip.frame_count() < kMinFrames) {
+    return NoiseRemoval{std::move(removal->clip), std::move(removal->spikes), 0, 0};
   }
-  const WhittakerLadder ladder(clip.frame_count());
-  parallel_for(tracks.size(), 1, jobs, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) tracks[i].find_spikes(ladder);
-  });
-  std::vector<double> angles;
-  std::vector<Track*> noisy;
-  for (Track& track : tracks) {
-    result.spikes.insert(result.spikes.end(), track.spikes().begin(), track.spikes().end());
-    if (!track.is_noisy()) continue;
-    noisy.push_back(&track);
-    if (track.of_position()) {
-      if (result.distance == 0) result.distance = track.noise();
-    } else {
-      angles.push_back(track.noise());
-    }
-  }
-  sort_spikes(result.spikes);
-  if (noisy.empty()) return result;
-  if (!angles.empty()) {
-    std::ranges::nth_element(angles,
-                             angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2));
-    result.angle = angles[angles.size() / 2];
-  }
-  MatrixXd series(clip.frame_count(), 3 * static_cast<Eigen::Index>(noisy.size()));
-  for (std::size_t i = 0; i < noisy.size(); ++i) {
-    series.middleCols(static_cast<Eigen::Index>(3 * i), 3) =
-        noisy[i]->vectors() / noisy[i]->noise();
-  }
-  series = without_noise(series, clip.rate, jobs);
-  for (std::size_t i = 0; i < noisy.size(); ++i) {
-    noisy[i]->set(series.middleCols(static_cast<Eigen::Index>(3 * i), 3) * noisy[i]->noise());
-  }
-  set_local_motion(motion, result.clip);
+  const std::vector<std::uint8_t> moving = moving_joints(local_motion(removal->clip));
+  NoiseRemoval made = denoise(std::move(removal->clip), joints, moving, jobs, {}).removal;
+  made.spikes.insert(made.spikes.begin(), removal->spikes.begin(), removal->spikes.end());
+  sort_spikes(made.spikes);
+  return made;
+}
+
+Result<NoiseFrames> remove_noise(
+    const FrameSource& source, std::span<const std::uint8_t> joints, int jobs,
+    const std::function<void(const FrameRun& before, const NoiseRemoval& after)>& watch,
+    int block_frames) {
+  // By the first frame kept of their block.
+  const auto plain = std::make_shared<std::map<int, std::vector<Spike>>>();
+  const auto keep = [plain](const FrameRun& run, const SpikeRemoval& removal) {
+    (*plain)[run.first + run.kept_begin] = removal.spikes;
+  };
+  auto frames = remove_spikes(source, {}, joints, jobs, keep, block_frames);
+  if (!frames) return frames.error();
+  if (source.frame_count < kMinFrames) return NoiseFrames{*std::move(frames), 0, 0};
+  auto moving = moving_joints(source, jobs);
+  if (!moving) return moving.error();
+  auto sample = sample_levels(*frames, joints, *moving, jobs);
+  if (!sample) return sample.error();
+  // Windows of without_noise() begin at the same frames in all blocks.
+  const int step = window_step(source.rate);
+  const BlockSize size{(block_frames + step - 1) / step * step, (kReach + step - 1) / step * step};
+  NoiseFrames result;
+  result.angle = sample->removal.angle;
+  result.distance = sample->removal.distance;
+  result.frames = changed_in_blocks(
+      *frames, size, jobs,
+      [source, plain, jobs, watch, moving = *std::move(moving), levels = std::move(sample->levels),
+       joints = std::vector(joints.begin(), joints.end())](FrameRun& run) -> Status {
+        NoiseRemoval made = denoise(std::move(run.clip), joints, moving, jobs, levels).removal;
+        for (Spike& spike : made.spikes) {
+          spike.first_frame += run.first;
+          spike.last_frame += run.first;
+        }
+        for (const auto& [frame, spikes] : *plain) {
+          made.spikes.insert(made.spikes.end(), spikes.begin(), spikes.end());
+        }
+        std::erase_if(made.spikes, [&](const Spike& spike) {
+          return spike.first_frame < run.first + run.kept_begin ||
+                 spike.first_frame >= run.first + run.kept_end;
+        });
+        sort_spikes(made.spikes);
+        if (watch) {
+          auto before = load(part_of(source, run.first, made.clip.frame_count()), jobs);
+          if (!before) return before.error();
+          run.clip = *std::move(before);
+          watch(run, made);
+        }
+        run.clip = std::move(made.clip);
+        return {};
+      });
   return result;
 }
 

@@ -60,13 +60,15 @@ MatrixXd common_part(const MatrixXd& window, int lag) {
   return (count.cwiseInverse().asDiagonal() * (smoother.transpose() * centred)).rowwise() + mean;
 }
 
+int window_of(double rate, int longest) {
+  return std::min(longest, std::max(20, static_cast<int>(std::lround(kWindow * rate))));
+}
+
 MatrixXd common_part(const MatrixXd& series, double rate, int longest, int jobs) {
   const auto frames = static_cast<int>(series.rows());
-  const auto frames_in = [&](double seconds) {
-    return static_cast<int>(std::lround(seconds * rate));
-  };
-  const int window = std::min({frames, longest, std::max(20, frames_in(kWindow))});
-  const int lag = std::min(std::clamp(frames_in(kLag), kMinLag, kMaxLag), window / 2);
+  const int window = std::min(frames, window_of(rate, longest));
+  const auto in_lag = static_cast<int>(std::lround(kLag * rate));
+  const int lag = std::min(std::clamp(in_lag, kMinLag, kMaxLag), window / 2);
   std::vector<int> starts;
   for (int f = 0; f < frames - window; f += window / 2) starts.push_back(f);
   starts.push_back(frames - window);
@@ -88,13 +90,15 @@ MatrixXd common_part(const MatrixXd& series, double rate, int longest, int jobs)
   return weights.cwiseInverse().asDiagonal() * sum;
 }
 
-void smooth_columns(const Whittaker& smoother, Eigen::Ref<MatrixXd> series) {
-  for (Eigen::Index c = 0; c < series.cols(); ++c) {
-    smoother.smooth({series.col(c).data(), static_cast<std::size_t>(series.rows())});
-  }
-}
-
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+void smooth_columns(const Whittaker& smoother, Eigen::Ref<MatrixXd> series) {
+  // Side by side, as a series by itself waits for its last value in each step.
+  Rows rows = series;
+  smoother.smooth({rows.data(), static_cast<std::size_t>(rows.size())},
+                  static_cast<std::size_t>(rows.cols()));
+  series = rows;
+}
 
 constexpr double kPart = 0.5, kFewestFrames = 15;  // seconds, frames
 constexpr double kCaution = 2;                     // 0: in each part the best smoother alone
@@ -190,20 +194,19 @@ WhittakerLadder::WhittakerLadder(int size) {
   }
 }
 
-const Whittaker& WhittakerLadder::choose(const Eigen::Ref<const MatrixXd>& series,
-                                         double noise) const {
-  const Whittaker* best = &smoothers_.front();
-  double lowest = std::numeric_limits<double>::infinity();
+Risks WhittakerLadder::risks(const Eigen::Ref<const MatrixXd>& series, double noise) const {
+  Risks risks;
   for (const Whittaker& smoother : smoothers_) {
     MatrixXd smoothed = series;
     smooth_columns(smoother, smoothed);
-    const double risk = (smoothed - series).squaredNorm() +
-                        2 * noise * noise * smoother.freedom() * static_cast<double>(series.cols());
-    if (risk >= lowest) continue;
-    lowest = risk;
-    best = &smoother;
+    risks.push_back((smoothed - series).squaredNorm() +
+                    2 * noise * noise * smoother.freedom() * static_cast<double>(series.cols()));
   }
-  return *best;
+  return risks;
+}
+
+const Whittaker& WhittakerLadder::choose(const Risks& risks) const {
+  return smoothers_[static_cast<std::size_t>(std::ranges::min_element(risks) - risks.begin())];
 }
 
 double noise_deviation(const Eigen::Ref<const MatrixXd>& series) {
@@ -229,22 +232,31 @@ MatrixXd without_noise_in_parts(const MatrixXd& series, double rate, int jobs) {
   return 0.5 * (common_part(series, rate, kLongest, jobs) + smoothed_in_parts(series, rate, jobs));
 }
 
-MatrixXd without_noise(const MatrixXd& series, double rate, int jobs) {
+MatrixXd without_noise(const MatrixXd& series, double rate, int jobs,
+                       std::span<const GroupRisks> known, std::vector<GroupRisks>* found) {
   const MatrixXd common = common_part(series, rate, kMaxWindow, jobs);
   const WhittakerLadder ladder(static_cast<int>(series.rows()));
   MatrixXd result(series.rows(), series.cols());
-  parallel_for(static_cast<std::size_t>(series.cols() / 3), 1, jobs,
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t group = begin; group < end; ++group) {
-                   const auto first = static_cast<Eigen::Index>(3 * group);
-                   MatrixXd joint = common.middleCols(first, 3), own = series.middleCols(first, 3);
-                   smooth_columns(ladder.choose(joint, kLeftNoise), joint);
-                   smooth_columns(ladder.choose(own, 1), own);
-                   result.middleCols(first, 3) =
-                       kShareOfCommon * joint + (1 - kShareOfCommon) * own;
-                 }
-               });
+  const auto groups = static_cast<std::size_t>(series.cols() / 3);
+  if (found != nullptr) found->resize(groups);
+  parallel_for(groups, 1, jobs, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t group = begin; group < end; ++group) {
+      const auto first = static_cast<Eigen::Index>(3 * group);
+      MatrixXd joint = common.middleCols(first, 3), own = series.middleCols(first, 3);
+      GroupRisks risks;
+      if (known.empty()) risks = {ladder.risks(joint, kLeftNoise), ladder.risks(own, 1)};
+      const GroupRisks& by = known.empty() ? risks : known[group];
+      smooth_columns(ladder.choose(by.common), joint);
+      smooth_columns(ladder.choose(by.own), own);
+      result.middleCols(first, 3) = kShareOfCommon * joint + (1 - kShareOfCommon) * own;
+      if (found != nullptr) (*found)[group] = by;
+    }
+  });
   return result;
+}
+
+int window_step(double rate) {
+  return window_of(rate, kMaxWindow) / 2;
 }
 
 }  // namespace krok::filter

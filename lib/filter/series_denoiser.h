@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 
 #include "filter/whittaker.h"
 
@@ -8,14 +10,19 @@
 
 namespace krok::filter {
 
+// The expected error with each smoother of a WhittakerLadder, up to a constant. Those of parts of a
+// motion may be added.
+using Risks = std::vector<double>;
+
 // Whittaker smoothers for a range of lambdas, to choose from for each group of series.
 class WhittakerLadder {
  public:
   explicit WhittakerLadder(int size);
 
-  // The smoother of least expected error for these columns together, by Mallows' Cp, where noise
-  // has this standard deviation in each value.
-  const Whittaker& choose(const Eigen::Ref<const Eigen::MatrixXd>& series, double noise) const;
+  // For these columns together, by Mallows' Cp, where noise has this standard deviation in each
+  // value.
+  Risks risks(const Eigen::Ref<const Eigen::MatrixXd>& series, double noise) const;
+  const Whittaker& choose(const Risks& risks) const;  // the smoother with the least
 
  private:
   std::vector<Whittaker> smoothers_;
@@ -34,7 +41,19 @@ double noise_deviation(const Eigen::Ref<const Eigen::MatrixXd>& series);
 //   no column shows above its noise may be plain in all of them.
 // - Whittaker smoothing of each group, its strength by Mallows' Cp.
 // Same bytes for any `jobs`.
-Eigen::MatrixXd without_noise(const Eigen::MatrixXd& series, double rate, int jobs);
+//
+// `known` (optional, [groups]): the risks that strengths are chosen by, instead of those of these
+// series. `found` (optional) gets them.
+struct GroupRisks {
+  Risks common, own;  // of the two estimates
+};
+Eigen::MatrixXd without_noise(const Eigen::MatrixXd& series, double rate, int jobs,
+                              std::span<const GroupRisks> known = {},
+                              std::vector<GroupRisks>* found = nullptr);
+
+// Frames from a window of without_noise() to the next, the first of which begins at frame 0, where
+// there are more frames than in a window.
+int window_step(double rate);
 
 // The same in a tenth of the time, and nearer for positions of joints: windows of up to 100 frames;
 // each group by the mean of Whittaker smoothers of many strengths, in each half second weighted by

@@ -33,7 +33,7 @@ struct BlockSize {
 
 // The frames of `source` after `change`, which needs their neighbours: blocks are read with their
 // overlap on `jobs` threads, changed one at a time, and the last two kept, so frames are to be read
-// about in order.
+// about in order: a block that is read again later is changed again.
 FrameSource changed_in_blocks(const FrameSource& source, BlockSize size, int jobs,
                               std::function<Status(FrameRun& run)> change);
 

@@ -155,9 +155,38 @@ Status remove_spikes(const Options& options, ToolContext& context,
   return {};
 }
 
+std::string noise_line(double angle, double distance, const std::string& spikes) {
+  return fmt::format("filtered: noise of {} and {}, {}", in_degrees(angle),
+                     in_millimetres(distance), spikes);
+}
+
+Status filter_noise_of_frames(const Options& options, ToolContext& context,
+                              std::span<const std::uint8_t> joints, Edit& edit) {
+  const auto changes = std::make_shared<Changes>(edit);
+  const auto watch = [changes](const FrameRun& before, const filter::NoiseRemoval& after) {
+    changes->add(before, after.clip, after.spikes);
+  };
+  auto made = filter::remove_noise(*edit.frames, joints, thread_count(context.jobs), watch);
+  if (!made) return made.error();
+  edit.note("filter",
+            {{"kind", "auto"},
+             {"noise_angle", to_degrees(made->angle)},
+             {"noise_distance", made->distance}},
+            "");
+  edit.complete_note([changes, angle = made->angle, distance = made->distance, &options, &context](
+                         Edit& written, Json& metrics) {
+    const std::string spikes = report_spikes(changes->spikes(), options, context, written, metrics);
+    std::string line = noise_line(angle, distance, spikes);
+    metrics["feet_moved"] = foot_change(changes->largest(), written, line);
+    return line;
+  });
+  return edit.take(std::move(made->frames));
+}
+
 Status filter_noise(const Options& options, ToolContext& context,
                     std::span<const std::uint8_t> joints, Edit& edit) {
   if (options.filter != Filter::by_noise) return {};
+  if (edit.frames) return filter_noise_of_frames(options, context, joints, edit);
   auto removal = filter::remove_noise(edit.clip, joints, thread_count(context.jobs));
   if (!removal) return removal.error();
   Json metrics;
@@ -166,8 +195,7 @@ Status filter_noise(const Options& options, ToolContext& context,
   metrics["noise_distance"] = removal->distance;
   const std::string spikes = report_spikes(removal->spikes, options, context, edit, metrics);
   std::swap(edit.clip, removal->clip);
-  std::string line = fmt::format("filtered: noise of {} and {}, {}", in_degrees(removal->angle),
-                                 in_millimetres(removal->distance), spikes);
+  std::string line = noise_line(removal->angle, removal->distance, spikes);
   metrics["feet_moved"] = foot_change(removal->clip, edit, line);
   edit.note("filter", std::move(metrics), std::move(line));
   return {};

@@ -307,7 +307,7 @@ Status Edit::take(Result<FrameSource> made) {
 }
 
 bool is_streamed(const Options& o) {
-  const bool cleans = o.filter == Filter::by_noise || o.plant || o.game_loop;
+  const bool cleans = o.plant || o.game_loop;
   const bool cuts = o.from || o.to || o.cycle != CycleFoot::none || !o.sequences.empty();
   const bool joins = o.speed != 1 || o.resample || !o.append.empty() || o.loop || o.rounds;
   return !cleans && !cuts && !joins && !o.in_place && !o.treadmill && !o.settle;

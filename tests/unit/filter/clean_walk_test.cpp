@@ -310,8 +310,7 @@ TEST(CleanWalk, SpikesInBlocksAsInOne) {
     const auto watch = [&](const FrameRun&, const SpikeRemoval& after) {
       spikes.insert(spikes.end(), after.spikes.begin(), after.spikes.end());
     };
-    const Clip made =
-        load(*remove_spikes(frames_of(clip), {}, {}, 2, watch, block), block < 100 ? 1 : 2).value();
+    const Clip made = load(*remove_spikes(frames_of(clip), {}, {}, 2, watch, block), 1).value();
     std::ranges::stable_sort(
         spikes, {}, [](const Spike& spike) { return std::tuple(spike.joint, spike.of_position); });
     ASSERT_EQ(spikes.size(), whole->spikes.size()) << block;
