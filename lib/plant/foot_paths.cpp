@@ -63,6 +63,26 @@ class FootSolver {
     return shift;
   }
 
+  // The shift that lets the foot roll without sliding beside its stays, at the height it has.
+  KnownCurve rolling() const {
+    KnownCurve shift(frames_);
+    for (const auto& stay_at : footing_.stay_at) {
+      for (std::size_t f = 0; f < frames_; ++f) {
+        if (stay_at[f] >= 0) shift.set(f, Vec3::Zero());
+      }
+    }
+    for (const Roll& roll : footing_.rolls) {
+      auto from = static_cast<std::size_t>(roll.from);
+      for (const int point : roll.points) {
+        const auto to = from + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(roll.step));
+        const Vec3 slid = track(point)[to] - track(point)[from];
+        shift.set(to, shift.values[from] - Vec3(slid.x(), 0, slid.z()));
+        from = to;
+      }
+    }
+    return shift;
+  }
+
   std::vector<Vec3> through(const KnownCurve& curve, double speed) const {
     const double cutoff = cutoff_against(jitter_of(curve), speed, clip_.rate);
     return curve_through(curve, {.rate = clip_.rate, .cutoff = cutoff});
@@ -251,6 +271,13 @@ FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
   solver.calm_ankle(path);
   path.shift = solver.through(solver.shifts(path.turn), solver.speed());
   return path;
+}
+
+FootPath rolling_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
+                      const Footing& footing) {
+  const FootSolver solver(clip, body, leg, footing);
+  return {std::vector<Vec3>(static_cast<std::size_t>(clip.frame_count()), Vec3::Zero()),
+          curve_through(solver.rolling(), {.rate = clip.rate})};
 }
 
 KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& leg,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "contacts/contacts.h"
+#include "contacts/gait_metrics.h"
 #include "plant/legs_internal.h"
 #include "plant/plant_feet.h"
 #include "plant/smooth_curve_internal.h"
@@ -15,6 +16,14 @@ namespace krok::plant {
 // Drift of standing heels and balls, in leg lengths, up to which they need no correction.
 inline constexpr double kMaxDrift = 0.0004;
 
+// Frames of a stance before its first stay or after its last one, in which the foot rolls over one
+// point after another.
+struct Roll {
+  int from = 0, step = 1;   // the frame of the stay that it begins beside, and the way from there
+  std::vector<int> points;  // [frames from there on], index into the leg's points
+  double slide = 0;         // metres along the ground, of these points as captured
+};
+
 // One leg's points over the frames, as captured, and the stays that fix them.
 struct Footing {
   std::vector<FootPart> parts;  // [points]
@@ -22,6 +31,7 @@ struct Footing {
   std::vector<std::vector<Vec3>> tracks;  // [points][frames], metres, world
   std::vector<FixedStay> stays;           // by point, then frame
   std::vector<std::vector<int>> stay_at;  // [points][frames], index into stays or -1
+  std::vector<Roll> rolls;
 
   std::size_t index_of(FootPart part) const;  // of parts
 };
@@ -34,6 +44,15 @@ std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
                                const std::vector<PointTrack>& tracks,
                                const std::optional<std::span<const Contact>>& contacts,
                                const std::vector<Footing>& before = {});
+
+// Finds what is left of stances, from strike to toe-off, beside the stays of heel and ball. In each
+// frame the point is in contact that is lowest, compared with a flat foot. Frames from where it has
+// slid by more than 0.07 of the leg are of a step.
+void find_rolls(std::span<const StanceTimes> stances, double rate, double leg_length,
+                Footing& footing);
+
+// The largest slide of all rolls, metres.
+double slide_of(const std::vector<Footing>& footings);
 
 // The diagonal of the box that positions of a stay span, metres.
 double drift_of(std::span<const Vec3> track, int first, int last);
@@ -56,6 +75,10 @@ FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
 // The same shift before it is interpolated over frames in which nothing stands.
 KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& leg,
                         const Footing& footing);
+
+// Leaves stays as they are and lets the foot roll where it rolls.
+FootPath rolling_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
+                      const Footing& footing);
 
 // The toes lie on the ground while the heel comes up: of the foot's turn they take the part about
 // the vertical.

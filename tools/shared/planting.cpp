@@ -89,6 +89,11 @@ Json planting_json(const PlantedFeet& planted, bool contacts_given) {
   json["stays"] = Json::array();
   for (const FixedStay& stay : planted.stays)
     json["stays"].push_back(stay_json(stay, planted.clip));
+  json["roll_slide_before"] = planted.roll_before;
+  json["roll_slide"] = planted.roll_after;
+  json["rolls"] = Json::array();
+  for (const FixedStay& roll : planted.rolls)
+    json["rolls"].push_back(stay_json(roll, planted.clip));
   return json;
 }
 
@@ -101,6 +106,10 @@ std::string planting_line(const PlantedFeet& planted) {
   }
   line += fmt::format(": heels and balls drift by up to {} instead of {}",
                       millimetres(planted.drift_after), millimetres(planted.drift_before));
+  if (!planted.rolls.empty()) {
+    line += fmt::format(", what rolls before and after by up to {} instead of {}",
+                        millimetres(planted.roll_after), millimetres(planted.roll_before));
+  }
   double tips = 0;  // about which a foot turns
   for (const FixedStay& stay : planted.stays) {
     if (stay.point.part == FootPart::tip) tips = std::max(tips, stay.drift_after);

@@ -50,7 +50,11 @@ TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   // In this one single frames of the feet jump by 4 mm while they stand and the rest of the leg
   // does not: the knee has to take that up.
   const bool jumps = name == "optitrack_arena_bvh-matlab/walk.bvh";
-  EXPECT_LE(measures.knee_99, jumps ? 2.3 : 1.2);
+  // In this one, whose feet slide most of all, knees work more while toes leave, but never as much
+  // as they do elsewhere.
+  const bool slides = name == "makehuman/02_02.bvh";
+  EXPECT_LE(measures.knee_99, jumps ? 2.3 : slides ? 1.7 : 1.2);
+  if (slides) EXPECT_LE(measures.knee_max, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Walks, PlantedCaptures,

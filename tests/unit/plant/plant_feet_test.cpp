@@ -180,6 +180,37 @@ TEST(PlantFeet, RollOverTheBallStays) {
   EXPECT_LT(now, captured + 0.03);
 }
 
+// From strike to toe-off one point or another of the foot is at rest. If this fails, feet slide
+// where heels come down and toes leave, which no contact covers.
+TEST(PlantFeet, StancesRollFromStrikeToToeOff) {
+  for (const unsigned seed : {0U, 2U, 8U, 11U}) {
+    const auto walk = samples::make_walk(test::varied_walk(seed));
+    ASSERT_TRUE(walk.ok());
+    const Clip input = test::with_skate(*walk, {.slide = 0.04, .body_jitter = 0, .seed = seed});
+    const PlantedFeet feet = planted(input);
+    ASSERT_TRUE(feet.stance_share);
+    EXPECT_GT(*feet.stance_share, 0.94) << seed;
+    EXPECT_GT(feet.roll_before, 0.002) << seed;
+    EXPECT_LT(feet.roll_after, 0.0005) << seed;
+    for (const FixedStay& roll : feet.rolls) {
+      Vec3 moved = test::place_of(feet.clip, roll.last, roll.point) -
+                   test::place_of(feet.clip, roll.first, roll.point);
+      moved.y() = 0;
+      EXPECT_LT(moved.norm(), 0.0005) << seed << " " << roll.first;
+    }
+  }
+}
+
+// In a run, feet that come down and leave fast are not held where they move.
+TEST(PlantFeet, RollsEndWhereAFootMoves) {
+  samples::WalkOptions options;
+  options.steps = 6;
+  const samples::Walk walk = samples::make_walk(options).value();
+  const PlantedFeet feet = planted(test::with_skate(walk, {.slide = 0.3, .body_jitter = 0}));
+  for (const FixedStay& roll : feet.rolls) EXPECT_LT(roll.drift_before, 0.08);
+  EXPECT_LT(feet.pelvis_lowered, 0.1);
+}
+
 TEST(PlantFeet, SkeletonsWithoutToes) {
   const Clip whole = test::with_skate(plain_walk(), {});
   for (const std::vector<std::string>& dropped :
