@@ -54,7 +54,9 @@ TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   // as they do elsewhere.
   const bool slides = name == "makehuman/02_02.bvh";
   EXPECT_LE(measures.knee_99, jumps ? 2.3 : slides ? 1.7 : 1.2);
-  if (slides) EXPECT_LE(measures.knee_max, 1);
+  if (slides) {
+    EXPECT_LE(measures.knee_max, 1);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Walks, PlantedCaptures,
