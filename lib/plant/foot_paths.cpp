@@ -63,24 +63,44 @@ class FootSolver {
     return shift;
   }
 
-  // The shift that lets the foot roll without sliding beside its stays, at the height it has.
-  KnownCurve rolling() const {
+  // The shift that lets the foot, turned so, roll without sliding beside its stays, at the height
+  // it has.
+  KnownCurve rolling(const std::vector<Vec3>& turn) const {
     KnownCurve shift(frames_);
-    for (const auto& stay_at : footing_.stay_at) {
-      for (std::size_t f = 0; f < frames_; ++f) {
-        if (stay_at[f] >= 0) shift.set(f, Vec3::Zero());
-      }
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (stands(f)) shift.set(f, Vec3::Zero());
     }
     for (const Roll& roll : footing_.rolls) {
       auto from = static_cast<std::size_t>(roll.from);
       for (const int point : roll.points) {
         const auto to = from + static_cast<std::size_t>(static_cast<std::ptrdiff_t>(roll.step));
-        const Vec3 slid = track(point)[to] - track(point)[from];
+        const Vec3 slid = turned(point, to, turn[to]) - turned(point, from, turn[from]);
+        const Vec3 lifted = turned(point, to, turn[to]) - track(point)[to];
         shift.set(to, shift.values[from] - Vec3(slid.x(), 0, slid.z()));
+        shift.values[to].y() = -lifted.y();
         from = to;
       }
     }
     return shift;
+  }
+
+  // Raises the heel further than captured where the foot rolls on ball or tip and the leg would be
+  // stretched: nobody crouches so that a toe may roll.
+  void lift_rolling_heel(FootPath& path) const {
+    if (ball_ < 0) return;
+    KnownCurve lift(frames_);
+    for (std::size_t f = 0; f < frames_; ++f) {
+      if (stands(f)) lift.set(f, Vec3::Zero());
+    }
+    for (const Roll& roll : footing_.rolls) {
+      int frame = roll.from;
+      for (const int point : roll.points) {
+        frame += roll.step;
+        const auto f = static_cast<std::size_t>(frame);
+        if (point != 0) lift.set(f, Vec3(needed_lift(path, f), 0, 0), Known::roughly);
+      }
+    }
+    turn_heel(lift, path);
   }
 
   std::vector<Vec3> through(const KnownCurve& curve, double speed) const {
@@ -101,14 +121,7 @@ class FootSolver {
         lift.set(f, Vec3(needed_lift(path, f), 0, 0), Known::roughly);
       }
     }
-    const std::vector<Vec3> angles =
-        curve_through(lift, {.rate = clip_.rate, .cutoff = kLiftCutoff});
-    for (std::size_t f = 0; f < frames_; ++f) {
-      const double angle = angles[f].x();
-      if (std::abs(angle) < 1e-9) continue;
-      path.turn[f] = rotation_vector(from_rotation_vector(angle * sideways(f)) *
-                                     from_rotation_vector(path.turn[f]));
-    }
+    turn_heel(lift, path);
   }
 
   // While heel or ball stands alone, jitter of the foot's orientation would move the ankle and
@@ -139,6 +152,21 @@ class FootSolver {
   }
 
  private:
+  bool stands(std::size_t f) const {
+    return std::ranges::any_of(footing_.stay_at, [f](const auto& at) { return at[f] >= 0; });
+  }
+
+  void turn_heel(const KnownCurve& lift, FootPath& path) const {
+    const std::vector<Vec3> angles =
+        curve_through(lift, {.rate = clip_.rate, .cutoff = kLiftCutoff});
+    for (std::size_t f = 0; f < frames_; ++f) {
+      const double angle = angles[f].x();
+      if (std::abs(angle) < 1e-9) continue;
+      path.turn[f] = rotation_vector(from_rotation_vector(angle * sideways(f)) *
+                                     from_rotation_vector(path.turn[f]));
+    }
+  }
+
   // The deviation of the captured ankle's jitter while heel or ball stands alone, metres.
   double jitter_of_ankle(const std::vector<double>& parts) const {
     KnownCurve captured(frames_);
@@ -276,8 +304,12 @@ FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
 FootPath rolling_path(const Clip& clip, const PlantedBody& body, const Leg& leg,
                       const Footing& footing) {
   const FootSolver solver(clip, body, leg, footing);
-  return {std::vector<Vec3>(static_cast<std::size_t>(clip.frame_count()), Vec3::Zero()),
-          curve_through(solver.rolling(), {.rate = clip.rate})};
+  FootPath path;
+  path.turn.assign(static_cast<std::size_t>(clip.frame_count()), Vec3::Zero());
+  path.shift = curve_through(solver.rolling(path.turn), {.rate = clip.rate});
+  solver.lift_rolling_heel(path);
+  path.shift = curve_through(solver.rolling(path.turn), {.rate = clip.rate});
+  return path;
 }
 
 KnownCurve needed_shift(const Clip& clip, const PlantedBody& body, const Leg& leg,

@@ -53,7 +53,7 @@ TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   // In this one, whose feet slide most of all, knees work more while toes leave, but never as much
   // as they do elsewhere.
   const bool slides = name == "makehuman/02_02.bvh";
-  EXPECT_LE(measures.knee_99, jumps ? 2.3 : slides ? 1.7 : 1.2);
+  EXPECT_LE(measures.knee_99, jumps ? 2.3 : slides ? 1.8 : 1.2);
   if (slides) {
     EXPECT_LE(measures.knee_max, 1);
   }
