@@ -10,6 +10,7 @@
 #include "math/types.h"
 #include "parametric/thin_out.h"
 #include "rbf/weight_function.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-fit/name_styles.h"
 
 namespace krok::cli::fit {
