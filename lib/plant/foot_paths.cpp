@@ -17,6 +17,7 @@ constexpr double kUsualLeg = 0.86;     // metres
 constexpr double kFootLength = 0.22;   // of the leg, heel to ball
 
 constexpr double kMaxLift = 15 * kRadiansPerDegree;
+constexpr double kMaxRollingLift = 30 * kRadiansPerDegree;
 constexpr double kMinLever = 0.2;  // of the way from ball to ankle
 constexpr double kLiftCutoff = 6;  // Hz
 
@@ -97,7 +98,7 @@ class FootSolver {
       for (const int point : roll.points) {
         frame += roll.step;
         const auto f = static_cast<std::size_t>(frame);
-        if (point != 0) lift.set(f, Vec3(needed_lift(path, f), 0, 0), Known::roughly);
+        if (point != 0) lift.set(f, Vec3(needed_lift(path, f, kMaxRollingLift), 0, 0));
       }
     }
     turn_heel(lift, path);
@@ -118,7 +119,7 @@ class FootSolver {
       if (stay(0, f)) {
         lift.set(f, Vec3::Zero());
       } else if (stay(ball_, f) || (tip_ >= 0 && stay(tip_, f))) {
-        lift.set(f, Vec3(needed_lift(path, f), 0, 0), Known::roughly);
+        lift.set(f, Vec3(needed_lift(path, f, kMaxLift), 0, 0), Known::roughly);
       }
     }
     turn_heel(lift, path);
@@ -202,7 +203,7 @@ class FootSolver {
 
   // The turn about the ball, radians, that brings the ankle as near to the hip as it was, or within
   // reach of a leg that is nearly straight.
-  double needed_lift(const FootPath& path, std::size_t f) const {
+  double needed_lift(const FootPath& path, std::size_t f, double most) const {
     const int frame = static_cast<int>(f);
     const Vec3 hip = joint_at(clip_, frame, leg_.upper).position;
     const Vec3 knee = joint_at(clip_, frame, leg_.lower).position;
@@ -218,7 +219,7 @@ class FootSolver {
       const Vec3 line = ball + arm - hip;
       const double nearer = -axis.cross(arm).dot(line.stableNormalized());
       if (nearer < kMinLever * arm.norm()) break;
-      angle = std::clamp(angle + (line.norm() - longest) / nearer, 0.0, kMaxLift);
+      angle = std::clamp(angle + (line.norm() - longest) / nearer, 0.0, most);
     }
     return angle;
   }
