@@ -485,7 +485,7 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
   const Outcome* const outcome = *solution;
   list_turns(mean_);
   for (std::size_t g = 0; g < goals_.size(); ++g) {
-    if (!fades_by_turns(g)) turns_[g] = mean_;
+    if (strengths_[g] > 0 && !fades_by_turns(g)) turns_[g] = mean_;
   }
   keep_upright();
   if (strength >= 1) excess = std::max(excess, excess_of_chains());

@@ -69,7 +69,7 @@ class FootSolver {
   KnownCurve rolling(const std::vector<Vec3>& turn) const {
     KnownCurve shift(frames_);
     for (std::size_t f = 0; f < frames_; ++f) {
-      if (stands(f)) shift.set(f, Vec3::Zero());
+      if (in_stay(f)) shift.set(f, Vec3::Zero());
     }
     for (const Roll& roll : footing_.rolls) {
       auto from = static_cast<std::size_t>(roll.from);
@@ -91,7 +91,7 @@ class FootSolver {
     if (ball_ < 0) return;
     KnownCurve lift(frames_);
     for (std::size_t f = 0; f < frames_; ++f) {
-      if (stands(f)) lift.set(f, Vec3::Zero());
+      if (in_stay(f)) lift.set(f, Vec3::Zero());
     }
     for (const Roll& roll : footing_.rolls) {
       int frame = roll.from;
@@ -153,7 +153,7 @@ class FootSolver {
   }
 
  private:
-  bool stands(std::size_t f) const {
+  bool in_stay(std::size_t f) const {
     return std::ranges::any_of(footing_.stay_at, [f](const auto& at) { return at[f] >= 0; });
   }
 

@@ -63,7 +63,7 @@ struct PlantedFeet {
 // - Jitter that feet and pelvis share is taken out of the whole body: a leg between a fixed foot
 //   and a pelvis that jitters would shake.
 // - A leg that is nearly straight is not stretched further than captured: the heel comes up further
-//   while ball or tip stand or roll (15 and 30 degrees at most), then the pelvis is lowered.
+//   in stays of ball or tip and in rolls (15 and 30 degrees at most), then the pelvis is lowered.
 // - Legs are solved by solve_two_bone(). Bend that is added is about the knee's usual axis, also to
 //   a knee that is straight or bent backwards.
 //

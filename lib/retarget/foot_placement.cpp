@@ -253,13 +253,13 @@ LegPlacement::Stances LegPlacement::find_stances(const Clip& source,
       f = end;
     }
   };
-  // While both stand, either may be placed: from one to the other by then.
+  // While both are in contact, either may be placed: from one to the other by then.
   for_runs(1, [&](int begin, int end, double before, double after) {
     for (int f = begin; f < end; ++f) {
       rolls[at(f)] = before + (after - before) * smooth_step(begin - 1, end, f);
     }
   });
-  // In the air from and to what stands before and after, without a jump.
+  // In the air from and to what is in contact before and after, without a jump.
   for_runs(0, [&](int begin, int end, double before, double after) {
     if (begin > 0) before -= rolls[at(begin)];
     if (end < frames) after -= rolls[at(end - 1)];

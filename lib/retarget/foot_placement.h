@@ -17,12 +17,12 @@
 //
 // The heel's goal is the source's heel, scaled, on the floor; while the source's foot is rolled
 // over its ball, the ball is placed instead: the joint of the toes, which lie on the floor, where
-// both have one. The ankle's goal follows from it, so a planted foot
-// stays still whatever the height of the ankle and the length of the foot. Then the foot is raised
-// if one of its joints would be deeper in the floor than the source's. Two-bone inverse kinematics
-// moves the ankle there, weighted by the foot's stance; knees keep the plane they bend in, feet
-// their orientation. A leg that needs no correction beyond rounding is left as it is. If legs are
-// too short for their goals, the hips are lowered beforehand.
+// both have one. The ankle's goal follows from it, so a planted foot stays still whatever the
+// height of the ankle and the length of the foot. Then the foot is raised if one of its joints
+// would be deeper in the floor than the source's. Two-bone inverse kinematics moves the ankle
+// there, weighted by the foot's stance; knees keep the plane they bend in, feet their orientation.
+// A leg that needs no correction beyond rounding is left as it is. If legs are too short for their
+// goals, the hips are lowered beforehand.
 
 namespace krok::retarget {
 
@@ -53,7 +53,7 @@ int softening_reach(double rate);
 // on either side, averaged over as many.
 std::vector<double> softened(const std::vector<double>& values, int reach);
 
-// How a foot stands in a frame, each from 0 to 1.
+// The stance of a foot in a frame, each from 0 to 1.
 struct FootStance {
   double standing = 0;  // how far its place is kept
   double on_ball = 0;   // whether the ball is placed, or the heel (0)
@@ -63,8 +63,8 @@ struct FootStance {
 class LegPlacement {
  public:
   // `turns` aligns the target's reference pose, `scale` is lengths of the target over those of the
-  // source. `heel` is what of the source's foot stands where its heel does, in the ankle's frame;
-  // without it a typical one. Empty if either skeleton lacks a joint of this leg.
+  // source. `heel` is the heel of the source's foot in the ankle's frame, metres, for which its
+  // contacts are; without it a typical one. Empty if either skeleton lacks a joint of this leg.
   static std::optional<LegPlacement> create(const Actor& source, const Actor& target,
                                             std::span<const Quat> turns, double scale,
                                             const Floor& source_floor, const Floor& target_floor,
@@ -82,7 +82,7 @@ class LegPlacement {
     std::vector<FootStance> feet;
     std::vector<double> bearing;
   };
-  // Heel and ball are placed alike from here on where both of them stand, however the foot is
+  // Heel and ball are placed alike from here on where both are in contact, however the foot is
   // pitched there.
   Stances find_stances(const Clip& source, std::span<const Contact> contacts);
 

@@ -59,9 +59,11 @@ class MotionReader {
   }
 
   Status read_motions() {
+    std::error_code unknown;
     for (const ExampleEntry& entry : description_.examples) {
       std::vector<std::string> paths = {place_of(entry.clip)};
-      if (has_wildcards(entry.clip)) {
+      // A file may be called take[1].bvh.
+      if (has_wildcards(entry.clip) && !std::filesystem::exists(paths.front(), unknown)) {
         auto found = find_files(paths.front());
         if (!found) return found.error();
         paths = *std::move(found);

@@ -173,14 +173,14 @@ class Reader {
 
   // Of walks that all go straight on, the turn says nothing.
   Status leave_out_what_hardly_varies() {
-    constexpr double kLeastTurn = 1 * kRadiansPerDegree, kLeastLength = 0.01;  // metres
+    constexpr double kMinTurn = 1 * kRadiansPerDegree, kMinLength = 0.01;  // metres
     std::vector<ParameterEntry>& entries = input_.description.parameters;
     std::vector<ParameterEntry> kept;
     for (std::size_t d = 0; d < entries.size(); ++d) {
       const auto value = [d](const parametric::Example& e) { return e.parameters[d]; };
       const auto [least, most] = std::ranges::minmax(input_.library.examples, {}, value);
       const bool turn = entries[d].name == "turn";
-      if (value(most) - value(least) > (turn ? kLeastTurn : kLeastLength)) {
+      if (value(most) - value(least) > (turn ? kMinTurn : kMinLength)) {
         kept.push_back(entries[d]);
       }
     }

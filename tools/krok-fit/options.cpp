@@ -55,10 +55,9 @@ void declare(CommandOptions& command, Options& options) {
   command
       .add_option(
           "library IN", options.inputs,
-          "Library description (JSON): examples and parameters; or motions, or a folder of them, "
-          "of "
-          "whose steps, mirrored ones too, a library by length and turn is made; or sculpted poses "
-          "of a model (formats/correctives/SPEC.md), of which correctives for krok-skin are made")
+          "Library description (JSON): examples and parameters; or motions, or a folder of them: "
+          "their steps, mirrored ones too, become a library by length and turn; or sculpted poses "
+          "of a model (formats/correctives/SPEC.md), which become correctives for krok-skin")
       .required();
   command.add_flag(
       "--keep-going", options.keep_going,

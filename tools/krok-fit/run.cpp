@@ -194,8 +194,9 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  if (options.inputs.size() == 1 && describes_poses(options.first()))
+  if (options.inputs.size() == 1 && describes_poses(options.first())) {
     return run_correctives(options, context);
+  }
   std::error_code unknown;
   if (options.first() != "-" && !std::filesystem::exists(options.first(), unknown)) {
     return Error("file-missing", "no such file", "check the path").in_file(options.first());

@@ -273,8 +273,9 @@ Result<int> run(const Options& options, ToolContext& context) {
     Json entry = {{"path", path}};
     if (description) {
       entry.update(description->json);
-      if (in_full && !context.quiet)
+      if (in_full && !context.quiet) {
         context.print((first ? "" : "\n") + to_text(path, *description));
+      }
       first = false;
     } else {
       failed = true;

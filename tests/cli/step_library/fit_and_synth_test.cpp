@@ -356,7 +356,7 @@ TEST_F(StepLibrary, ChartsAreWritten) {
 }
 
 // A folder of walks needs no description: its library is the one by length and, where they turn, by
-// turn, of both feet.
+// turn, of both feet; files may be called as patterns are.
 TEST_F(StepLibrary, AFolderOfWalksNeedsNoDescription) {
   const auto fitted = [&](const std::string& name) {
     const ToolRun run = run_tool("krok-fit", {path("walks"), "-o", path(name), "--json"});
@@ -377,7 +377,7 @@ TEST_F(StepLibrary, AFolderOfWalksNeedsNoDescription) {
   for (const char* turn : {"-15", "15"}) {
     const ToolRun made =
         run({test::make_walk(), "--steps", "4", "--turn", std::string(turn) + "deg", "-q", "-o",
-             path("walks/bend" + std::string(turn) + ".bvh")});
+             path("walks/bend[" + std::string(turn) + "].bvh")});
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   const json bent = fitted("bent.steps");
