@@ -53,13 +53,17 @@ namespace {
 // smoothly.
 constexpr double kSudden = 30;
 
+// Rows of x, y, z and 0, which fill whole registers.
+template <int kRows>
+using Rows = Eigen::Matrix<double, kRows, 4, Eigen::RowMajor>;
+
 // Solutions of positive semidefinite systems, 0 for what they leave open: of unknowns 0, 1, 2 and
 // one more. By L D L^T, of which the first three columns are shared; Eigen's own takes several
 // times as long for so small a one.
 class Systems {
  public:
-  Systems(Eigen::Matrix<double, 5, 5> a, Eigen::Matrix<double, 5, 3> b)
-      : a_(std::move(a)), b_(std::move(b)), least_(1e-14 * a_.trace()) {
+  Systems(const Eigen::Matrix<double, 5, 5>& a, const Rows<5>& b)
+      : a_(a), b_(b), least_(1e-14 * a_.trace()) {
     for (int i = 0; i < 3; ++i) {
       const double inverse = a_(i, i) > least_ ? 1 / a_(i, i) : 0;
       for (int j = i + 1; j < 5; ++j) {
@@ -72,8 +76,8 @@ class Systems {
     }
   }
 
-  Eigen::Matrix<double, 4, 3> with(int last) const {
-    Eigen::Matrix<double, 4, 3> x;
+  Rows<4> with(int last) const {
+    Rows<4> x;
     x.row(3) = b_.row(last) * (a_(last, last) > least_ ? 1 / a_(last, last) : 0);
     for (int i = 2; i >= 0; --i) {
       x.row(i) = b_.row(i) - a_(last, i) * x.row(3);
@@ -84,7 +88,7 @@ class Systems {
 
  private:
   Eigen::Matrix<double, 5, 5> a_;  // the lower half
-  Eigen::Matrix<double, 5, 3> b_;
+  Rows<5> b_;
   double least_;
 };
 
@@ -107,7 +111,8 @@ class Pieces {
     }
     for (int f = first; f <= last; ++f) {
       const std::size_t index = static_cast<std::size_t>(f - first);
-      const Vec3 off = track[static_cast<std::size_t>(f)] - middle;
+      const Vec3 off3 = track[static_cast<std::size_t>(f)] - middle;
+      const Vec4 off(off3.x(), off3.y(), off3.z(), 0);
       const double t = (f - centre_) / reach_;
       Sums& next = upto_[index + 1];
       next = upto_[index];
@@ -138,7 +143,7 @@ class Pieces {
     const Sums all = shifted(total, moment, 2), part = shifted(moving, moment, kPowers - 1);
     constexpr std::array<int, 5> kExponents = {0, 1, 2, 3, 1};
     Eigen::Matrix<double, 5, 5> moments;
-    Eigen::Matrix<double, 5, 3> sums;
+    Rows<5> sums;
     for (int i = 0; i < 5; ++i) {
       for (int j = std::max(i, 2); j < 5; ++j) {
         moments(j, i) = part.powers[kExponents[at(i)] + kExponents[at(j)]];
@@ -150,19 +155,9 @@ class Pieces {
     // One row more, which holds the drift down: a point that stays drifts only where its place on
     // the foot is not quite right, and jitter must not be taken for that.
     moments(1, 1) = all.powers[2] + 4 * stiffness_ * stiffness_;
-    const Eigen::Matrix<double, 5, 5> full = moments.selfadjointView<Eigen::Lower>();
-    const Systems systems(full, sums);
-    double least = 0;
-    for (const bool sudden : {false, true}) {
-      const std::array<int, 4> used = {0, 1, 2, sudden ? 4 : 3};
-      const Eigen::Matrix4d normal = full(used, used);
-      const Eigen::Matrix<double, 4, 3> right = sums(used, Eigen::all);
-      const Eigen::Matrix<double, 4, 3> fit = systems.with(used[3]);
-      // Written so that errors of the fit count by their squares.
-      const double left = squares_ + fit.cwiseProduct(normal * fit - 2 * right).sum();
-      least = sudden ? std::min(least, kSudden * left) : left;
-    }
-    return least;
+    const Systems systems(moments, sums);
+    return std::min(left_by(systems.with(3), 3, moments, sums),
+                    kSudden * left_by(systems.with(4), 4, moments, sums));
   }
 
  private:
@@ -170,8 +165,22 @@ class Pieces {
   // Of t^k, and of t^k times the place, over some frames.
   struct Sums {
     Eigen::Array<double, kPowers, 1> powers = Eigen::Array<double, kPowers, 1>::Zero();
-    Eigen::Matrix<double, kOffPowers, 3> offs = Eigen::Matrix<double, kOffPowers, 3>::Zero();
+    Rows<kOffPowers> offs = Rows<kOffPowers>::Zero();
   };
+
+  // The sum of squares that a fit leaves by unknowns 0, 1, 2 and `last`, written so that errors of
+  // the fit count by their squares. `moments`: the lower half.
+  double left_by(const Rows<4>& fit, int last, const Eigen::Matrix<double, 5, 5>& moments,
+                 const Rows<5>& sums) const {
+    Vec4 left = Vec4::Zero();
+    for (int i = 0; i < 4; ++i) {
+      const int row = i < 3 ? i : last;
+      Vec4 half = 0.5 * moments(row, row) * fit.row(i) - sums.row(row);
+      for (int j = 0; j < i; ++j) half += moments(row, j) * fit.row(j);
+      left += 2 * fit.row(i).transpose().cwiseProduct(half);
+    }
+    return squares_ + left.sum();
+  }
 
   // The sums of u^k up to u^`most` from those of t^k, where t = (f - centre) / reach: Horner's
   // scheme for the shift of a polynomial.
@@ -233,18 +242,20 @@ double jitter_of(const std::vector<Vec3>& track) {
   // is small. The lower quartile of |x| of a Gaussian is 0.3186 of its deviation, that of the
   // length of two is sqrt(2 ln(4/3)); feet rest for more than a quarter of the time.
   if (track.size() < 4) return 0;
-  std::vector<double> level, upright;
+  std::vector<double> level, upright;  // squares; sizes
+  level.reserve(track.size()), upright.reserve(track.size());
   for (std::size_t f = 3; f < track.size(); ++f) {
     const Vec3 third = track[f] - 3 * track[f - 1] + 3 * track[f - 2] - track[f - 3];
-    level.push_back(std::sqrt(third.x() * third.x() + third.z() * third.z()));
+    level.push_back(third.x() * third.x() + third.z() * third.z());
     upright.push_back(std::abs(third.y()));
   }
   const auto quartile = [](std::vector<double>& sizes) {
     const auto part = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 4);
     std::nth_element(sizes.begin(), part, sizes.end());
-    return *part / std::sqrt(20.0);
+    return *part;
   };
-  return std::max(quartile(level) / std::sqrt(2 * std::log(4.0 / 3)), quartile(upright) / 0.3186);
+  return std::max(std::sqrt(quartile(level)) / std::sqrt(20.0) / std::sqrt(2 * std::log(4.0 / 3)),
+                  quartile(upright) / std::sqrt(20.0) / 0.3186);
 }
 
 double cutoff_for(double jitter, double speed, double rate) {

@@ -272,8 +272,10 @@ bool jumps_at_start(std::span<const Vec3> track, double leg_length) {
 std::vector<Vec3> track_of(const Clip& clip, const SolePoint& point, double leg_length) {
   std::vector<Vec3> track;
   track.reserve(static_cast<std::size_t>(clip.frame_count()));
+  const bool at_joint = point.offset.isZero(0);
   for (int f = 0; f < clip.frame_count(); ++f) {
-    track.push_back(joint_at(clip, f, point.joint) * point.offset);
+    track.push_back(at_joint ? position(clip, f, point.joint)
+                             : joint_at(clip, f, point.joint) * point.offset);
   }
   if (jumps_at_start(track, leg_length)) track[0] = 2 * track[1] - track[2];
   return track;

@@ -55,7 +55,11 @@ void find_bones(const Series& series, MotionFaults& out) {
   const auto below = subtree(skeleton, series.carrier);
   const bool roles = series.roles.humanoid;
   std::vector<Finding> found;
-  std::vector<float> lengths(at(series.frames));
+  struct Bone {
+    int joint, parent;
+    float low = INFINITY, high = 0;  // square metres
+  };
+  std::vector<Bone> bones;
   for (int j = 0; j < series.joints; ++j) {
     const int parent = skeleton.parents[at(j)];
     if (parent < 0 || j == series.carrier || below[at(j)] == 0 || skeleton.end_sites[at(j)] != 0 ||
@@ -63,15 +67,28 @@ void find_bones(const Series& series, MotionFaults& out) {
          !(is_of_body(series.roles.roles[at(j)]) && is_of_body(series.roles.roles[at(parent)])))) {
       continue;
     }
+    bones.push_back({j, parent});
+  }
+  for (int f = 0; f < series.frames; ++f) {
+    const auto places = series.clip.frame_positions(f);
+    for (Bone& bone : bones) {
+      const float square = (places[at(bone.joint)] - places[at(bone.parent)]).squaredNorm();
+      bone.low = std::min(bone.low, square), bone.high = std::max(bone.high, square);
+    }
+  }
+  std::vector<float> lengths(at(series.frames));
+  for (const auto& [j, parent, low_square, high_square] : bones) {
+    const float low = std::sqrt(low_square), high = std::sqrt(high_square);
+    const double range = high - low;
+    if (range < kMinChange * series.scale) continue;
     double sum = 0;
     for (int f = 0; f < series.frames; ++f) {
       const auto places = series.clip.frame_positions(f);
       lengths[at(f)] = (places[at(j)] - places[at(parent)]).norm();
       sum += lengths[at(f)];
     }
-    const auto [low, high] = std::ranges::minmax(lengths);
-    const double mean = sum / series.frames, range = high - low;
-    if (mean < kShortestBone * series.scale || range < kMinChange * series.scale) continue;
+    const double mean = sum / series.frames;
+    if (mean < kShortestBone * series.scale) continue;
     Finding finding = finding_of(Rule::bone_length, series, 100 * range / mean);
     if (finding.value <= finding.threshold) continue;
     finding.joint = j;
@@ -93,9 +110,11 @@ void find_bones(const Series& series, MotionFaults& out) {
 // point. From places alone, so that reference poses and axes of joints do not matter.
 double knee_bent_forwards(std::span<const Vec3f> places, const LegJoints& leg) {
   const auto place = [&](int joint) -> Vec3 { return places[at(joint)].cast<double>(); };
-  const Vec3 thigh = (place(leg.lower) - place(leg.upper)).normalized();
-  const Vec3 shin = (place(leg.foot) - place(leg.lower)).normalized();
+  Vec3 thigh = place(leg.lower) - place(leg.upper), shin = place(leg.foot) - place(leg.lower);
   const Vec3 foot = place(leg.toes) - place(leg.foot);
+  // Nearly all bend backwards: bend.dot(forwards) below, but for its size.
+  if (foot.dot(shin) * thigh.dot(shin) < foot.dot(thigh) * shin.squaredNorm()) return 0;
+  thigh.normalize(), shin.normalize();
   const Vec3 forwards = (foot - foot.dot(shin) * shin).normalized();
   const Vec3 bend = shin.dot(thigh) * shin - thigh;  // at a right angle to the shin, too
   if (!(bend.norm() > 1e-6) || bend.normalized().dot(forwards) < kForwards) return 0;

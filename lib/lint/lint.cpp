@@ -54,28 +54,34 @@ Series::Series(const Clip& motion, const RoleMap& role_map, const MotionOptions&
   scale = legs > 0 ? legs / kUsualLeg : 1;
   carrier = std::max(0, carrying_joint(roles));
   turns.assign(at(joints) * at(frames), Vec3f::Zero());
+  largest.assign(at(joints), 0.0F);
   steps.assign(at(frames), Vec3f::Zero());
   moved.assign(at(frames), 0.0F);
-  std::vector<Quatf> before(at(joints)), now(at(joints));
-  for (int f = 0; f < frames; ++f) {
-    const auto orientations = clip.frame_orientations(f);
+  constexpr int kBlock = 64;  // frames that the caches hold
+  std::vector<Quatf> before(at(joints));
+  for (int begin = 0; begin < frames; begin += kBlock) {
+    const int end = std::min(frames, begin + kBlock);
     for (int j = 0; j < joints; ++j) {
       const int parent = clip.skeleton.parents[at(j)];
-      now[at(j)] = parent < 0 ? orientations[at(j)]
-                              : orientations[at(parent)].conjugate() * orientations[at(j)];
-    }
-    if (f > 0) {
-      float most = 0;
-      for (int j = 0; j < joints; ++j) {
-        const Vec3f turn = turn_between(before[at(j)], now[at(j)]);
-        turns[at(j) * at(frames) + at(f)] = turn;
-        most = std::max(most, turn.squaredNorm());
+      Quatf last = before[at(j)];
+      float most = largest[at(j)];
+      for (int f = begin; f < end; ++f) {
+        const Quatf* pose = &clip.orientations[at(f) * at(joints)];
+        const Quatf now = parent < 0 ? pose[j] : pose[parent].conjugate() * pose[j];
+        if (f > 0) {
+          const Vec3f turn = turn_between(last, now);
+          turns[at(j) * at(frames) + at(f)] = turn;
+          most = std::max(most, turn.squaredNorm());
+          moved[at(f)] = std::max(moved[at(f)], turn.squaredNorm());
+        }
+        last = now;
       }
-      steps[at(f)] =
-          clip.frame_positions(f)[at(carrier)] - clip.frame_positions(f - 1)[at(carrier)];
-      moved[at(f)] = std::sqrt(std::max(most, steps[at(f)].squaredNorm()));
+      before[at(j)] = last, largest[at(j)] = most;
     }
-    std::swap(before, now);
+  }
+  for (int f = 1; f < frames; ++f) {
+    steps[at(f)] = clip.frame_positions(f)[at(carrier)] - clip.frame_positions(f - 1)[at(carrier)];
+    moved[at(f)] = std::sqrt(std::max(moved[at(f)], steps[at(f)].squaredNorm()));
   }
 }
 

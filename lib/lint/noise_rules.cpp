@@ -41,30 +41,49 @@ Windows windows_of(const Series& series) {
   return windows;
 }
 
-// Details of one joint, [windows].
-void look_at(std::span<const Vec3f> turns, const Windows& windows, std::vector<float>& sizes,
+// What the frames of one joint add to their windows, [frames]; accelerations are changes of turns.
+struct Sizes {
+  std::vector<float> turn, acceleration, product;  // squares, and products of successive ones
+  std::vector<float> noise;                        // squares of fourth differences of rotations
+  std::vector<float> sorted;
+};
+
+// Details of one joint, [windows]; without noise where it is slower than `still`, rad a frame.
+void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, Sizes& sizes,
              std::vector<Detail>& details) {
+  for (auto* list : {&sizes.turn, &sizes.acceleration, &sizes.product, &sizes.noise}) {
+    list->resize(turns.size());
+  }
+  Vec3f one = Vec3f::Zero(), two = Vec3f::Zero();
+  for (std::size_t f = 1; f < turns.size(); ++f) {
+    const Vec3f now = turns[f] - turns[f - 1];
+    sizes.turn[f] = turns[f].squaredNorm();
+    sizes.acceleration[f] = now.squaredNorm();
+    sizes.product[f] = now.dot(one);
+    sizes.noise[f] = (now - 2 * one + two).squaredNorm();
+    two = one, one = now;
+  }
   details.resize(at(windows.count));
   for (int w = 0; w < windows.count; ++w) {
-    const auto part = turns.subspan(at(windows.first(w)), at(windows.length));
-    sizes.clear();
-    double squares = 0, products = 0, accelerations = 0;
-    Vec3f one = Vec3f::Zero(), two = Vec3f::Zero();
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      squares += part[i].squaredNorm();
-      if (i == 0) continue;
-      const Vec3f now = part[i] - part[i - 1];
-      accelerations += now.squaredNorm();
-      products += now.dot(one);
-      if (i >= 3) sizes.push_back((now - 2 * one + two).squaredNorm());
-      two = one, one = now;
+    const std::size_t first = at(windows.first(w)), end = first + at(windows.length);
+    double squares = sizes.turn[first], products = 0, accelerations = 0;
+    for (std::size_t f = first + 1; f < end; ++f) {
+      squares += sizes.turn[f];
+      accelerations += sizes.acceleration[f];
+      products += f > first + 1 ? sizes.product[f] : 0;
     }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::ranges::nth_element(sizes, middle);
-    Detail& detail = details[at(w)];
-    detail.noise = static_cast<float>(std::sqrt(*middle / kFourthDifference) / kMedianOfNorm);
+    Detail& detail = details[at(w)] = {};
     detail.correlation = accelerations > 0 ? static_cast<float>(products / accelerations) : 1.0F;
-    detail.speed = static_cast<float>(std::sqrt(squares / static_cast<double>(part.size())));
+    detail.speed = static_cast<float>(std::sqrt(squares / windows.length));
+    if (detail.speed < still) continue;
+    const auto place = [&](std::size_t f) {
+      return sizes.noise.begin() + static_cast<std::ptrdiff_t>(f);
+    };
+    sizes.sorted.assign(place(first + 3), place(end));
+    const auto middle =
+        sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
+    std::ranges::nth_element(sizes.sorted, middle);
+    detail.noise = static_cast<float>(std::sqrt(*middle / kFourthDifference) / kMedianOfNorm);
   }
 }
 
@@ -167,11 +186,15 @@ void find_noise_faults(const Series& series, MotionFaults& out) {
   if (series.has(Rule::jitter) || series.has(Rule::over_smooth)) {
     const Windows windows = windows_of(series);
     DetailOfBody body(windows.count);
-    std::vector<float> sizes;
+    // Noise is at most 1.14 times the speed, so slower joints have none that counts.
+    const float still = std::min(
+        kMoves, static_cast<float>(series.threshold(Rule::jitter) * kRadiansPerDegree / 1.2));
+    Sizes sizes;
     std::vector<Detail> details;
     for (int j = 0; j < series.joints; ++j) {
+      if (std::sqrt(series.largest[at(j)]) < 0.99F * still) continue;
       if (series.clip.skeleton.end_sites[at(j)] != 0) continue;
-      look_at(series.turns_of(j), windows, sizes, details);
+      look_at(series.turns_of(j), windows, still, sizes, details);
       // Toes give way to the ground and spring back, as fast as noise.
       const Role role = series.roles.roles[at(j)];
       if (role != Role::left_toes && role != Role::right_toes) {

@@ -29,28 +29,30 @@ struct Pop {
 // largest of its own block and those beside it, so that a gesture's beginning counts.
 class UsualSize {
  public:
-  UsualSize(std::span<const float> sizes, int block) : block_(block) {
-    std::vector<float> some;
-    for (std::size_t begin = 0; begin < sizes.size(); begin += at(block)) {
-      const auto part = sizes.subspan(begin, std::min(at(block), sizes.size() - begin));
-      some.assign(part.begin(), part.end());
-      const auto middle = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
-      std::ranges::nth_element(some, middle);
-      medians_.push_back(*middle);
-    }
-  }
-  float at_frame(int frame) const {
+  UsualSize(std::span<const float> sizes, int block)
+      : sizes_(sizes), block_(block), medians_((sizes.size() + at(block) - 1) / at(block), -1.0F) {}
+  float at_frame(int frame) {
     const int own = frame / block_, last = static_cast<int>(medians_.size()) - 1;
     float most = 0;
     for (int b = std::max(0, own - 1); b <= std::min(last, own + 1); ++b) {
+      if (medians_[at(b)] < 0) medians_[at(b)] = median_of(at(b * block_));
       most = std::max(most, medians_[at(b)]);
     }
     return most;
   }
 
  private:
+  float median_of(std::size_t begin) {
+    const auto part = sizes_.subspan(begin, std::min(at(block_), sizes_.size() - begin));
+    some_.assign(part.begin(), part.end());
+    const auto middle = some_.begin() + static_cast<std::ptrdiff_t>(some_.size() / 2);
+    std::ranges::nth_element(some_, middle);
+    return *middle;
+  }
+
+  std::span<const float> sizes_;
   int block_;
-  std::vector<float> medians_;
+  std::vector<float> medians_, some_;  // medians: -1 before they are asked for
 };
 
 // What a jump of size 1 does to the accelerations of successive frames, and how the jump must stand
@@ -88,7 +90,7 @@ class PopFinder {
     std::vector<Pop> pops;
     if (most < threshold_ * threshold_) return pops;
     for (float& size : sizes_) size = std::sqrt(size);
-    const UsualSize usual(sizes_, block_);
+    UsualSize usual(sizes_, block_);
     int last = -kNeighbours;
     float last_score = 0;
     for (int f = 1; f + 1 < frames; ++f) {
@@ -174,10 +176,7 @@ std::vector<int> moving(const Series& series) {
   std::vector<int> joints;
   for (int j = 0; j < series.joints; ++j) {
     if (series.clip.skeleton.end_sites[at(j)] != 0) continue;
-    const auto turns = series.turns_of(j);
-    if (std::ranges::any_of(turns, [](const Vec3f& t) { return t.squaredNorm() > 1e-6F; })) {
-      joints.push_back(j);
-    }
+    if (series.largest[at(j)] > 1e-6F) joints.push_back(j);
   }
   return joints;
 }
@@ -201,6 +200,7 @@ void find_flips(const Series& series, int joint, std::span<const Vec3f> turns,
   // Turns are twice the sine of half the angle.
   const double degrees = std::min(179.0, series.threshold(Rule::flip));
   const auto limit = static_cast<float>(2 * std::sin(degrees * kRadiansPerDegree / 2));
+  if (std::sqrt(series.largest[at(joint)]) < limit) return;
   for (int f = 1; f < series.frames; ++f) {
     const float size = turns[at(f)].norm();
     if (size < limit) continue;
@@ -235,16 +235,16 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
     if (path) finding.detail = "path of the hips";
     (pop.kind == PopKind::kink ? kinks : pops).push_back(std::move(finding));
   };
+  const auto limit = static_cast<float>(degrees * kRadiansPerDegree);
   for (const int j : joints) {
     const auto turns = series.turns_of(j);
     if (series.has(Rule::flip)) find_flips(series, j, turns, flips);
     // Toes spring back within a frame or two when they leave the ground.
     const Role role = series.roles.roles[at(j)];
     if (!series.has(Rule::pop) || role == Role::left_toes || role == Role::right_toes) continue;
-    for (const Pop& pop :
-         pops_of(turns, static_cast<float>(degrees * kRadiansPerDegree), block, sizes)) {
-      add(pop, j, false);
-    }
+    // A change of speed is at most twice the largest speed.
+    if (4.001F * series.largest[at(j)] < limit * limit) continue;
+    for (const Pop& pop : pops_of(turns, limit, block, sizes)) add(pop, j, false);
   }
   if (series.has(Rule::pop)) {
     for (const Pop& pop :

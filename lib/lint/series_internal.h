@@ -24,8 +24,9 @@ struct Series {
   // twice the vector part of its quaternion, shape [joints x frames], joint by joint; the first of
   // each is zero.
   std::vector<Vec3f> turns;
-  std::vector<Vec3f> steps;  // [frames] of the carrier, metres; the first is zero
-  std::vector<float> moved;  // [frames], the largest turn (rad) or step (m) of all joints
+  std::vector<float> largest;  // [joints], squares of the largest turns
+  std::vector<Vec3f> steps;    // [frames] of the carrier, metres; the first is zero
+  std::vector<float> moved;    // [frames], the largest turn (rad) or step (m) of all joints
 
   Series(const Clip& clip, const RoleMap& roles, const MotionOptions& options);
   std::span<const Vec3f> turns_of(int joint) const;

@@ -1,6 +1,7 @@
 #include "tools/krok-lint/linted_file.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,6 +128,11 @@ krok::lint::MotionOptions judging(const Options& options, const krok::lint::Sett
 
 std::vector<LintedFile> lint_all(const Options& options, const krok::lint::MotionOptions& how,
                                  const io::FindRoles& find_roles, ToolContext& context) {
+  // Each motion takes the memory of the one before: the system is slow to take it back and give it
+  // again, page by page.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 512 << 20);
+  mallopt(M_TOP_PAD, 16 << 20);
   std::vector<LintedFile> files(options.inputs.size());
   context.progress->begin("looking for faults", files.size());
   for (std::size_t begin = 0; begin < files.size(); begin += kOpenFiles) {
