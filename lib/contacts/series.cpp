@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "contacts/series_internal.h"
 #include "core/index.h"
@@ -53,43 +54,76 @@ namespace {
 // smoothly.
 constexpr double kSudden = 30;
 
-// Rows of x, y, z and 0, which fill whole registers.
-template <int kRows>
-using Rows = Eigen::Matrix<double, kRows, 4, Eigen::RowMajor>;
+// Numbers of several moments, for wide operations, and their places: a column for each axis.
+constexpr int kLanes = 4;
+using Lanes = Eigen::Array<double, kLanes, 1>;
+using Rows = Eigen::Array<double, kLanes, 3>;
+
+template <class Values>
+[[gnu::always_inline]] inline void add(const Lanes& times, const Values& from, Values& to) {
+  for (Eigen::Index axis = 0; axis < to.cols(); ++axis) to.col(axis) += times * from.col(axis);
+}
+
+// Horner's scheme for the shift of a polynomial: sums of (t + by)^k from those of t^k.
+template <class Values, std::size_t kCount>
+void shift(const Lanes& by, double sign, std::array<Values, kCount>& sums) {
+  for (std::size_t k = 1; k < kCount; ++k) {
+    for (std::size_t i = kCount - 1; i >= k; --i) add(by, sums[i - 1], sums[i]);
+  }
+  for (std::size_t i = 1; i < kCount; i += 2) sums[i] *= sign;
+}
 
 // Solutions of positive semidefinite systems, 0 for what they leave open: of unknowns 0, 1, 2 and
 // one more. By L D L^T, of which the first three columns are shared; Eigen's own takes several
 // times as long for so small a one.
 class Systems {
  public:
-  Systems(const Eigen::Matrix<double, 5, 5>& a, const Rows<5>& b)
-      : a_(a), b_(b), least_(1e-14 * a_.trace()) {
-    for (int i = 0; i < 3; ++i) {
-      const double inverse = a_(i, i) > least_ ? 1 / a_(i, i) : 0;
-      for (int j = i + 1; j < 5; ++j) {
-        const double part = a_(j, i) * inverse;
-        for (int k = j; k < 5; ++k) a_(k, j) -= part * a_(k, i);
-        b_.row(j) -= part * b_.row(i);
+  using Matrix = std::array<std::array<Lanes, 5>, 5>;  // the lower half, by rows
+  using Right = std::array<Rows, 5>;
+
+  Systems(const Matrix& a, const Right& b) : matrix_(a), right_(b), a_(a), b_(b) {
+    least_ = 1e-14 * (a[0][0] + a[1][1] + a[2][2] + a[3][3] + a[4][4]);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Lanes inverse = inverse_of(i);
+      for (std::size_t j = i + 1; j < 5; ++j) {
+        const Lanes part = a_[j][i] * inverse;
+        for (std::size_t k = j; k < 5; ++k) a_[k][j] -= part * a_[k][i];
+        add(-part, b_[i], b_[j]);
       }
-      for (int j = i + 1; j < 5; ++j) a_(j, i) *= inverse;
-      b_.row(i) *= inverse;
+      for (std::size_t j = i + 1; j < 5; ++j) a_[j][i] *= inverse;
+      b_[i].colwise() *= inverse;
     }
   }
 
-  Rows<4> with(int last) const {
-    Rows<4> x;
-    x.row(3) = b_.row(last) * (a_(last, last) > least_ ? 1 / a_(last, last) : 0);
-    for (int i = 2; i >= 0; --i) {
-      x.row(i) = b_.row(i) - a_(last, i) * x.row(3);
-      for (int j = i + 1; j < 3; ++j) x.row(i) -= a_(j, i) * x.row(j);
+  // By how much the unknowns 0, 1, 2 and `last` change a sum of squares, written so that their
+  // errors count by their squares.
+  Lanes change_by(std::size_t last) const {
+    std::array<Rows, 4> x;
+    x[3] = b_[last].colwise() * inverse_of(last);
+    for (std::size_t i = 3; i-- > 0;) {
+      x[i] = b_[i];
+      add(-a_[last][i], x[3], x[i]);
+      for (std::size_t j = i + 1; j < 3; ++j) add(-a_[j][i], x[j], x[i]);
     }
-    return x;
+    Lanes change = Lanes::Zero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t row = i < 3 ? i : last;
+      Rows half = -right_[row];
+      add(0.5 * matrix_[row][row], x[i], half);
+      for (std::size_t j = 0; j < i; ++j) add(matrix_[row][j], x[j], half);
+      change += 2 * (x[i] * half).rowwise().sum();
+    }
+    return change;
   }
 
  private:
-  Eigen::Matrix<double, 5, 5> a_;  // the lower half
-  Rows<5> b_;
-  double least_;
+  Lanes inverse_of(std::size_t i) const { return (a_[i][i] > least_).select(1 / a_[i][i], 0.0); }
+
+  const Matrix& matrix_;
+  const Right& right_;
+  Matrix a_;
+  Right b_;
+  Lanes least_;
 };
 
 // Two pieces that meet at a moment, fitted to the positions of some frames. `reach` is half of
@@ -111,96 +145,69 @@ class Pieces {
     }
     for (int f = first; f <= last; ++f) {
       const std::size_t index = static_cast<std::size_t>(f - first);
-      const Vec3 off3 = track[static_cast<std::size_t>(f)] - middle;
-      const Vec4 off(off3.x(), off3.y(), off3.z(), 0);
+      const Vec3 off = track[static_cast<std::size_t>(f)] - middle;
       const double t = (f - centre_) / reach_;
       Sums& next = upto_[index + 1];
       next = upto_[index];
       double power = 1;
       for (int k = 0; k < kPowers; ++k, power *= t) {
         next.powers[k] += power;
-        if (k < kOffPowers) next.offs.row(k) += power * off.transpose();
+        if (k < kOffPowers) next.offs.row(k) += power * off.transpose().array();
       }
       squares_ += off.squaredNorm();
     }
   }
 
-  // The sum of squares that the best pieces leave that meet at `moment`. The moving side begins
+  // The sums of squares that the best pieces leave that meet at each moment. The moving side begins
   // without velocity of its own or, if that fits far better, with one at once.
-  double misfit(double moment) const {
+  Lanes misfits(const Lanes& moments) const {
     // u = (f - moment) * sign / reach is < 0 on the moving side, whose columns u^2, u^3 and u are 0
     // on the other side.
-    const int split = static_cast<int>(sign_ > 0 ? std::ceil(moment) : std::floor(moment) + 1);
-    const std::size_t place =
-        static_cast<std::size_t>(std::clamp(split - first_, 0, last_ + 1 - first_));
-    const Sums& before = upto_[place];
     const Sums& total = upto_.back();
-    Sums moving = before;
-    if (sign_ < 0) {
-      moving.powers = total.powers - before.powers;
-      moving.offs = total.offs - before.offs;
-    }
-    const Sums all = shifted(total, moment, 2), part = shifted(moving, moment, kPowers - 1);
-    constexpr std::array<int, 5> kExponents = {0, 1, 2, 3, 1};
-    Eigen::Matrix<double, 5, 5> moments;
-    Rows<5> sums;
-    for (int i = 0; i < 5; ++i) {
-      for (int j = std::max(i, 2); j < 5; ++j) {
-        moments(j, i) = part.powers[kExponents[at(i)] + kExponents[at(j)]];
+    std::array<Lanes, kPowers> part;
+    std::array<Rows, kOffPowers> part_offs;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const double moment = moments[lane];
+      const int split = static_cast<int>(sign_ > 0 ? std::ceil(moment) : std::floor(moment) + 1);
+      const Sums& before = upto_[at(std::clamp(split - first_, 0, last_ + 1 - first_))];
+      for (int k = 0; k < kPowers; ++k) {
+        part[at(k)][lane] = sign_ < 0 ? total.powers[k] - before.powers[k] : before.powers[k];
       }
-      sums.row(i) = i < 2 ? all.offs.row(i) : part.offs.row(kExponents[at(i)]);
+      for (int k = 0; k < kOffPowers; ++k) {
+        part_offs[at(k)].row(lane) = before.offs.row(k);
+        if (sign_ < 0) part_offs[at(k)].row(lane) = total.offs.row(k) - before.offs.row(k);
+      }
     }
-    moments(0, 0) = all.powers[0];
-    moments(1, 0) = all.powers[1];
+    std::array<Lanes, 3> all;
+    std::array<Rows, 2> all_offs;
+    for (int k = 0; k < 3; ++k) all[at(k)].setConstant(total.powers[k]);
+    for (int k = 0; k < 2; ++k) all_offs[at(k)].rowwise() = total.offs.row(k);
+    const Lanes by = (centre_ - moments) / reach_;
+    shift(by, sign_, part), shift(by, sign_, part_offs);
+    shift(by, sign_, all), shift(by, sign_, all_offs);
+    constexpr std::array<std::size_t, 5> kExponents = {0, 1, 2, 3, 1};
+    Systems::Matrix matrix;
+    Systems::Right right;
+    for (std::size_t i = 0; i < 5; ++i) {
+      for (std::size_t j = 0; j < 5; ++j) matrix[j][i] = part[kExponents[i] + kExponents[j]];
+      right[i] = i < 2 ? all_offs[i] : part_offs[kExponents[i]];
+    }
+    matrix[0][0] = all[0];
+    matrix[1][0] = all[1];
     // One row more, which holds the drift down: a point that stays drifts only where its place on
     // the foot is not quite right, and jitter must not be taken for that.
-    moments(1, 1) = all.powers[2] + 4 * stiffness_ * stiffness_;
-    const Systems systems(moments, sums);
-    return std::min(left_by(systems.with(3), 3, moments, sums),
-                    kSudden * left_by(systems.with(4), 4, moments, sums));
+    matrix[1][1] = all[2] + 4 * stiffness_ * stiffness_;
+    const Systems systems(matrix, right);
+    return (squares_ + systems.change_by(3)).min(kSudden * (squares_ + systems.change_by(4)));
   }
 
  private:
   static constexpr int kPowers = 7, kOffPowers = 4;
-  // Of t^k, and of t^k times the place, over some frames.
+  // Of t^k, and of t^k times the place, over some frames, where t = (f - centre) / reach.
   struct Sums {
     Eigen::Array<double, kPowers, 1> powers = Eigen::Array<double, kPowers, 1>::Zero();
-    Rows<kOffPowers> offs = Rows<kOffPowers>::Zero();
+    Eigen::Array<double, kOffPowers, 3> offs = Eigen::Array<double, kOffPowers, 3>::Zero();
   };
-
-  // The sum of squares that a fit leaves by unknowns 0, 1, 2 and `last`, written so that errors of
-  // the fit count by their squares. `moments`: the lower half.
-  double left_by(const Rows<4>& fit, int last, const Eigen::Matrix<double, 5, 5>& moments,
-                 const Rows<5>& sums) const {
-    Vec4 left = Vec4::Zero();
-    for (int i = 0; i < 4; ++i) {
-      const int row = i < 3 ? i : last;
-      Vec4 half = 0.5 * moments(row, row) * fit.row(i) - sums.row(row);
-      for (int j = 0; j < i; ++j) half += moments(row, j) * fit.row(j);
-      left += 2 * fit.row(i).transpose().cwiseProduct(half);
-    }
-    return squares_ + left.sum();
-  }
-
-  // The sums of u^k up to u^`most` from those of t^k, where t = (f - centre) / reach: Horner's
-  // scheme for the shift of a polynomial.
-  Sums shifted(Sums sums, double moment, int most) const {
-    const double by = (centre_ - moment) / reach_;
-    for (int k = 1; k <= most; ++k) {
-      for (int i = most; i >= k; --i) sums.powers[i] += by * sums.powers[i - 1];
-    }
-    const int offs = std::min(most, kOffPowers - 1);
-    for (int k = 1; k <= offs; ++k) {
-      for (int i = offs; i >= k; --i) sums.offs.row(i) += by * sums.offs.row(i - 1);
-    }
-    if (sign_ < 0) {
-      for (int i = 1; i <= most; i += 2) {
-        sums.powers[i] = -sums.powers[i];
-        if (i < kOffPowers) sums.offs.row(i) = -sums.offs.row(i);
-      }
-    }
-    return sums;
-  }
 
   int first_, last_;
   double centre_, reach_, sign_, stiffness_;
@@ -226,11 +233,15 @@ double break_near(const std::vector<Vec3>& track, double guess, double window, b
     const double high = std::min(middle + 0.6 * window, last - 1.5);
     const Pieces pieces(track, first, last, arrives, stiffness);
     double least = -1;
-    for (double moment = low; moment <= high + 1e-9; moment += kStep) {
-      const double left = pieces.misfit(moment);
-      if (least >= 0 && left >= least) continue;
-      least = left;
-      best = moment;
+    for (double moment = low; moment <= high + 1e-9;) {
+      Lanes moments;
+      for (double& lane : moments) lane = std::exchange(moment, moment + kStep);
+      const Lanes left = pieces.misfits(moments);
+      for (int i = 0; i < kLanes && moments[i] <= high + 1e-9; ++i) {
+        if (least >= 0 && left[i] >= least) continue;
+        least = left[i];
+        best = moments[i];
+      }
     }
     if (std::abs(best - middle) < 1) break;
   }

@@ -80,8 +80,7 @@ void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, 
       return sizes.noise.begin() + static_cast<std::ptrdiff_t>(f);
     };
     sizes.sorted.assign(place(first + 3), place(end));
-    const auto middle =
-        sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
+    const auto middle = sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
     std::ranges::nth_element(sizes.sorted, middle);
     detail.noise = static_cast<float>(std::sqrt(*middle / kFourthDifference) / kMedianOfNorm);
   }
