@@ -224,10 +224,15 @@ class Aligner {
     if (flat_now.norm() < 0.25 || flat_to.norm() < 0.25) return hips_;
     const double yaw = std::atan2(flat_now.cross(flat_to).dot(kUp), flat_now.dot(flat_to));
     if (std::abs(yaw) > degrees(90)) return hips_;
-    // A foot pitched that much more than the other is not flat on the floor.
-    const double pitch = std::asin(std::clamp(to->dot(kUp), -1.0, 1.0)) -
-                         std::asin(std::clamp(now.dot(kUp), -1.0, 1.0));
-    const double taken = pitch * smooth_step(degrees(30), degrees(50), std::abs(pitch));
+    // A foot pitched that much more than the other is not flat on the floor, unless the other is
+    // level: rigs have ankles as low as the toes.
+    const double pitch_to = std::asin(std::clamp(to->dot(kUp), -1.0, 1.0));
+    const double pitch_now = std::asin(std::clamp(now.dot(kUp), -1.0, 1.0));
+    const auto [level, steep] = std::minmax({std::abs(pitch_to), std::abs(pitch_now)});
+    const double pitch = pitch_to - pitch_now;
+    const double taken = pitch * smooth_step(degrees(30), degrees(50), std::abs(pitch)) *
+                         std::max(smooth_step(degrees(5), degrees(15), level),
+                                  smooth_step(degrees(60), degrees(70), steep));
     const Vec3 hinge = across(side, flat_to.normalized()).value_or(side);
     return from_rotation_vector(-taken * hinge) * from_rotation_vector(yaw * kUp) * hips_;
   }

@@ -52,6 +52,25 @@ Skeleton actor_of(double stature, double thigh, double shank, double foot, doubl
   return with_other_axes(skeleton, 11);
 }
 
+// Rigs have ankles as low as the toes, or as high as in people. Would fail if the bone of a foot
+// that stands were turned to the other's pitch, and its sole with it.
+TEST(Feet, AnkleHeightsDoNotTiltSoles) {
+  Clip standing = resting(actor_of(1.8, 1, 1, 0.5, 1));
+  standing.rate = 30;
+  standing.resize(2);
+  for (int f = 0; f < 2; ++f) standing.set_pose(f, standing.skeleton.reference);
+  Skeleton low = human_skeleton(1.7);
+  for (const std::string side : {"Left", "Right"}) {
+    const double ball = low.reference[at(low.find(side + "ToeBase"))].position.y();
+    low.reference[at(low.find(side + "Foot"))].position.y() = ball;
+  }
+  const auto made = transfer(standing, low);
+  ASSERT_TRUE(made.ok());
+  for (const std::string side : {"Left", "Right"}) {
+    EXPECT_LT(std::abs(bone(made->clip, 0, side + "Foot", side + "ToeBase").y()), 0.02) << side;
+  }
+}
+
 // How far a joint of the foot moves over the ground while it should stand there, the first and last
 // hundredth of a second of each contact apart.
 double slide_of(const Clip& clip, const std::string& joint,
