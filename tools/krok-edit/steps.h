@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "formats/sequences/sequences.h"
+#include "motion/loop.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
@@ -71,6 +72,9 @@ Status check_sequences(const Options& options, const Edit& edit);
 // Spikes, filter and foot planting.
 Status clean(const Options& options, ToolContext& context, Edit& edit);
 Status plant(const Options& options, ToolContext& context, Edit& edit);
+// With --plant: closing the seam moves feet that stood, so they are planted again, over three
+// cycles, of which the one in the middle repeats.
+Status plant_loop(const Options& options, const Edit& edit, Looped& looped);
 Status cut_out(const Options& options, ToolContext& context, Edit& edit);
 Status mirror_sides(const Options& options, ToolContext& context, Edit& edit);
 Status change_timing(const Options& options, ToolContext& context, Edit& edit);

@@ -8,7 +8,6 @@
 #include "motion/cut.h"
 #include "motion/ground_frame.h"
 #include "motion/join.h"
-#include "motion/loop.h"
 #include "motion/mirror.h"
 #include "motion/retime.h"
 #include "tools/krok-edit/event_time.h"
@@ -347,6 +346,7 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
   }
   auto looped = loop(edit.clip, edit.carrier, looping);
   if (!looped) return std::move(looped.error()).in_file(options.input);
+  if (Status status = plant_loop(options, edit, *looped); !status) return status;
   // Up to kLoopDrift it is a capture's drift, which nobody wants back.
   if (std::abs(looped->straightened) > kLoopDrift) {
     edit.turn_rate = looped->straightened / looped->clip.duration();

@@ -453,8 +453,9 @@ Status Run::plant_first() {
   if (!options_.plant) return {};
   const auto contacts = read_planting_contacts(options_.contacts, options_.input, clip_, context_);
   if (!contacts) return contacts.error();
-  auto planted = plant(clip_, roles_, *contacts, context_);
+  auto planted = plant(clip_, roles_, *contacts);
   if (!planted) return std::move(planted).error().in_file(options_.input);
+  context_.diagnose(planted->warnings);
   planting_ = planting_json(*planted, contacts->has_value());
   planting_line_ = planting_line(*planted);
   clip_ = std::move(planted->clip);

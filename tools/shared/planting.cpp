@@ -55,15 +55,14 @@ Result<std::optional<std::vector<Contact>>> read_planting_contacts(const std::st
 }
 
 Result<PlantedFeet> plant(const Clip& clip, const RoleMap& roles,
-                          const std::optional<std::vector<Contact>>& contacts,
-                          ToolContext& context) {
+                          const std::optional<std::vector<Contact>>& contacts) {
   if (const auto& removed = clip.provenance.removed_root_motion) {
     // In place, feet on the ground move with it: the motion is planted as it travels.
     const int carrier = carrying_joint(roles);
     const Clip travelling = carried_along(clip, carrier, *removed);
     auto there = contacts;
     if (there) place_contacts(travelling, *there);
-    auto planted = plant(travelling, roles, there, context);
+    auto planted = plant(travelling, roles, there);
     if (!planted) return planted;
     planted->clip =
         carried_along(planted->clip, carrier, {-removed->velocity, -removed->turn_rate});
@@ -72,9 +71,7 @@ Result<PlantedFeet> plant(const Clip& clip, const RoleMap& roles,
   }
   std::optional<std::span<const Contact>> given;
   if (contacts) given = *contacts;
-  auto planted = plant_feet(clip, roles, given);
-  if (planted) context.diagnose(planted->warnings);
-  return planted;
+  return plant_feet(clip, roles, given);
 }
 
 Json planting_json(const PlantedFeet& planted, bool contacts_given) {

@@ -17,10 +17,9 @@ Result<std::optional<std::vector<krok::Contact>>> read_planting_contacts(
     const std::string& contacts, const std::string& motion_path, const Clip& clip,
     ToolContext& context);
 
-// plant_feet(), of a motion in place while it travels as it did before; warnings are diagnosed.
+// plant_feet(), of a motion in place while it travels as it did before.
 Result<PlantedFeet> plant(const Clip& clip, const RoleMap& roles,
-                          const std::optional<std::vector<krok::Contact>>& contacts,
-                          ToolContext& context);
+                          const std::optional<std::vector<krok::Contact>>& contacts);
 
 // For the report: where the contacts are from, drift before and after, lowering of the pelvis, and
 // each stay.
