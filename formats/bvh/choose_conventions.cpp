@@ -103,11 +103,25 @@ class ConventionChooser {
     capture_.diagnostics.push_back(std::move(diagnostic));
   }
 
+  // A given rate that changes the duration, which who wants other frames does not expect.
+  void warn_of_other_rate(double given) {
+    if (!(file_.header.frame_time > 0)) return;
+    const auto printed = rate_of_frame_time(file_.header.frame_time_text, file_.header.frame_time);
+    const double faster = given / printed.rate;
+    if (printed.unusual || std::abs(faster - 1) < 0.01) return;
+    report(Severity::warning, "bvh-other-rate",
+           fmt::format("{} frames per second instead of the file's {}: the motion is {} times as "
+                       "fast",
+                       readable(given), readable(printed.rate), readable(faster, 3)),
+           fmt::format("--rate {} resamples it at its own speed", readable(given)));
+  }
+
   Status choose_rate() {
     double& rate = capture_.clip.rate;
     if (file_.options.rate) {
       rate = *file_.options.rate;
       capture_.rate = {readable(rate), "as given", Confidence::certain};
+      warn_of_other_rate(rate);
       return {};
     }
     if (hierarchy_.no_motion) {

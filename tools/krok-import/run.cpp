@@ -122,6 +122,9 @@ Result<std::optional<int>> motion_of_array(const Options& options, const InputFi
 Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
                      const std::string& output, const Options& options, ToolContext& context) {
   Capture& capture = *opened.capture;
+  if (options.unit) {
+    character::check_size(opened.frames.skeleton, capture.roles, capture.diagnostics);
+  }
   std::optional<Clip> resampled;
   FrameSource frames = opened.frames;
   if (options.resample > 0) {

@@ -1,6 +1,8 @@
 // If these fail, krok-import takes its options wrongly, hides its choices, or leaves one of two
 // outputs behind when the other fails.
 
+#include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/krok_import/imported.h"
@@ -10,6 +12,8 @@ namespace krok::test {
 namespace {
 
 using PlainJson = nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
 
 class ImportTest : public CliTest {
  protected:
@@ -46,6 +50,12 @@ TEST_F(ImportTest, RatesAreTakenAndResampled) {
   const Clip faster = imported({"--fps", "60"});
   EXPECT_EQ(faster.rate, 60.0);
   EXPECT_EQ(faster.frame_count(), 11);
+  const auto messages = [&](const std::string& option, const std::string& value) {
+    return run_tool("krok-import", {path("in.bvh"), "-o", path("a.anim"), option, value}).err;
+  };
+  EXPECT_THAT(messages("--fps", "60"), HasSubstr("the motion is 2 times as fast"));
+  EXPECT_THAT(messages("--fps", "30"), Not(HasSubstr("bvh-other-rate")));
+  EXPECT_THAT(messages("--rate", "60"), Not(HasSubstr("bvh-other-rate")));
   const Clip resampled = imported({"--rate", "60"});
   EXPECT_EQ(resampled.rate, 60.0);
   EXPECT_EQ(resampled.frame_count(), 21);
