@@ -106,6 +106,8 @@ TEST_F(Mistakes, WordsOfOtherToolsLeadOn) {
   EXPECT_THAT(refused("krok-plot", {"in.bvh", "--mean"}), HasSubstr("use --show cycles"));
   EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--target", "a"}), HasSubstr("use --onto"));
   EXPECT_THAT(refused("krok-diff", {"a.glb", "b.glb", "-o", "d.xml"}), HasSubstr("use --summary"));
+  EXPECT_THAT(refused("krok-import", {"in.bvh", "--framerate", "30"}), HasSubstr("use --fps"));
+  EXPECT_THAT(refused("krok-skin", {"a.glb", "--tolerance", "1mm"}), HasSubstr("use --reduce"));
   // Not where the tool has no such option.
   EXPECT_THAT(refused("krok-info", {"in.bvh", "--fps", "30"}), Not(HasSubstr("--rate")));
 }
@@ -117,6 +119,8 @@ TEST_F(Mistakes, MissingAndSwappedArgumentsLeadOn) {
   EXPECT_THAT(refused("krok-retarget", {"takes", "hero.character", "--out-dir", "o"}),
               AllOf(HasSubstr("give --onto IN.model"), Not(HasSubstr("'--'"))));
   EXPECT_THAT(refused("krok-diff", {"in.bvh"}), HasSubstr("give B;"));
+  EXPECT_THAT(refused("krok-skin", {"in.bvh", "in.bvh", "-o", "a.glb"}),
+              HasSubstr("the mesh comes first"));
   EXPECT_THAT(refused("krok-skin", {"takes", "hero.character", "-o", "a.glb"}),
               HasSubstr("a mesh comes first"));
   EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--onto", "takes", "-o", "a.anim"}),

@@ -89,7 +89,10 @@ std::vector<Error> faults_of(const Fallen& fallen) {
     faults.emplace_back("ragdoll-penetration",
                         fmt::format("a body is {:.1f} mm in the ground (5 are tolerated)",
                                     fall.largest.penetration * 1e3),
-                        "a weaker push, or ground without edges that are sharp or thin");
+                        fall.settling.penetration > kMaxPenetration
+                            ? "it is there when the body takes over: another --at, or a motion "
+                              "made for this ground"
+                            : "a weaker push, or ground without edges that are sharp or thin");
   }
   if (fallen.undisturbed && fall.mean_off > kMaxOff) {
     faults.emplace_back(

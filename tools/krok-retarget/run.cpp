@@ -243,7 +243,9 @@ Result<int> run(const Options& options, ToolContext& context) {
     how.target_frame = options.onto_reference_pose.frame;
   how.jobs = context.jobs;
   how.progress = context.progress;
-  const auto source = io::open_motion(options.input, context);
+  static constexpr const char* kOrder = "IN is whose motion is wanted, --onto whose body";
+  auto source = io::open_motion(options.input, context);
+  if (!source && source.error().code == "motion-missing") source.error().hint = kOrder;
   if (!source) return source.error();
   const auto target = read_target(options.onto, context);
   if (!target) return target.error();
@@ -252,7 +254,7 @@ Result<int> run(const Options& options, ToolContext& context) {
         "retarget-still",
         fmt::format("{} has no motion, --onto has {}: the result is a still",
                     base_name(options.input), counted(target->clip.frame_count(), "frame")),
-        "IN is whose motion is wanted, --onto whose body");
+        kOrder);
   }
   const auto source_roles = roles_of(source->skeleton, options.map, context);
   if (!source_roles) return source_roles.error();

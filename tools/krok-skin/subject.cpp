@@ -59,7 +59,11 @@ class Loader {
     if (!file) return file.error();
     const io::Format& format = io::format_of(*file);
     if (format.read_actor == nullptr && format.read_scene == nullptr) {
-      return Error(model::read(file->bytes()).error()).in_file(options_.subject);
+      Error error = model::read(file->bytes()).error();
+      if (!options_.motions.empty()) {
+        error.hint = "the mesh comes first, then motions; krok-body makes a mesh for a motion";
+      }
+      return std::move(error).in_file(options_.subject);
     }
     auto actor = io::open_actor(*file, context_, {.with_morphs = true, .with_motions = false});
     if (!actor) return actor.error();
@@ -316,8 +320,11 @@ class Loader {
   std::vector<std::string> places() const {
     const Skeleton& skeleton = subject_.model.skeleton;
     std::vector<std::string> names = skeleton.names;
-    for (const Role role : find_roles(skeleton).roles) {
-      if (role != Role::none && role != Role::end) names.emplace_back(role_name(role));
+    const RoleMap roles = find_roles(skeleton);
+    for (int j = 0; j < skeleton.joint_count(); ++j) {
+      const Role role = roles.roles[static_cast<std::size_t>(j)];
+      if (role == Role::none || role == Role::end || roles.joint(role) != j) continue;
+      names.emplace_back(role_name(role));
     }
     for (const Character::Socket& socket : subject_.sockets) names.push_back(socket.name);
     return names;
