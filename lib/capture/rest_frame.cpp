@@ -125,8 +125,9 @@ RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   if (clip.frame_count() < kMinFrames) return result;
   Steps steps(clip);
   const Step first_step = steps.next();
+  constexpr double kMinStep = 15.0;  // degrees
   double later_step = 0;
-  const int last = std::min(clip.frame_count() - 1, 11);
+  const int last = first_step.largest < kMinStep ? 0 : std::min(clip.frame_count() - 1, 11);
   for (int frame = 1; frame < last; ++frame) {
     later_step = std::max(later_step, steps.next().largest);
   }
@@ -134,7 +135,6 @@ RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   clip.get_pose(0, pose);
   const bool t_pose = kind_of_pose(roles, pose) == PoseKind::t_pose;
   // A T-pose is evidence too, so a smaller step suffices.
-  constexpr double kMinStep = 15.0;  // degrees
   const double factor = t_pose ? 2.5 : 4.0;
   // One or two joints that jump are a tracking error.
   const int fewest_joints = std::min(4, clip.joint_count() / 2);

@@ -270,16 +270,20 @@ class GroundRule {
     }
   }
 
-  // Height of the lowest joint above the ground, infinite where there is none.
+  // Height of the lowest joint above the ground, infinite where there is none; of one that is not
+  // over the limit where there is one.
   double clearance(int frame) const {
     double lowest = INFINITY;
-    for (const Vec3f& place : series_.clip.frame_positions(frame)) {
-      const auto ground = ground_at(place.cast<double>());
-      if (ground) lowest = std::min(lowest, static_cast<double>(place.y()) - *ground);
-    }
+    const auto is_low = [&](const Vec3& place) {
+      const auto ground = ground_at(place);
+      if (ground) lowest = std::min(lowest, place.y() - *ground);
+      return lowest <= limit_;
+    };
     for (const auto& places : soles_.places) {
-      const auto ground = ground_at(places[at(frame)]);
-      if (ground) lowest = std::min(lowest, places[at(frame)].y() - *ground);
+      if (is_low(places[at(frame)])) return lowest;
+    }
+    for (const Vec3f& place : series_.clip.frame_positions(frame)) {
+      if (is_low(place.cast<double>())) return lowest;
     }
     return lowest;
   }

@@ -17,6 +17,38 @@ constexpr int kRounds = 100;
 constexpr double kConverged = 1e-9, kTogether = 1e-6, kNear = 0.01;  // metres
 constexpr double kMaxNewton = 20;                                    // of the other step
 
+// `kMaxPoints`: for arrays on the stack, or Eigen::Dynamic.
+template <int kMaxPoints>
+Vec3 median_of(std::span<const Vec3> points) {
+  // A row for each axis, as wide operations want them.
+  using Points = Eigen::Array<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMaxPoints, 3>;
+  const Points all = Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3,
+                                                        static_cast<Eigen::Index>(points.size()))
+                         .transpose();
+  Points off(all.rows(), 3), cubed(all.rows(), 3);
+  Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPoints, 1> weights(all.rows());
+  Vec3 center = all.colwise().mean();
+  double last = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kRounds; ++round) {
+    off = all.rowwise() - center.transpose().array();
+    weights = (off.square().rowwise().sum() + kTogether * kTogether).rsqrt();
+    const Vec3 sum = off.matrix().transpose() * weights.matrix();
+    const double total = weights.sum();
+    cubed = off.colwise() * weights.cube();
+    const Mat3 across = cubed.matrix().transpose().lazyProduct(off.matrix());
+    Vec3 step = sum / total;  // Weiszfeld's
+    // Newton's near the end, while it converges.
+    const Vec3 newton = (total * Mat3::Identity() - across).inverse() * sum;
+    if (step.norm() < kNear && newton.norm() < std::min(last, kMaxNewton * step.norm())) {
+      step = newton;
+    }
+    center += step;
+    last = step.norm();
+    if (last < kConverged) break;
+  }
+  return center;
+}
+
 }  // namespace
 
 double median(std::vector<double> values) {
@@ -62,34 +94,9 @@ std::vector<double> mean_within(std::span<const double> values, int reach) {
 }
 
 Vec3 median_point(std::span<const Vec3> points) {
+  constexpr int kFew = 64;
   if (points.empty()) return Vec3::Zero();
-  // A row for each axis, as wide operations want them.
-  const Eigen::Array<double, Eigen::Dynamic, 3> all =
-      Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3,
-                                         static_cast<Eigen::Index>(points.size()))
-          .transpose();
-  Eigen::Array<double, Eigen::Dynamic, 3> off(all.rows(), 3), cubed(all.rows(), 3);
-  Eigen::ArrayXd weights(all.rows());
-  Vec3 center = all.colwise().mean();
-  double last = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < kRounds; ++round) {
-    off = all.rowwise() - center.transpose().array();
-    weights = (off.square().rowwise().sum() + kTogether * kTogether).rsqrt();
-    const Vec3 sum = off.matrix().transpose() * weights.matrix();
-    const double total = weights.sum();
-    cubed = off.colwise() * weights.cube();
-    const Mat3 across = cubed.matrix().transpose().lazyProduct(off.matrix());
-    Vec3 step = sum / total;  // Weiszfeld's
-    // Newton's near the end, while it converges.
-    const Vec3 newton = (total * Mat3::Identity() - across).inverse() * sum;
-    if (step.norm() < kNear && newton.norm() < std::min(last, kMaxNewton * step.norm())) {
-      step = newton;
-    }
-    center += step;
-    last = step.norm();
-    if (last < kConverged) break;
-  }
-  return center;
+  return points.size() <= kFew ? median_of<kFew>(points) : median_of<Eigen::Dynamic>(points);
 }
 
 Vec3 median_place(std::span<const Vec3> points) {
