@@ -281,7 +281,7 @@ std::string shape_text(std::span<const std::size_t> shape) {
   return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
 
-Result<Array> parse(std::span<const std::byte> file) {
+Result<Array> parse(std::vector<std::byte> file) {
   if (!text_of(file).starts_with(kMagic) || file.size() < 10) {
     return damaged("it does not begin as an array of numpy");
   }
@@ -299,15 +299,16 @@ Result<Array> parse(std::span<const std::byte> file) {
                                file.size() - start));
   }
   Array array;
-  if (Status status = Header(text_of(file.subspan(start, length))).read(array); !status) {
+  const std::span header = std::span(file).subspan(start, length);
+  if (Status status = Header(text_of(header)).read(array); !status) {
     return status.error();
   }
-  const auto data = file.subspan(start + length);
-  if (!is_shape_of(array, data.size())) {
+  file.erase(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(start + length));
+  if (!is_shape_of(array, file.size())) {
     return damaged(fmt::format("an array of shape {} with {} bytes each does not have {} bytes",
-                               shape_text(array.shape), array.item_size, data.size()));
+                               shape_text(array.shape), array.item_size, file.size()));
   }
-  array.data.assign(data.begin(), data.end());
+  array.data = std::move(file);
   return array;
 }
 
@@ -333,13 +334,13 @@ bool Arrays::has(const std::string& name) const {
 }
 
 Result<Array> Arrays::read(const std::string& name) const {
-  if (!archive_) return parse(file_);
+  if (!archive_) return parse({file_.begin(), file_.end()});
   const std::uint64_t most = std::max<std::uint64_t>(
       std::min<std::uint64_t>(1000 * std::uint64_t{file_.size()} + 4096, kSmallArray),
       100 * std::uint64_t{file_.size()});
-  const auto bytes = archive_->read(name + ".npy", most);
+  auto bytes = archive_->read(name + ".npy", most);
   if (!bytes) return bytes.error();
-  auto array = parse(*bytes);
+  auto array = parse(*std::move(bytes));
   if (!array) array.error().message = fmt::format("{}: {}", name, array.error().message);
   return array;
 }

@@ -44,7 +44,7 @@ std::string shape_text(std::span<const std::size_t> shape);
 
 // `file`: the content of a .npy file. Codes: npy-damaged (no array, a shape that is not that of the
 // bytes), npy-objects (Python objects), npy-type (other elements that are not read).
-Result<Array> parse(std::span<const std::byte> file);
+Result<Array> parse(std::vector<std::byte> file);
 
 // The arrays of a .npy or .npz file. An array is unpacked when it is asked for.
 class Arrays {

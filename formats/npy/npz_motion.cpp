@@ -17,10 +17,17 @@ Vec3 vector_at(const std::vector<double>& values, std::size_t i) {
   return Vec3(&values[3 * i]);
 }
 
-Result<Quat> quaternion_at(const std::vector<double>& values, std::size_t i) {
-  const Quat q(values[4 * i + 3], values[4 * i], values[4 * i + 1], values[4 * i + 2]);
-  if (std::abs(q.norm() - 1) < 1e-3) return q.normalized();
-  return Error("npy-rotation", fmt::format("quaternion {} is not of length 1", i));
+Result<std::vector<Quat>> quaternions_of(const std::vector<double>& values) {
+  std::vector<Quat> quaternions(values.size() / 4);
+  for (std::size_t i = 0; i < quaternions.size(); ++i) {
+    quaternions[i].coeffs() = Vec4(&values[4 * i]);
+    const double norm = quaternions[i].norm();
+    if (!(std::abs(norm - 1) < 1e-3)) {
+      return Error("npy-rotation", fmt::format("quaternion {} is not of length 1", i));
+    }
+    quaternions[i].coeffs() /= norm;
+  }
+  return quaternions;
 }
 
 // Each run of frames in which a joint is down, at its mean place.
@@ -102,7 +109,9 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
   const bool has_rest = file.arrays.has("reference_positions");
   const auto rest_places = has_rest ? file.numbers("reference_positions", {joints, 3}) : places;
   if (!rest_places) return rest_places.error();
-  const auto rest_turns = has_rest ? file.numbers("reference_quaternions", {joints, 4}) : turns;
+  const auto rest_values = has_rest ? file.numbers("reference_quaternions", {joints, 4}) : turns;
+  if (!rest_values) return rest_values.error();
+  const auto rest_turns = quaternions_of(*rest_values);
   if (!rest_turns) return rest_turns.error();
   if (names.empty()) {
     for (std::size_t j = 0; j < joints; ++j) names.push_back(fmt::format("joint_{}", j));
@@ -119,18 +128,15 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
                                "children, and the first joint has none, -1",
                                parent, j));
     }
-    const auto turn = quaternion_at(*rest_turns, j);
-    if (!turn) return turn.error();
-    skeleton.add(names[j], static_cast<int>(parent), {vector_at(*rest_places, j), *turn},
+    skeleton.add(names[j], static_cast<int>(parent), {vector_at(*rest_places, j), (*rest_turns)[j]},
                  (*ends)[j] > 0.5);
   }
   if (Status status = check(skeleton); !status) return status.error();
-  for (std::size_t i = 0; i < frames * joints; ++i) {
-    const auto turn = quaternion_at(*turns, i);
-    if (!turn) return turn.error();
-    motion.positions.push_back(vector_at(*places, i));
-    motion.orientations.push_back(*turn);
-  }
+  auto orientations = quaternions_of(*turns);
+  if (!orientations) return orientations.error();
+  motion.orientations = *std::move(orientations);
+  motion.positions.resize(frames * joints);
+  for (std::size_t i = 0; i < frames * joints; ++i) motion.positions[i] = vector_at(*places, i);
   motion.roles = find_roles(skeleton);
   return motion;
 }

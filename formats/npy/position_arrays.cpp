@@ -43,7 +43,7 @@ bool fill_gaps(std::vector<double>& values, std::size_t frames) {
 
 // How to bring an array into order.
 std::string advice_on_axes(std::span<const std::size_t> shape) {
-  const auto is_body = [](std::size_t size) { return !skeleton_of_columns(size).empty(); };
+  const auto is_body = [](std::size_t size) { return !skeletons_of_columns(size).empty(); };
   const std::size_t last = shape.empty() ? 0 : shape.back();
   if (shape.size() == 2 && last == 3) return "one frame? then a[None]";
   if (shape.size() == 2 && last % 3 == 0) {
@@ -91,7 +91,7 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
   const std::size_t columns = shape[shape.size() - 2], frames = shape[shape.size() - 3];
   auto arranged = skeleton_for(file, columns, motion.usual_rate, motion.diagnostics);
   if (!arranged) {
-    if (!skeleton_of_columns(frames).empty()) {
+    if (!skeletons_of_columns(frames).empty()) {
       arranged.error().hint =
           fmt::format("joints before frames? numpy.swapaxes(a, {}, {}) exchanges them",
                       shape.size() - 3, shape.size() - 2);
@@ -214,13 +214,15 @@ Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string
 
 Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns,
                                       double& usual_rate, Diagnostics& diagnostics) {
+  const std::vector<std::string_view> known = skeletons_of_columns(columns);
+  const std::string hint =
+      known.empty() ? kSkeletonHint
+                    : fmt::format("of {} joints: --skeleton {}", columns, fmt::join(known, " or "));
   const auto other_number = [&](int expected) {
-    const std::string_view fitting = skeleton_of_columns(columns);
     return Error("npy-skeleton",
                  fmt::format("there are {} joints, {} has {}", columns,
                              shown(file.options.columns_name), expected),
-                 fitting.empty() ? kSkeletonHint
-                                 : fmt::format("{} has as many: --skeleton {}", fitting, fitting));
+                 hint);
   };
   if (file.options.skeleton) {
     ArrangedSkeleton arranged;
@@ -233,18 +235,17 @@ Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns
   }
   std::optional<PositionSkeleton> skeleton = file.options.columns;
   if (!skeleton) {
-    const std::string_view name = skeleton_of_columns(columns);
-    if (name.empty()) {
+    if (known.size() != 1) {
       return Error("npy-skeleton",
-                   fmt::format("there are {} joints, of no skeleton that is known "
-                               "by its number",
-                               columns),
-                   kSkeletonHint);
+                   fmt::format("there are {} joints, of {} by their number", columns,
+                               known.empty() ? "no known skeleton" : "several skeletons"),
+                   hint);
     }
-    skeleton = named_skeleton(name);
+    skeleton = named_skeleton(known[0]);
     if (file.find({"global_rot_mats", "local_rot_mats"}).empty()) {
-      diagnostics.push_back(make_warning(
-          "npy-skeleton", fmt::format("{} joints are taken for {}", columns, name), kSkeletonHint));
+      diagnostics.push_back(
+          make_warning("npy-skeleton", fmt::format("{} joints are taken for {}", columns, known[0]),
+                       kSkeletonHint));
       diagnostics.back().where.file = file.name;
     }
   }

@@ -1,7 +1,6 @@
 #include "positions/from_positions.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
+#include "math/dense_solve.h"
 #include "math/quaternion.h"
 #include "math/smoother_step.h"
 #include "roles/limbs.h"
@@ -26,39 +26,9 @@ constexpr double kDamping = 10;      // levers of three misfits turn freely
 constexpr std::size_t kGrain = 256;
 constexpr std::size_t kFramesOfShape = 2000;
 
-// The rotation nearest to a sum of outer products target * source^T, without its singular values:
-// the root of their sum's polynomial by Newton's method, and the rotation from it (Markley,
-// "Attitude determination using vector observations: a fast optimal matrix algorithm", 1993). Where
-// two singular values nearly vanish, which loses digits, it is found from the decomposition.
-Quat nearest_rotation(const Mat3& products) {
-  const double size = products.norm();
-  if (!(size > 0)) return Quat::Identity();
-  const Mat3 b = products / size;
-  Mat3 adjugate;
-  adjugate.col(0) = b.row(1).cross(b.row(2));
-  adjugate.col(1) = b.row(2).cross(b.row(0));
-  adjugate.col(2) = b.row(0).cross(b.row(1));
-  const double determinant = b.row(0).dot(adjugate.col(0));
-  const double squares = adjugate.squaredNorm();
-  double sum = 1.7320508075688773;  // of singular values: at most sqrt(3) of the norm
-  for (int i = 0; i < 20; ++i) {
-    const double above = sum * sum - 1;
-    const double value = above * above - 8 * sum * determinant - 4 * squares;
-    const double slope = 4 * sum * above - 8 * determinant;
-    if (!(slope > 0)) break;
-    const double step = value / slope;
-    sum -= step;
-    if (std::abs(step) < 1e-14) break;
-  }
-  const double kappa = (sum * sum - 1) / 2, zeta = kappa * sum - determinant;
-  if (zeta > 1e-4) {
-    return Quat(Mat3(((kappa + 1) * b + sum * adjugate.transpose() - b * b.transpose() * b) / zeta))
-        .normalized();
-  }
-  const Eigen::JacobiSVD<Mat3> parts(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = parts.matrixU();
-  if ((u * parts.matrixV().transpose()).determinant() < 0) u.col(2) *= -1;
-  return Quat(Mat3(u * parts.matrixV().transpose())).normalized();
+// The rotation nearest to a sum of outer products target * source^T (Kabsch 1976; Wahba 1965).
+Quat turn_of(const Mat3& products) {
+  return Quat(nearest_rotation(products)).normalized();
 }
 
 // The angle of a rotation about an axis (unit), in (-pi, pi].
@@ -67,19 +37,6 @@ double twist_about(const Vec3& axis, const Quat& rotation) {
   if (angle > kPi) angle -= 2 * kPi;
   if (angle <= -kPi) angle += 2 * kPi;
   return angle;
-}
-
-void unwrap(std::vector<double>& angles) {
-  double turns = 0, mean = 0;
-  for (std::size_t t = 1; t < angles.size(); ++t) {
-    angles[t] += turns;
-    const double more = -2 * kPi * std::round((angles[t] - angles[t - 1]) / (2 * kPi));
-    angles[t] += more;
-    turns += more;
-  }
-  for (const double angle : angles) mean += angle / static_cast<double>(angles.size());
-  const double whole = 2 * kPi * std::round(mean / (2 * kPi));
-  for (double& angle : angles) angle -= whole;
 }
 
 using Turn = std::complex<double>;  // an angle in a plane, as a unit number
@@ -346,7 +303,7 @@ class Solver {
       std::vector<Vec3> sums(shape.size(), Vec3::Zero());
       double count = 0;
       for (std::size_t f = 0; f < frames_; f += step, ++count) {
-        const Quat back = nearest_rotation(products(j, f, measured_[j * frames_ + f])).conjugate();
+        const Quat back = turn_of(products(j, f, measured_[j * frames_ + f])).conjugate();
         for (std::size_t i = 0; i < sums.size(); ++i) {
           sums[i] += back * way(j, at(targets_[j][i]), f);
         }
@@ -361,14 +318,14 @@ class Solver {
     // As the reference pose stands, as nearly as the shape allows.
     Mat3 sum = 1e-9 * Mat3::Identity();
     for (std::size_t i = 0; i < shape.size(); ++i) sum += reference[i] * shape[i].transpose();
-    const Quat turn = nearest_rotation(sum);
+    const Quat turn = turn_of(sum);
     for (Vec3& offset : shape) offset = turn * offset;
   }
 
   void fit(std::size_t j) {
     parallel_for(frames_, kGrain, input_.jobs, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
-        turns_[j * frames_ + f] = nearest_rotation(products(j, f, placed_[j * frames_ + f]));
+        turns_[j * frames_ + f] = turn_of(products(j, f, placed_[j * frames_ + f]));
       }
     });
   }
@@ -615,7 +572,6 @@ class Solver {
         angles[f] = twist_about(
             last, turns_[links.back() * frames_ + f].conjugate() * turns_[end * frames_ + f]);
       }
-      unwrap(angles);
       for (std::size_t i = 0; i < links.size(); ++i) {
         const double share = share_of(links[i], i, links.size());
         if (share == 0) continue;

@@ -41,16 +41,23 @@ std::vector<double> noise_of(std::span<const int> parents, std::span<const Vec3>
 
 namespace {
 
-// Where a track jumps to another place, as after a rest pose in the first frame.
+// Where a track jumps to another place, as after a rest pose in the first frame: by a step much
+// longer than those before and after, which are long, too, where a joint is fast.
 std::vector<std::size_t> jumps_of(std::span<const Vec3> track, double noise) {
+  constexpr std::size_t kAround = 3;
   std::vector<double> steps;
   for (std::size_t t = 1; t < track.size(); ++t) steps.push_back((track[t] - track[t - 1]).norm());
-  std::vector<double> sorted = steps;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
   std::vector<std::size_t> jumps;
   for (std::size_t t = 0; t < steps.size(); ++t) {
-    if (steps[t] > std::max(10 * *middle, 20 * noise)) jumps.push_back(t + 1);
+    if (steps[t] <= 20 * noise) continue;
+    const std::size_t first = t - std::min(t, kAround);
+    std::vector<double> near(
+        steps.begin() + std::ptrdiff_t(first),
+        steps.begin() + std::ptrdiff_t(std::min(t + kAround + 1, steps.size())));
+    near.erase(near.begin() + std::ptrdiff_t(t - first));
+    const auto middle = near.begin() + std::ptrdiff_t(near.size() / 2);
+    std::nth_element(near.begin(), middle, near.end());
+    if (near.empty() || steps[t] > 10 * *middle) jumps.push_back(t + 1);
   }
   return jumps;
 }

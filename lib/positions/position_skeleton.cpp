@@ -46,18 +46,19 @@ constexpr Named kNamed[] = {
     {"h36m17", 50, R"(hips (*right|left:*_hip<hips *_knee<*_hip *_ankle<*_knee) spine<hips
         thorax<spine@chest neck<thorax head<neck
         (*left|right:*_shoulder<thorax *_elbow<*_shoulder *_wrist<*_elbow))"},
-    // COCO's keypoints (cocodataset.org). It has neither hips nor neck: means of both sides.
-    {"coco17", 0, R"(nose<neck@head *_eye<nose@helper *_ear<nose@helper
+    // COCO's keypoints (cocodataset.org). It has no hips, neck and head: means of both sides.
+    {"coco17", 0, R"(nose<head@helper *_eye<head@helper *_ear<head@helper
         *_shoulder<neck@*_upper_arm *_elbow<*_shoulder *_wrist<*_elbow *_hip<hips *_knee<*_hip
-        *_ankle<*_knee hips=left_hip+right_hip neck<hips=left_shoulder+right_shoulder)"},
+        *_ankle<*_knee hips=left_hip+right_hip neck<hips=left_shoulder+right_shoulder
+        head<neck=left_ear+right_ear)"},
     // MediaPipe's BlazePose landmarks (ai.google.dev/edge/mediapipe, pose landmarker).
-    {"mediapipe33", 30, R"(nose<neck@head
-        (*left|right:*_eye_inner<nose@helper *_eye<nose@helper *_eye_outer<nose@helper)
-        *_ear<nose@helper mouth_*<nose@helper *_shoulder<neck@*_upper_arm *_elbow<*_shoulder
+    {"mediapipe33", 30, R"(nose<head@helper
+        (*left|right:*_eye_inner<head@helper *_eye<head@helper *_eye_outer<head@helper)
+        *_ear<head@helper mouth_*<head@helper *_shoulder<neck@*_upper_arm *_elbow<*_shoulder
         *_wrist<*_elbow *_pinky<*_wrist@*_little_1 *_index<*_wrist@*_index_1
         *_thumb<*_wrist@*_thumb_1 *_hip<hips *_knee<*_hip *_ankle<*_knee *_heel<*_ankle@helper
         *_foot_index<*_ankle@*_toes hips=left_hip+right_hip
-        neck<hips=left_shoulder+right_shoulder)"},
+        neck<hips=left_shoulder+right_shoulder head<neck=left_ear+right_ear)"},
     // OptiTrack Motive's skeleton of 21 bones as NatNet streams and exports it.
     {"optitrack21", 120, R"(Hip@hips Ab<Hip@spine Chest<Ab Neck<Chest Head<Neck
         LShoulder<Chest@left_collar LUArm<LShoulder@left_upper_arm LFArm<LUArm@left_lower_arm
@@ -245,19 +246,17 @@ std::vector<std::string> skeleton_names() {
   return names;
 }
 
-std::string_view skeleton_of_columns(std::size_t columns) {
+std::vector<std::string_view> skeletons_of_columns(std::size_t columns) {
   static const auto counts = [] {
     std::array<std::size_t, std::size(kNamed)> all;
     std::ranges::transform(kNamed, all.begin(),
                            [](const Named& n) { return at(named_skeleton(n.name)->columns()); });
     return all;
   }();
-  std::string_view found;
+  std::vector<std::string_view> found;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     // smpl22 is the same as humanml22.
-    if (counts[i] != columns || kNamed[i].name == "smpl22") continue;
-    if (!found.empty()) return {};
-    found = kNamed[i].name;
+    if (counts[i] == columns && kNamed[i].name != "smpl22") found.push_back(kNamed[i].name);
   }
   return found;
 }

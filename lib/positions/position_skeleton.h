@@ -32,8 +32,8 @@ struct PositionSkeleton {
 std::optional<PositionSkeleton> named_skeleton(std::string_view name);
 std::vector<std::string> skeleton_names();
 
-// The name of the skeleton with so many columns; empty if there is none or several.
-std::string_view skeleton_of_columns(std::size_t columns);
+// The names of skeletons with so many columns.
+std::vector<std::string_view> skeletons_of_columns(std::size_t columns);
 
 // A skeleton in Krok's frame with parents first.
 struct ArrangedSkeleton {

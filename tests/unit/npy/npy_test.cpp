@@ -22,6 +22,11 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
+krok::Result<Array> parsed(const std::string& file) {
+  const auto bytes = bytes_of(file);
+  return krok::npy::parse({bytes.begin(), bytes.end()});
+}
+
 std::string npy_file(const std::string& header, const std::string& data, char version = 1) {
   const auto length = static_cast<char>(header.size());
   const std::string size = version == 1 ? ""s + length + '\0' : ""s + length + "\0\0\0"s;
@@ -36,13 +41,13 @@ std::string header_of(const std::string& type, const std::string& shape, bool fo
 std::vector<double> numbers(const std::string& type, const std::string& shape,
                             const std::string& data, bool fortran = false, char version = 1) {
   const std::string file = npy_file(header_of(type, shape, fortran), data, version);
-  const auto array = krok::npy::parse(bytes_of(file));
+  const auto array = parsed(file);
   EXPECT_TRUE(array.ok()) << array.error().message;
   return array.ok() ? array->numbers() : std::vector<double>();
 }
 
 std::string error_code(const std::string& file) {
-  const auto array = krok::npy::parse(bytes_of(file));
+  const auto array = parsed(file);
   EXPECT_FALSE(array.ok());
   return array.ok() ? "" : array.error().code;
 }
@@ -64,7 +69,7 @@ TEST(Npy, a_part_in_either_order_of_axes) {
   for (const bool fortran : {false, true}) {
     const std::string file =
         npy_file(header_of("|u1", "(2, 3)", fortran), fortran ? "\1\4\2\5\3\6" : "\1\2\3\4\5\6");
-    const auto array = krok::npy::parse(bytes_of(file));
+    const auto array = parsed(file);
     ASSERT_TRUE(array.ok());
     EXPECT_EQ(array->numbers(2, 3), (std::vector<double>{3, 4, 5}));
     EXPECT_EQ(array->numbers(5), std::vector<double>{6});
@@ -135,6 +140,7 @@ TEST(Npy, axes_in_another_order_are_explained) {
   EXPECT_NE(hint_for({22, 3, 40}).find("transpose(2, 0, 1)"), std::string::npos);
   EXPECT_NE(hint_for({22, 3}).find("a[None]"), std::string::npos);
   EXPECT_NE(hint_for({40, 263}).find("recover_from_ric()"), std::string::npos);
+  EXPECT_NE(hint_for({40, 17, 3}).find("h36m17 or coco17"), std::string::npos);
   EXPECT_NE(hint_for({40, 22, 4}).find("a[..., :3]"), std::string::npos);
 }
 
@@ -145,6 +151,8 @@ TEST(Npy, published_orders_make_people) {
     EXPECT_TRUE(check(arranged->skeleton).ok()) << name;
     // The robot has no head.
     EXPECT_EQ(arranged->roles.humanoid, name != "g1_34") << name;
+    const int head = arranged->roles.joint(krok::Role::head);
+    EXPECT_TRUE(head < 0 || arranged->skeleton.names[std::size_t(head)] != "nose") << name;
   }
 }
 
