@@ -311,8 +311,8 @@ int print_and_end(const std::string& tool, const std::string& text) {
 
 int run_tool(const MakeToolSpec& make_spec, int argc, char** argv, const ManyFiles& many) {
   // Memory of one file serves the next: to give it back takes up to half of a batch's time.
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);
-  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+  mallopt(M_TRIM_THRESHOLD, 16 << 20);
   open_missing_standard_streams();
   allow_many_descriptors();
   remove_temporaries_on_signals();
