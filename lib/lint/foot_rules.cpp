@@ -19,6 +19,7 @@ constexpr double kNear = 0.03;           // metres above the support, of points 
 constexpr double kRising = 0.25;         // metres per second; faster up or down is a step
 constexpr double kFastest = 1.7;         // metres per second; faster is a swing, not a slide
 constexpr double kShortestSlide = 0.1;   // seconds
+constexpr double kStepEnd = 0.06;        // seconds in which a foot lands or leaves
 constexpr double kResting = 0.045;       // metres per second; slower is rest
 constexpr double kTogether = 0.35;       // difference of two feet's velocities over their size
 constexpr double kUneven = 0.1;          // metres, of heights of contacts on level ground
@@ -95,22 +96,20 @@ class Slides {
         slowest = right;
       }
       const double speed = slowest < 0 ? 0 : velocity(slowest, f).norm() / series_.scale;
-      if (speed < kResting || speed > kFastest) {
-        end(f);
+      const bool steps = slowest < 0 || speed > kFastest;
+      if (steps || speed < kResting) {
+        end(f, steps);
+        after_step_ = steps;
         continue;
       }
-      if (frames_ == 0) first_ = f;
-      ++frames_;
-      const Vec3 moved = velocity(slowest, f) / series_.rate;
-      way_ += moved;
-      if (moved.norm() > fastest_) fastest_ = moved.norm(), worst_ = f, point_ = slowest;
+      points_.push_back(slowest);
       if (left >= 0 && right >= 0) {
         const Vec3 a = velocity(left, f), b = velocity(right, f);
         ++both_;
         if ((a - b).norm() < kTogether * std::max(a.norm(), b.norm())) ++together_;
       }
     }
-    end(series_.frames);
+    end(series_.frames, false);
   }
 
  private:
@@ -118,36 +117,52 @@ class Slides {
     return soles_.velocities[at(track)][at(frame)];
   }
   // Whether the hips hardly move while feet slide, as in a motion in place.
-  bool hips_stay(int last) const {
+  bool hips_stay(int first, int last, const Vec3& slid) const {
     Vec3f way = series_.clip.frame_positions(last)[at(series_.carrier)] -
-                series_.clip.frame_positions(first_)[at(series_.carrier)];
+                series_.clip.frame_positions(first)[at(series_.carrier)];
     way.y() = 0;
-    return way.norm() < 0.2 * way_.norm();
+    return way.norm() < 0.2 * slid.norm();
   }
-  void end(int frame) {
-    if (frames_ >= series_.frames_in(kShortestSlide, 3)) {
-      Finding finding;
-      const bool body = both_ > frames_ / 3 && together_ > both_ / 2;
+  void end(int frame, bool before_step) {
+    // A foot that lands or leaves is no slide.
+    const int first = frame - static_cast<int>(points_.size()),
+              margin = series_.frames_in(kStepEnd, 1);
+    Finding finding;
+    finding.first = first + (after_step_ ? margin : 0);
+    finding.last = frame - 1 - (before_step ? margin : 0);
+    if (finding.last - finding.first + 1 >= series_.frames_in(kShortestSlide, 3)) {
+      Vec3 way = Vec3::Zero();
+      double fastest = 0;
+      int point = 0;
+      for (int f = finding.first; f <= finding.last; ++f) {
+        const Vec3& speed = velocity(points_[at(f - first)], f);
+        way += speed / series_.rate;
+        if (speed.norm() > fastest) {
+          fastest = speed.norm(), finding.worst = f, point = points_[at(f - first)];
+        }
+      }
+      const bool body = 3 * both_ > static_cast<int>(points_.size()) && together_ > both_ / 2;
       finding.rule = body ? Rule::drift : Rule::foot_slide;
-      finding.joint = soles_.found.tracks[at(point_)].point.joint;
-      finding.first = first_, finding.last = frame - 1, finding.worst = worst_;
-      finding.value = way_.norm();
+      finding.joint = soles_.found.tracks[at(point)].point.joint;
+      finding.value = way.norm();
       finding.threshold = series_.threshold(finding.rule) * series_.scale, finding.unit = "m";
-      finding.detail = fmt::format("up to {} m/s", readable(fastest_ * series_.rate, 2));
-      if (hips_stay(frame - 1)) finding.detail += ", hips stay: --treadmill if the ground moves";
+      finding.detail = fmt::format("up to {} m/s", readable(fastest, 2));
+      if (hips_stay(finding.first, finding.last, way)) {
+        finding.detail += ", hips stay: --treadmill if the ground moves";
+      }
       if (finding.value > finding.threshold) found_.push_back(finding);
     }
-    frames_ = both_ = together_ = 0;
-    way_ = Vec3::Zero();
-    fastest_ = 0;
+    points_.clear();
+    both_ = together_ = 0;
+    after_step_ = false;
   }
 
   const Series& series_;
   const Soles& soles_;
   std::vector<Finding>& found_;
-  int frames_ = 0, first_ = 0, worst_ = 0, point_ = 0, both_ = 0, together_ = 0;
-  Vec3 way_ = Vec3::Zero();
-  double fastest_ = 0;
+  std::vector<int> points_;  // the slowest of each frame of a slide
+  bool after_step_ = false;  // a foot landed just before
+  int both_ = 0, together_ = 0;
 };
 
 // How far a foot moves in one contact.

@@ -249,6 +249,25 @@ TEST(LintFaults, TreadmillsSlideNoFeet) {
   EXPECT_EQ(find(faults_of(clip, options), Rule::foot_slide, kAt), nullptr);
 }
 
+TEST(LintFaults, FeetThatLandAndLeaveFastSlideNowhere) {
+  // A frame of several, so that feet stop and leave within one or two.
+  for (const int factor : {6, 7}) {
+    const Clip slow = usual_walk(factor == 6 ? 24 : 30);
+    Clip fast = slow;
+    fast.rate = 25;
+    fast.resize(slow.frame_count() / factor);
+    for (int f = 0; f < fast.frame_count(); ++f) {
+      std::ranges::copy(slow.frame_positions(factor * f), fast.frame_positions(f).begin());
+      std::ranges::copy(slow.frame_orientations(factor * f), fast.frame_orientations(f).begin());
+    }
+    lint::MotionOptions options;
+    options.settings.enabled.fill(false);
+    options.settings.enabled[static_cast<std::size_t>(Rule::foot_slide)] = true;
+    const auto faults = faults_of(fast, options);
+    EXPECT_TRUE(faults.findings.empty()) << factor << "\n" << listed(fast, faults);
+  }
+}
+
 TEST(LintRules, RunOnlyIfEnabledAndByTheirLimits) {
   const Clip clip = changed(usual_walk(), seeded_faults().front().change);
   lint::MotionOptions options;
