@@ -201,11 +201,12 @@ void BodyStep::pose(double time, PoseVector& pose,
   }
 }
 
-double BodyMotion::off_of(std::size_t print) const {
-  if (print > 0 && print <= steps_.size() && std::isfinite(steps_[print - 1].stance_off)) {
-    return steps_[print - 1].stance_off;
+double BodyMotion::leaves(std::size_t print, double BodyStep::*swing,
+                          double BodyStep::*stance) const {
+  if (print > 0 && print <= steps_.size() && std::isfinite(steps_[print - 1].*stance)) {
+    return steps_[print - 1].*stance;
   }
-  return print < steps_.size() ? steps_[print].off : steps_.back().finish + 1;
+  return print < steps_.size() ? steps_[print].*swing : steps_.back().finish + 1;
 }
 
 Gap BodyMotion::gap_after(std::size_t step) const {
@@ -292,7 +293,7 @@ void joined_pose(const BodyStep& step, double time, const Gap* before, const Gap
   }
 }
 
-Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
+Status BodyMotion::set_times(const PlannedWalk& plan, double off, double toes_off, double speed,
                              BodyStep& step) const {
   using enum BodyStep::Kind;
   step.start = steps_.empty() ? 0 : steps_.back().strike;
@@ -321,24 +322,25 @@ Status BodyMotion::set_times(const PlannedWalk& plan, double off, double speed,
   step.lead = lead * step.scale;
   step.strike = step.start + (lead + moving) * step.scale;
   step.finish = step.strike + tail * step.scale;
-  if (lead > 0) {
-    step.off = step.start + step.lead + 0.05 * moving * step.scale;
-  } else if (step.kind == last && !step.runs()) {
-    // When the slowing blend reaches its toe-off.
-    const double part = bisected([&](double u) { return step.rest * (1 - speed_up(1 - u)) < off; });
-    step.off = step.start + part * moving * step.scale;
-  } else {
-    step.off = step.start + off * step.scale;
-  }
-  step.stance_off = std::numeric_limits<double>::infinity();
-  if (step.kind == middle && step.runs()) {
-    step.stance_off = step.start + step.blend_stance_off * step.scale;
-  } else if (step.kind == first && step.runs()) {
-    const double part = bisected([&](double u) {
-      return std::lerp(step.rest, length, speed_up(u)) < step.blend_stance_off;
-    });
-    step.stance_off = step.start + (lead + part * moving) * step.scale;
-  }
+  const auto swing_leaves = [&](double when) {
+    if (lead > 0) return step.start + step.lead + 0.05 * moving * step.scale;
+    if (step.kind != last || step.runs()) return step.start + when * step.scale;
+    // When the slowing blend gets there.
+    const double part =
+        bisected([&](double u) { return step.rest * (1 - speed_up(1 - u)) < when; });
+    return step.start + part * moving * step.scale;
+  };
+  const auto stance_leaves = [&](double when) {
+    if (step.kind == middle && step.runs()) return step.start + when * step.scale;
+    if (step.kind != first || !step.runs()) return std::numeric_limits<double>::infinity();
+    const double part =
+        bisected([&](double u) { return std::lerp(step.rest, length, speed_up(u)) < when; });
+    return step.start + (lead + part * moving) * step.scale;
+  };
+  step.off = swing_leaves(off);
+  step.toes_off = swing_leaves(step.runs() ? off : toes_off);
+  step.stance_off = stance_leaves(step.blend_stance_off);
+  step.stance_toes_off = stance_leaves(toes_off);
   return {};
 }
 
@@ -387,13 +389,14 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
   step.start = steps_.empty() ? 0 : steps_.back().strike;
   const std::vector<double>& times = step.motion.keytimes();
   const StepKind made_of = libraries[at(planned.library)].kind();
-  double off = 0;
+  double off = 0, toes_off = 0;
   step.blend_strike = times[index_of_time(maker.library(), "swing_strike")];
   if (made_of == StepKind::run) {
-    step.blend_stance_off = walker.run_off * times[index_of_time(maker.library(), "stance_off")];
+    toes_off = times[index_of_time(maker.library(), "stance_off")];
+    step.blend_stance_off = walker.run_off * toes_off;
     step.rest = kBesideInRun * step.blend_stance_off;
   } else {
-    const double toes_off = times[index_of_time(maker.library(), "swing_off")];
+    toes_off = times[index_of_time(maker.library(), "swing_off")];
     // At a start the ball leaves the ground as long before the toes as in a walk.
     off = made_of == StepKind::start
               ? toes_off - std::min((1 - walker.ball_off) * walker.usual_off, toes_off / 2)
@@ -419,7 +422,7 @@ Status BodyMotion::add_step(std::span<const StepLibrary> libraries, const Walker
                                   : middle;
   if (step.kind == captured_start || step.kind == captured_stop) step.stand.resize(0);
   take_slope(plan, planned, maker.library(), step);
-  if (Status status = set_times(plan, off, options.speed, step); !status) return status;
+  if (Status status = set_times(plan, off, toes_off, options.speed, step); !status) return status;
   step.stance_to_world = stance_frame(walker, print, libraries[at(planned.library)], step);
   if (step.stand.size() > 0) {
     PoseVector sample;

@@ -82,10 +82,12 @@ struct BodyStep {
   Kind kind = Kind::middle;
   int stance = 0;  // print
   Transform stance_to_world;
-  double start = 0, off = 0, strike = 0;  // seconds: of the step, the swing foot's off and strike
-  double stance_off = 0;                  // seconds, of the stance foot in a run; else infinite
-  double finish = 0;                      // seconds, strike but for the last step
-  double scale = 1;                       // seconds of the walk for a second of the blend
+  double start = 0, strike = 0;  // seconds: of the step, and of the swing foot
+  // Seconds, when the ball of the swing foot leaves the ground, and its toes; and the same of the
+  // stance foot in a run, else infinite.
+  double off = 0, toes_off = 0, stance_off = 0, stance_toes_off = 0;
+  double finish = 0;            // seconds, strike but for the last step
+  double scale = 1;             // seconds of the walk for a second of the blend
   double rest = 0;              // seconds of the blend where it rests beside the stance foot
   double blend_strike = 0;      // seconds of the blend
   double blend_stance_off = 0;  // the same, of a run; else 0
@@ -132,9 +134,15 @@ class BodyMotion {
                                    const PlannedWalk& plan, const WalkOptions& options);
 
   const std::vector<BodyStep>& steps() const { return steps_; }
-  // Seconds, when the foot leaves that print: before the other foot strikes in a run, and as it
-  // does where a run begins; after the walk for the last two prints.
-  double off_of(std::size_t print) const;
+  // Seconds, when the foot's ball leaves that print: before the other foot strikes in a run, and as
+  // it does where a run begins; after the walk for the last two prints.
+  double off_of(std::size_t print) const {
+    return leaves(print, &BodyStep::off, &BodyStep::stance_off);
+  }
+  // The same of the toes, which leave it last.
+  double toes_off_of(std::size_t print) const {
+    return leaves(print, &BodyStep::toes_off, &BodyStep::stance_toes_off);
+  }
   // The gap after a step that is not the last.
   Gap gap_after(std::size_t step) const;
 
@@ -143,7 +151,10 @@ class BodyMotion {
   void sum_examples(std::span<const StepLibrary> libraries, const PlannedWalk& plan);
   Status add_step(std::span<const StepLibrary> libraries, const Walker& walker,
                   const PlannedWalk& plan, std::size_t index, const WalkOptions& options);
-  Status set_times(const PlannedWalk& plan, double off, double speed, BodyStep& step) const;
+  double leaves(std::size_t print, double BodyStep::*swing, double BodyStep::*stance) const;
+  // `off` and `toes_off` in seconds of the blend.
+  Status set_times(const PlannedWalk& plan, double off, double toes_off, double speed,
+                   BodyStep& step) const;
 
   std::vector<BodyStep> steps_;
   std::vector<std::unique_ptr<const parametric::ExampleSums>> sums_;  // that the steps use

@@ -406,16 +406,18 @@ MotionKeys keys_of(const WalkParts& parts, std::span<const Stance> stances, doub
     const Leg& leg = parts.leg_of(print);
     GroundedPrint& grounded = prints[print];
     grounded.strike = stance.strike;
-    grounded.off = std::min(stance.off, duration);
+    const double toes_off = parts.body.toes_off_of(print);
+    grounded.off = std::min(toes_off, duration);
     const Transform flat = flat_foot(leg, grounded);
     const std::string side = name_of(grounded.side);
     if (print >= 2) keys.keytimes.push_back({stance.strike, side + "_strike"});
-    if (stance.off < duration) keys.keytimes.push_back({stance.off, side + "_off"});
+    if (toes_off < duration) keys.keytimes.push_back({toes_off, side + "_off"});
     keys.contacts.push_back(
         {leg.foot, stance.flat_from, std::min(stance.flat_to, duration), flat.position});
     if (leg.toes < 0) continue;
     const Transform toes = parts.walker.skeleton->reference_local(leg.toes);
-    keys.contacts.push_back({leg.toes, stance.ball_from(), grounded.off, flat * toes.position});
+    keys.contacts.push_back(
+        {leg.toes, stance.ball_from(), std::min(stance.off, duration), flat * toes.position});
   }
   std::ranges::stable_sort(keys.contacts, [](const Contact& a, const Contact& b) {
     return a.start != b.start ? a.start < b.start : a.joint < b.joint;

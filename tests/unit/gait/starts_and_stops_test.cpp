@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/index.h"
 #include "parametric/thin_out.h"
 #include "unit/gait/walkers.h"
@@ -224,6 +226,33 @@ TEST(StartsAndStops, AloneAreNoWalk) {
   const auto made = walk(libraries, test::prints_of({}), level, {});
   ASSERT_FALSE(made.ok());
   EXPECT_EQ(made.error().code, "walk-library");
+}
+
+// Would fail if a print's off, and the keytime beside the motion, were when the ball leaves: the
+// walk's double support would seem to be a third of what it is.
+TEST(StepTimes, FeetAreOffWhenTheToesOfTheExamplesLeave) {
+  const parametric::Library& library = test::walking().front().library();
+  double first = 1, last = 0;  // of the time between the other foot's strikes
+  for (const parametric::Example& example : library.examples) {
+    const auto time_of = [&](const char* name) {
+      return example.keytimes[static_cast<std::size_t>(std::ranges::find(library.keytimes, name) -
+                                                       library.keytimes.begin())];
+    };
+    const double start = example.keytimes.front();
+    const double part = (time_of("swing_off") - start) / (time_of("swing_strike") - start);
+    first = std::min(first, part);
+    last = std::max(last, part);
+  }
+  const test::Ground level([](double, double) { return 0.0; });
+  const auto made = walk(test::walking(), test::prints_of({.steps = 8}), level, {});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  const std::vector<GroundedPrint>& prints = made->details.prints;
+  for (std::size_t k = 2; k + 3 < prints.size(); ++k) {
+    const double step = prints[k + 2].strike - prints[k + 1].strike;
+    const double part = (prints[k].off - prints[k + 1].strike) / step;
+    EXPECT_GT(part, first - 0.01) << k;
+    EXPECT_LT(part, last + 0.01) << k;
+  }
 }
 
 }  // namespace
