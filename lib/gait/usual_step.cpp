@@ -5,9 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
 
 #include "core/numbers.h"
 #include "gait/walker_internal.h"
+#include "parametric/library.h"
 
 namespace krok::gait {
 
@@ -20,17 +25,41 @@ constexpr double kToesPerBall = 1.45;  // from heel to toes, of heel to ball
 constexpr double kUnknownSole = 0.16;  // metres from heel to ball, where the ball is not known
 constexpr double kMoreLength = 0.03;   // metres beyond the longest example
 
-// The mean of the steps that go straight on over level ground, if there are any: in steps that all
-// turn to one side, toes would seem to point to that side.
+bool is_straight(const StepLibrary& steps, const FoundStep& step) {
+  return std::abs(step.turn - 2 * steps.toe_out()) < kStraightStep;
+}
+
+// Captures of steps that nearly all go straight on: before and after a turn people slow down.
+std::set<std::string_view> straight_captures(const StepLibrary& steps) {
+  constexpr double kNearlyAll = 0.75;
+  std::map<std::string_view, std::pair<int, int>> counts;  // straight steps, all
+  for (std::size_t e = 0; e < steps.found_steps().size(); ++e) {
+    auto& [straight, all] = counts[parametric::capture_of(steps.library().examples[e].name)];
+    straight += is_straight(steps, steps.found_steps()[e]) ? 1 : 0;
+    ++all;
+  }
+  std::set<std::string_view> captures;
+  for (const auto& [capture, count] : counts) {
+    if (count.first >= kNearlyAll * count.second) captures.insert(capture);
+  }
+  return captures;
+}
+
+// The mean of the steps that go straight on over level ground, in captures that do if there are
+// any: in steps that all turn to one side, toes would seem to point to that side.
 FoundStep mean_of_steps(const StepLibrary& steps) {
-  std::array<FoundStep, 3> sums;  // level and straight, level, all
-  std::array<int, 3> counts{};
+  std::array<FoundStep, 4> sums;  // level and straight in straight captures; so in any; level; all
+  std::array<int, 4> counts{};
+  const std::set<std::string_view> captures = straight_captures(steps);
   for (std::size_t e = 0; e < steps.found_steps().size(); ++e) {
     if (!steps.in_style(e)) continue;
     const FoundStep& step = steps.found_steps()[e];
-    const bool is_level = std::abs(step.up) < kLevelStep;
-    const bool is_straight = std::abs(step.turn - 2 * steps.toe_out()) < kStraightStep;
-    for (std::size_t i = is_level ? (is_straight ? 0 : 1) : 2; i < sums.size(); ++i) {
+    const std::string_view capture = parametric::capture_of(steps.library().examples[e].name);
+    const std::size_t first = std::abs(step.up) >= kLevelStep ? 3
+                              : !is_straight(steps, step)     ? 2
+                              : !captures.contains(capture)   ? 1
+                                                              : 0;
+    for (std::size_t i = first; i < sums.size(); ++i) {
       sums[i].along += step.along;
       sums[i].across += step.across;
       sums[i].turn += step.turn;
@@ -38,10 +67,10 @@ FoundStep mean_of_steps(const StepLibrary& steps) {
     }
   }
   std::size_t i = 0;
-  while (i < 2 && counts[i] == 0) ++i;
+  while (i < 3 && counts[i] == 0) ++i;
   const double count = counts[i];
   // If all steps turn, their toes show the turn.
-  const double turn = i == 0 ? sums[i].turn / count : 2 * steps.toe_out();
+  const double turn = i < 2 ? sums[i].turn / count : 2 * steps.toe_out();
   return {sums[i].along / count, sums[i].across / count, 0, turn};
 }
 

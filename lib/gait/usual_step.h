@@ -8,10 +8,11 @@
 namespace krok::gait {
 
 // Options for planning prints as the steps of the libraries are, over their examples: length, width
-// and toe-out are the means of the first library, taken of the examples on level ground if there
-// are any; the most in length and turn are the most of all of them. The sole is that of the first
-// library's left foot. A library of steps backward plans a walk backward.
-// Codes: walk-legs; walk-library if the steps go neither forward nor backward.
+// and toe-out are the means of the first library, taken of the straight examples on level ground if
+// there are any, in captures that mostly go straight on if there are any; the most in length and
+// turn are the most of all of them. The sole is that of the first library's left foot. A library of
+// steps backward plans a walk backward. Codes: walk-legs; walk-library if the steps go neither
+// forward nor backward.
 Result<PlanOptions> usual_steps(std::span<const StepLibrary> libraries);
 
 // Metres of the steps that go at `speed` (m/s, > 0) in the libraries of walks and runs: steps last
