@@ -14,8 +14,9 @@ namespace {
 constexpr double kDegree = kRadiansPerDegree;
 constexpr double kMaxChange = 15 * kDegree;  // steeper slopes change no more
 constexpr double kTilt = 0.5;                // of the grade: of the line from hip to ankle
-// Per radian downhill: a knee of 20 degrees at 7.5 in mid-stance, of 11 on the level.
-constexpr double kLower = 0.18;
+// Per radian: in mid-stance knees of 20 degrees 7.5 degrees downhill and of 18 uphill, of 11 on the
+// level.
+constexpr double kLowerDown = 0.18, kLowerUp = 0.04;
 constexpr double kLeanUp = 0.6, kLeanDown = 0.25;  // of the grade
 constexpr double kMaxLeanUp = 8 * kDegree, kMaxLeanDown = 3 * kDegree;
 constexpr double kLessPitch = 0.015 / kDegree;  // of the landing foot's, uphill
@@ -43,7 +44,7 @@ SlopeGait slope_gait(double grade, double sole) {
   gait.duration = duration_at(slope);
   gait.length = std::min(gait.duration, 1.0);
   gait.ahead = -std::tan(kTilt * slope);
-  gait.lower = kLower * std::max(-slope, 0.0);
+  gait.lower = slope < 0 ? -kLowerDown * slope : kLowerUp * slope;
   gait.lean = grade > 0 ? std::min(kLeanUp * grade, kMaxLeanUp)
                         : std::max(kLeanDown * grade, -kMaxLeanDown);
   gait.landing = 1 - kLessPitch * std::max(slope, 0.0);
