@@ -16,7 +16,7 @@ constexpr double kMaxChange = 15 * kDegree;  // steeper slopes change no more
 constexpr double kTilt = 0.5;                // of the grade: of the line from hip to ankle
 // Per radian: in mid-stance knees of 20 degrees 7.5 degrees downhill and of 18 uphill, of 11 on the
 // level.
-constexpr double kLowerDown = 0.18, kLowerUp = 0.04;
+constexpr double kLowerDown = 0.18, kLowerUp = 0.1;
 constexpr double kLeanUp = 0.6, kLeanDown = 0.25;  // of the grade
 constexpr double kMaxLeanUp = 8 * kDegree, kMaxLeanDown = 3 * kDegree;
 constexpr double kLessPitch = 0.015 / kDegree;  // of the landing foot's, uphill
