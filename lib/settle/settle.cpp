@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/index.h"
@@ -96,7 +97,8 @@ Settled Settler::finish() {
     if (jerk > 0) settled.jerk = jerk_of(motion) / jerk;
     for (const Eigen::VectorXd& values : values_) {
       for (std::size_t i = 1; i < freedoms_.size(); ++i) {
-        const double turn = values.segment<3>(static_cast<Eigen::Index>(3 + 3 * i)).norm();
+        const double turn = std::abs(std::remainder(
+            values.segment<3>(static_cast<Eigen::Index>(3 + 3 * i)).norm(), 2 * kPi));
         if (!(turn > settled.largest_turn)) continue;
         settled.largest_turn = turn;
         settled.turned_joint = freedoms_[i].joint;
