@@ -233,7 +233,7 @@ class Loader {
     UniqueNames names;
     for (const std::string& name : subject_.morphs.names) names.claim(name);
     for (std::string& name : targets.names) name = names.make(name);
-    append(std::move(targets));
+    append(targets);
     const MorphWeights own = std::move(subject_.weights);
     subject_.weights = with_correctives(own, subject_.clip, *weights);
     for (Subject::Motion& other : subject_.others) {
@@ -244,7 +244,7 @@ class Loader {
   }
 
   // Appends morph targets; all have normals if the model has.
-  void append(MorphSet targets) {
+  void append(const MorphSet& targets) {
     MorphSet& morphs = subject_.morphs;
     const std::vector<Vec3f>& normals = subject_.model.normals;
     if (normals.empty()) morphs.normals.clear();
