@@ -39,6 +39,19 @@ double twist_about(const Vec3& axis, const Quat& rotation) {
   return angle;
 }
 
+void unwrap(std::vector<double>& angles) {
+  double turns = 0, mean = 0;
+  for (std::size_t t = 1; t < angles.size(); ++t) {
+    angles[t] += turns;
+    const double more = -2 * kPi * std::round((angles[t] - angles[t - 1]) / (2 * kPi));
+    angles[t] += more;
+    turns += more;
+  }
+  for (const double angle : angles) mean += angle / static_cast<double>(angles.size());
+  const double whole = 2 * kPi * std::round(mean / (2 * kPi));
+  for (double& angle : angles) angle -= whole;
+}
+
 using Turn = std::complex<double>;  // an angle in a plane, as a unit number
 
 // Turns that follow `measured` by their weights, and none weakly: the least sum of
@@ -572,6 +585,7 @@ class Solver {
         angles[f] = twist_about(
             last, turns_[links.back() * frames_ + f].conjugate() * turns_[end * frames_ + f]);
       }
+      unwrap(angles);
       for (std::size_t i = 0; i < links.size(); ++i) {
         const double share = share_of(links[i], i, links.size());
         if (share == 0) continue;

@@ -27,7 +27,7 @@ Status plant_loop(const Options& options, const Edit& edit, Looped& looped) {
   const auto moving = travelling(*cycles, edit.carrier);
   auto contacts = find_contacts(moving ? *moving : *cycles, edit.roles);
   if (!contacts) return contacts.error();
-  // A loop in which no foot stands has nothing to hold.
+  // A loop in which no foot is in contact has nothing to hold.
   const auto planted = cli::plant(*cycles, edit.roles, std::move(contacts->contacts));
   if (!planted) return {};
   const int period = looped.clip.frame_count() - 1;
