@@ -98,6 +98,11 @@ class Reader {
     Status status = find_description();
     if (status) status = read_motions();
     if (status) status = make_library();
+    if (!status && path_.empty() && status.error().code == "parametric-none") {
+      // Motions without a step of a walk may be runs.
+      input_.description.kind = library::StepKind::runs;
+      if (make_library()) status = {};
+    }
     if (status && path_.empty()) status = leave_out_what_hardly_varies();
     if (status) status = choose();
     if (status) status = find_range(input_);

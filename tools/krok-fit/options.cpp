@@ -56,8 +56,9 @@ void declare(CommandOptions& command, Options& options) {
       .add_option(
           "library IN", options.inputs,
           "Library description (JSON): examples and parameters; or motions, or a folder of them: "
-          "their steps, mirrored ones too, become a library by length and turn; or sculpted poses "
-          "of a model (formats/correctives/SPEC.md), which become correctives for krok-skin")
+          "the steps of walks, or of runs if there are no walks, become a library by length and "
+          "turn, mirrored ones, too; or sculpted poses of a model (formats/correctives/SPEC.md), "
+          "which become correctives for krok-skin")
       .required();
   command.add_flag(
       "--keep-going", options.keep_going,

@@ -387,6 +387,33 @@ TEST_F(StepLibrary, AFolderOfWalksNeedsNoDescription) {
       std::ranges::any_of(bent["examples"], [](const json& e) { return e["mirrored"] == true; }));
 }
 
+// So does a folder of runs, whose feet are off before the other ones strike.
+TEST_F(StepLibrary, AFolderOfRunsNeedsNoDescription) {
+  std::filesystem::create_directory(path("runs"));
+  for (const std::string length : {"70", "80", "90"}) {
+    make_walk(length, "0");
+    std::filesystem::rename(path("walk_" + length + "_0.bvh"), path("runs/" + length + ".bvh"));
+    const std::string beside = path("runs/" + length + ".keys.json");
+    ASSERT_EQ(run_tool("krok-keys", {path("runs/" + length + ".bvh"), "-o", beside}).exit_code, 0);
+    json keys = json::parse(get(beside));
+    std::vector<json> times;
+    for (json key : keys["keytimes"]) {
+      if (key["name"].get<std::string>().ends_with("_off")) {
+        key["time"] = key["time"].get<double>() - 0.2;
+      }
+      if (key["time"] > 0.0) times.push_back(key);
+    }
+    std::ranges::sort(times, {}, [](const json& key) { return key["time"].get<double>(); });
+    keys["keytimes"] = times;
+    write("runs/" + length + ".keys.json", keys.dump());
+  }
+  const ToolRun fitted = run_tool("krok-fit", {path("runs"), "-o", path("runs.steps"), "--json"});
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+  const json info = json::parse(run_tool("krok-info", {path("runs.steps"), "--json"}).out);
+  EXPECT_EQ(info["result"]["files"][0]["keytimes"],
+            json::parse(R"(["stance_strike", "stance_off", "swing_strike"])"));
+}
+
 // Would fail if weights were shown of the first nine examples only.
 TEST_F(StepLibrary, WeightsOfAllExamplesAreShown) {
   for (const char* length : {"50", "57", "64", "70"}) {
