@@ -76,15 +76,18 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
   return found;
 }
 
-void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
-  if (!roles.humanoid) return;
-  // Allows for dolls and giants.
+bool is_plausible_size(double size) {
   constexpr double kSmallest = 0.3;
   constexpr double kTallest = 5.0;
+  return size >= kSmallest && size <= kTallest;
+}
+
+void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
+  if (!roles.humanoid) return;
   Eigen::AlignedBox3d box;
   for (const Transform& joint : skeleton.reference) box.extend(joint.position);
   const double size = box.sizes().maxCoeff();
-  if (size >= kSmallest && size <= kTallest) return;
+  if (is_plausible_size(size)) return;
   tell(diagnostics, Severity::warning, "scene-unit",
        fmt::format("the character is {} m in size in the file's unit, which is not a plausible "
                    "human size",

@@ -23,6 +23,9 @@ Mat4 rotation_to_apply(const nodes::Space& space);
 Conventions find_conventions(const nodes::Space& space, const Rig* rig, const RoleMap& roles,
                              std::span<const Vec3> samples, const GivenConventions& given);
 
+// Whether a person, a doll or a giant could be so large, in metres.
+bool is_plausible_size(double size);
+
 // Warns if a humanoid in Krok's frame is far from human size (code scene-unit). For scenes whose
 // unit was not detected but given by the file or the user.
 void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics);

@@ -102,6 +102,7 @@ TEST_F(Mistakes, WordsOfOtherToolsLeadOn) {
     EXPECT_THAT(refused("krok", {verb, "in.bvh"}), HasSubstr(hint));
   }
   EXPECT_THAT(refused("krok-import", {"in.bvh", "--output-dir", "o"}), HasSubstr("use --out-dir"));
+  EXPECT_THAT(refused("krok-edit", {"takes", "--out", "o"}), HasSubstr("--out-dir for a folder"));
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "--threads", "2"}), HasSubstr("use --jobs"));
   EXPECT_THAT(refused("krok-plot", {"in.bvh", "--mean"}), HasSubstr("use --show cycles"));
   EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--target", "a"}), HasSubstr("use --onto"));

@@ -20,6 +20,7 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"", "--format", "-o with that ending"},
     {"", "--input", "inputs without an option"},
     {"", "--out", "-o"},
+    {"", "--out", "--out-dir for a folder or several files, -o for one"},
     {"", "--out-folder", "--out-dir"},
     {"", "--outdir", "--out-dir"},
     {"", "--output-dir", "--out-dir"},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "character/space.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "motion/ground_frame.h"
@@ -85,7 +86,7 @@ Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
   return {};
 }
 
-Status change_size(const Options& options, ToolContext&, Edit& edit) {
+Status change_size(const Options& options, ToolContext& context, Edit& edit) {
   if (!options.scale && !options.height) return {};
   const double height = reference_height(edit.clip.skeleton);
   if (options.height && !(height > 0)) {
@@ -99,13 +100,19 @@ Status change_size(const Options& options, ToolContext&, Edit& edit) {
     edit.frames->skeleton = edit.clip.skeleton;
   }
   if (auto& removed = edit.clip.provenance.removed_root_motion) removed->velocity *= factor;
+  const double made = reference_height(edit.clip.skeleton);
+  if (character::is_plausible_size(height) && !character::is_plausible_size(made)) {
+    context.warn("motion-scale",
+                 fmt::format("{} is {} m high now", options.input, readable(made, 3)),
+                 "motions are in metres; a capture's unit is set by krok-import --unit");
+  }
   Json metrics;
   metrics["factor"] = factor;
   metrics["height_before"] = height;
-  metrics["height"] = reference_height(edit.clip.skeleton);
+  metrics["height"] = made;
   edit.note("scale", std::move(metrics),
             fmt::format("scaled by {}: height {} m instead of {} m", readable(factor),
-                        readable(reference_height(edit.clip.skeleton), 4), readable(height, 4)));
+                        readable(made, 4), readable(height, 4)));
   return {};
 }
 

@@ -283,12 +283,12 @@ Status make_strip(const std::vector<MovingActor>& actors, const std::vector<Imag
 }  // namespace
 
 void declare_sheet(CommandOptions& command, SheetOptions& options, GroundChoice& ground) {
-  command.add(
-      "--sheet OUT.png", options.sheet, output({".png"}),
-      "Contact sheet as PNG: characters at several times, in rows by file and side (more than "
-      "12 files: at four times, from the front left, unless --moments or --view say else); "
-      "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out where "
-      "alpha is below their cutoff, or below one half for blended ones");
+  command.add("--sheet OUT.png", options.sheet, output({".png"}),
+              "Contact sheet as PNG: characters at several times, in rows by file, animation and "
+              "side (more than "
+              "12 files: at four times, from the front left, unless --moments or --view say else); "
+              "materials with base colours, textures (PNG, JPEG) and vertex colours, cut out where "
+              "alpha is below their cutoff, or below one half for blended ones");
   command.add("--strip OUT.png", options.strip, output({".png"}),
               "Motion strip as PNG: a character at several times in one image, earlier ones "
               "fainter");
@@ -309,7 +309,7 @@ void declare_sheet(CommandOptions& command, SheetOptions& options, GroundChoice&
       "the reference pose (world)",
       "actor");
   add_body_option(command, options.body, kShownBody);
-  add_clip_option(command, options.clip);
+  add_clip_option(command, options.clip, "all");
   add_skin_method(command, options.method, kShownMethod);
 }
 
@@ -317,7 +317,8 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
                    ToolContext& context, OutputSet& outputs, std::vector<std::string>& done) {
   Results results{context, outputs, done};
   const std::vector<ImageSide> sides = sides_seen(options.image);
-  const auto actors = read_actors(inputs, {options.body, options.method, options.clip}, context);
+  const auto actors =
+      read_actors(inputs, {options.body, options.method, options.clip, true}, context);
   if (!actors) return actors.error();
   const auto ground = open_sheet_ground(options.ground, options.prints, context);
   if (!ground) return ground.error();

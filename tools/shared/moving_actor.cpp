@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <optional>
 
 #include "body/body.h"
@@ -115,8 +116,8 @@ struct Read {
     std::vector<Place> places;
   };
   std::vector<One> motions, models;
-  std::map<std::size_t, MovingActor> actors;  // keyed by input index
-  DecodedImages images;                       // of all of them
+  std::multimap<std::size_t, MovingActor> actors;  // keyed by input index
+  DecodedImages images;                            // of all of them
 
   void draw(One one, SkinMethod method, bool bones);
 };
@@ -167,30 +168,35 @@ void report_scene(const nodes::Scene& scene, ToolContext& context) {
 }
 
 // glTF files are drawn as viewers show them.
-Result<MovingActor> read_gltf(const InputFile& input, const ActorOptions& options,
-                              ToolContext& context, DecodedImages& images) {
+Status read_gltf(const InputFile& input, std::size_t place, const ActorOptions& options,
+                 ToolContext& context, Read& all) {
   const std::string& path = input.path();
   const bool bones = options.body == BodyChoice::none;
   auto read = io::open_scene(input, context, !bones);
   if (!read) return read.error();
   const auto file = std::make_shared<const nodes::Scene>(*std::move(read));
-  decode_base_colours(file->materials, path, context, images);
+  decode_base_colours(file->materials, path, context, all.images);
   report_scene(*file, context);
-  Diagnostics choice;
-  const auto animation = choose_animation(*file, options.clip, path, choice);
-  if (!animation) return animation.error();
-  context.diagnose(choice);
+  std::vector<int> animations(file->animations.size());
+  std::iota(animations.begin(), animations.end(), 0);
+  if (animations.size() < 2 || !options.every_clip || !options.clip.empty()) {
+    Diagnostics choice;
+    const auto animation = choose_animation(*file, options.clip, path, choice);
+    if (!animation) return animation.error();
+    context.diagnose(choice);
+    animations = {*animation};
+  }
   auto scene = scene_of(file);
   if (!scene) return Error(scene.error()).in_file(path);
   const std::string facts =
       fmt::format("{}, {}", counted(static_cast<int>(scene->meshes.size()), "mesh", "meshes"),
                   counted(static_cast<int>(scene->joint_names.size()), "joint"));
   const auto drawn_scene = std::make_shared<const DrawnScene>(
-      *std::move(scene), images, DrawnSceneOptions{.bones = bones, .one_grey_is_none = true});
+      *std::move(scene), all.images, DrawnSceneOptions{.bones = bones, .one_grey_is_none = true});
   if (!drawn_scene->as_bones() && !drawn_scene->has_triangles()) {
     return Error("figure-input", "the file has neither meshes nor joints").in_file(path);
   }
-  Drawn drawn{.scene = drawn_scene, .skeleton = {}, .animation = *animation, .in_floats = true};
+  Drawn drawn{.scene = drawn_scene, .skeleton = {}, .animation = -1, .in_floats = true};
   // Several roots, or joints without names, are no body.
   if (Skeleton joints = skeleton_of(drawn_scene->scene()); check(joints)) {
     const RoleMap roles = find_roles(joints);
@@ -200,9 +206,16 @@ Result<MovingActor> read_gltf(const InputFile& input, const ActorOptions& option
       drawn.skeleton = std::move(joints);
     }
   }
-  MovingActor actor = moving(path, std::move(drawn));
-  actor.facts = facts;
-  return actor;
+  for (const int animation : animations) {
+    drawn.animation = animation;
+    MovingActor actor = moving(path, drawn);
+    actor.facts = facts;
+    if (animations.size() > 1) {
+      actor.name += ": " + shown(nodes::animation_name(*file, static_cast<std::size_t>(animation)));
+    }
+    all.actors.emplace(place, std::move(actor));
+  }
+  return {};
 }
 
 Status add_file(const std::string& path, std::size_t place, const ActorOptions& options,
@@ -212,10 +225,7 @@ Status add_file(const std::string& path, std::size_t place, const ActorOptions& 
   if (!input) return input.error();
   const Kind kind = registry::identify(input->path(), input->bytes());
   if (kind == Kind::glb || kind == Kind::gltf) {
-    auto actor = read_gltf(*input, options, context, read.images);
-    if (!actor) return actor.error();
-    read.actors.emplace(place, *std::move(actor));
-    return {};
+    return read_gltf(*input, place, options, context, read);
   }
   auto actor = io::open_actor(*input, context,
                               {.clip = options.clip, .with_mesh = !bones, .with_camera = true});

@@ -1,5 +1,7 @@
 #include "tools/shared/shared_options.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <filesystem>
 
@@ -109,10 +111,12 @@ CommandOption add_skin_method(CommandOptions& command, SkinMethod& method,
                      help, "linear");
 }
 
-CommandOption add_clip_option(CommandOptions& command, std::string& clip) {
-  return command.add_option("--clip NAME", clip,
-                            "Animation of a glTF file that has several: name or number from 0 [the "
-                            "first that moves at least half as many joints as any other]");
+CommandOption add_clip_option(CommandOptions& command, std::string& clip,
+                              const std::string& otherwise) {
+  return command.add_option(
+      "--clip NAME", clip,
+      fmt::format("Animation of a glTF file that has several: name or number from 0 [{}]",
+                  otherwise));
 }
 
 CommandOption add_plant_flag(CommandOptions& command, bool& plant) {

@@ -73,8 +73,10 @@ inline constexpr const char* kShownMethod =
     "twisted "
     "joints, or rigid; not for glTF files";
 
-// --clip, of glTF files that are shown: a name or an index.
-CommandOption add_clip_option(CommandOptions& command, std::string& clip);
+// --clip, of glTF files that are shown: a name or an index; `otherwise` says what is shown without.
+CommandOption add_clip_option(CommandOptions& command, std::string& clip,
+                              const std::string& otherwise =
+                                  "the first that moves at least half as many joints as any other");
 
 // --plant, of the tools that blend.
 CommandOption add_plant_flag(CommandOptions& command, bool& plant);

@@ -284,6 +284,9 @@ TEST_F(KrokEdit, PlacesScalesAndGrounds) {
   EXPECT_NEAR(start.z, -0.2, 1e-5);
   EXPECT_NEAR(start.heading, 60 * kRadiansPerDegree, 1e-5);
   EXPECT_EQ(edited({"--scale", "2"}).frame_count(), 241);
+  // A capture in centimetres, one would think.
+  edited({"--scale", "100"});
+  EXPECT_THAT(last_message_, HasSubstr("[motion-scale]"));
   const Clip still = edited({"--in-place"});
   EXPECT_NEAR(ground_frame(still, 0, 200).z, ground_frame(still, 0, 0).z, 1e-5);
 }

@@ -129,9 +129,18 @@ TEST_F(SkinClips, MeshesKeepTheirNames) {
   tool("krok-diff", {"two.model", "again.model", "--tolerance", "0.01mm"});
 }
 
-TEST_F(SkinClips, ClipsAreChosenByNameInImages) {
+// Would fail if a sheet left out animations, or a rendered image did so without a word.
+TEST_F(SkinClips, ImagesShowAllClipsOrTheNamedOne) {
   tool("krok-skin", {"hero.character", "in.anim", "run.anim", "-o", "hero.glb"});
-  const ToolRun first = tool("krok-plot", {"hero.glb", "--sheet", "a.png", "--moments", "1"});
+  const ToolRun all = tool("krok-plot", {"hero.glb", "--sheet", "a.png", "--view", "front",
+                                         "--moments", "0s,0.3s", "--json"});
+  const json report = json::parse(all.out);
+  std::vector<std::string> rows;
+  for (const json& cell : report["result"]["sheet"]["cells"]) {
+    if (cell["column"] == 0) rows.push_back(cell["name"]);
+  }
+  EXPECT_THAT(rows, ElementsAre("hero.glb: in", "hero.glb: run"));
+  const ToolRun first = tool("krok-render", {"hero.glb", "-o", "f.png"});
   EXPECT_THAT(first.err, AllOf(HasSubstr("0 (in), 1 (run)"), HasSubstr("[clip-choice]")));
   const ToolRun run = tool("krok-plot", {"hero.glb", "--clip", "run", "--sheet", "b.png",
                                          "--moments", "0s,0.3s", "--json"});
