@@ -19,18 +19,20 @@ namespace krok::gait {
 namespace {
 
 // Costs of an example, metres: as far as joints are apart where two steps meet.
-constexpr double kOfParameters = 3.0;    // for the square of a range of the parameters
+constexpr double kOfParameters = 5.0;    // for the square of a range of the parameters
 constexpr double kOtherCapture = 0.015;  // than that of the step before
 constexpr double kOtherFoot = 0.01;      // a mirror image
-constexpr double kAgain = 0.02;  // for the step before with that foot, less for earlier ones
+constexpr double kAgain = 0.04;  // for the step before with that foot, less for earlier ones
 constexpr std::size_t kLastSteps = 6;
-constexpr double kByChance = 0.008;     // at most
-constexpr double kVelocityTime = 0.1;   // seconds: 1 m/s counts as 0.1 m
-constexpr double kVelocityOver = 0.05;  // seconds over which a velocity is taken
-constexpr double kNoStyle = 1e-6;       // sum of differences of weights
-constexpr int kStyleCorrections = 3;    // of the weights at an example's parameters
-constexpr int kStyleTries = 3;
+constexpr double kByChance = 0.008;       // at most
+constexpr double kVelocityTime = 0.1;     // seconds: 1 m/s counts as 0.1 m
+constexpr double kVelocityOver = 0.05;    // seconds over which a velocity is taken
+constexpr double kNoStyle = 1e-6;         // sum of differences of weights
+constexpr int kStyleCorrections = 3;      // of the weights at an example's parameters
+constexpr double kMinOfStyle = 0.2;       // less is left out
 constexpr double kFarFromExamples = 0.4;  // metres
+constexpr double kMeanOver = 0.06;        // standard deviation, of the parameters' ranges
+constexpr double kMinOfMean = 0.05;       // examples that count less are left out
 
 constexpr std::array kMatched = {Role::hips,
                                  Role::chest,
@@ -136,11 +138,7 @@ class Examples {
     int best = -1;
     for (std::size_t i = 0; i < begins_.size(); ++i) {
       if (!all_->in_style(i)) continue;
-      double far = 0;
-      for (std::size_t d = 0; d < scaled.size(); ++d) {
-        far += std::pow(scaled_[i * scaled.size() + d] - scaled[d], 2);
-      }
-      double cost = kOfParameters * far + kByChance * chance(seed, step, i);
+      double cost = kOfParameters * far_from(i, scaled) + kByChance * chance(seed, step, i);
       if (steps_->library().examples[i].mirrored) cost += kOtherFoot;
       for (std::size_t k = 0; k < last.size(); ++k) {
         if (last[k] != static_cast<int>(i)) continue;
@@ -157,6 +155,26 @@ class Examples {
       best = static_cast<int>(i);
     }
     return best;
+  }
+
+  // What the examples of the style differ by from the blends at their own parameters: the mean of
+  // those near these parameters, [examples].
+  std::vector<double> mean_style(std::span<const double> parameters,
+                                 const std::vector<std::uint8_t>& is_asked) {
+    std::vector<double> scaled(parameters.size()), mean(begins_.size(), 0);
+    steps_->bounds().scale(parameters, scaled);
+    double sum = 0;
+    for (std::size_t i = 0; i < begins_.size(); ++i) {
+      const double counts = std::exp(-0.5 * far_from(i, scaled) / (kMeanOver * kMeanOver));
+      if (!all_->in_style(i) || counts < kMinOfMean) continue;
+      const std::vector<double>& fit = fitted(static_cast<int>(i), is_asked);
+      if (fit.empty()) continue;
+      sum += counts;
+      mean[i] += counts;
+      for (std::size_t k = 0; k < fit.size(); ++k) mean[k] -= counts * fit[k];
+    }
+    for (double& weight : mean) weight /= std::max(sum, kMinOfMean);
+    return mean;
   }
 
   // The weights at an example's own parameters, and where none are asked for at the usual ones, so
@@ -181,6 +199,15 @@ class Examples {
   }
 
  private:
+  // Square of the distance from an example's parameters, of their ranges.
+  double far_from(std::size_t example, std::span<const double> scaled) const {
+    double far = 0;
+    for (std::size_t d = 0; d < scaled.size(); ++d) {
+      far += std::pow(scaled_[example * scaled.size() + d] - scaled[d], 2);
+    }
+    return far;
+  }
+
   const StepLibrary* all_;
   FootSide swing_;
   const parametric::Synthesiser* steps_;
@@ -190,15 +217,23 @@ class Examples {
   std::map<std::pair<int, std::vector<std::uint8_t>>, std::optional<std::vector<double>>> fitted_;
 };
 
-// The step with what the example differs by. Less of it where it would be no motion.
-void add_style(Examples& examples, int example, double share, PlannedStep& step) {
-  const std::vector<double>& fitted = examples.fitted(example, step.is_asked);
-  if (fitted.empty()) return;
-  const std::vector<double> plain = step.weights;
-  for (int i = 0; i < kStyleTries; ++i, share *= 0.5) {
-    std::vector<double> weights = plain;
-    for (std::size_t k = 0; k < weights.size(); ++k) weights[k] -= share * fitted[k];
-    weights[at(example)] += share;
+// The step with these shares of what the example, if there is one, and the style's mean differ by.
+// Less of it where it would be no motion.
+void add_style(Examples& examples, int example, double share, double of_mean, PlannedStep& step) {
+  std::vector<double> added(step.weights.size(), 0);
+  if (example >= 0) {
+    const std::vector<double>& fitted = examples.fitted(example, step.is_asked);
+    if (fitted.empty()) return;
+    for (std::size_t k = 0; k < added.size(); ++k) added[k] = -share * fitted[k];
+    added[at(example)] += share;
+  }
+  if (of_mean > 0) {
+    const std::vector<double> mean = examples.mean_style(step.made, step.is_asked);
+    for (std::size_t k = 0; k < added.size(); ++k) added[k] += of_mean * mean[k];
+  }
+  for (double part = 1; part > kMinOfStyle; part *= 0.5) {
+    std::vector<double> weights = step.weights;
+    for (std::size_t k = 0; k < weights.size(); ++k) weights[k] += part * added[k];
     if (!examples.steps().motion(weights)) continue;
     auto scratch = examples.steps().measure().make_scratch();
     std::vector<double> made(step.made.size());
@@ -206,7 +241,7 @@ void add_style(Examples& examples, int example, double share, PlannedStep& step)
     step.made = std::move(made);
     step.weights = std::move(weights);
     step.example = example;
-    step.example_share = share;
+    step.example_share = part * share;
     return;
   }
 }
@@ -215,28 +250,33 @@ void add_style(Examples& examples, int example, double share, PlannedStep& step)
 
 void choose_styles(std::span<const StepLibrary> libraries, const WalkOptions& options,
                    PlannedWalk& plan) {
-  if (!(options.variation > 0)) return;
   std::map<std::pair<int, FootSide>, Examples> all;
   std::map<std::pair<int, FootSide>, std::vector<int>> last;
   Before before;
+  const bool varies = options.variation > 0;
   for (std::size_t i = 0; i < plan.steps.size(); ++i) {
     PlannedStep& step = plan.steps[i];
+    const StepLibrary& library = libraries[at(step.library)];
+    if (!varies && !library.has_style()) continue;
     const FootSide swing = plan.grounded[at(step.stance) + 1].side;
     const std::pair key{step.library, swing};
     auto place = all.find(key);
-    if (place == all.end()) {
-      place = all.emplace(key, Examples(libraries[at(step.library)], swing)).first;
-    }
+    if (place == all.end()) place = all.emplace(key, Examples(library, swing)).first;
     Examples& examples = place->second;
-    std::vector<int>& used = last[key];
-    const int example = examples.choose(step.made, before, used, options.seed, i);
-    if (example < 0) continue;
-    used.push_back(example);
-    if (used.size() > kLastSteps) used.erase(used.begin());
-    before = examples.before(example);
+    int example = -1;
+    if (varies) {
+      std::vector<int>& used = last[key];
+      example = examples.choose(step.made, before, used, options.seed, i);
+      if (example < 0) continue;
+      used.push_back(example);
+      if (used.size() > kLastSteps) used.erase(used.begin());
+      before = examples.before(example);
+    }
     // A step that no example is near is blended with standing.
-    const double share = options.variation * (1 - smoother_step(step.far / kFarFromExamples));
-    if (share > 0) add_style(examples, example, share, step);
+    const double near = 1 - smoother_step(step.far / kFarFromExamples);
+    if (!(near > 0)) continue;
+    const double share = options.variation * near;
+    add_style(examples, example, share, library.has_style() ? near - share : 0, step);
   }
 }
 

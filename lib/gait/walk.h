@@ -28,9 +28,10 @@ struct WalkOptions {
   double stretch = 0;        // metres by which a leg may be lengthened in place of a knee pop
   double clearance = 0.015;  // metres of the swing foot over the ground
   // How much of real steps, which libraries with smoothed weights average, each step takes: 0 none,
-  // 1 all that the example differs by from the average. Where steps of several captures meet a
-  // little is added to that: of captured walks, 0.85 came nearest in arm swing, the hips' vertical
-  // speed, jerk, and how much steps vary (tests/walk/measure_style.py).
+  // 1 all that the example differs by from the average, which is that of the style if one was
+  // taken. Where steps of several captures meet a little is added to that: of captured walks, 0.85
+  // came nearest in arm swing, the hips' vertical speed, jerk, and how much steps vary
+  // (tests/walk/measure_style.py).
   double variation = 0.85;
   std::uint64_t seed = 1;  // which of several suitable examples
 };

@@ -92,7 +92,7 @@ void declare_steps(CommandOptions& command, Options& o) {
               "Length by which a leg may grow rather than its knee snap straight", "0");
   command.add("--variation", o.variation, number({0, 1}),
               "How much of single real steps each step takes where the library averages many: 0 "
-              "walks like the average, 1 like the examples",
+              "walks like the average (of --style), 1 like the examples",
               "0.85");
   command.add("--seed", o.seed, whole(0, 1'000'000'000),
               "Which of several suitable examples steps take", "1");

@@ -140,6 +140,19 @@ TEST(StepStyle, IsThatOfTheNamedCaptures) {
   }
 }
 
+// Would fail if a style faded towards everybody's average with the variation.
+TEST(StepStyle, IsTheAverageOfTheNamedCapturesWithoutVariation) {
+  WalkOptions options;
+  options.variation = 0;
+  const std::vector<StepLibrary> bent = noisy_in("hunched"), straight = noisy_in("upright");
+  const WholeWalk hunched = walked(options, 8, bent), upright = walked(options, 8, straight);
+  EXPECT_NEAR(lean(hunched.clip) - lean(upright.clip), kHunched, 0.1 * kHunched);
+  for (const StepReport& step : hunched.details.steps) {
+    EXPECT_EQ(step.example, "");
+    EXPECT_LT(step.missed, 1e-6);
+  }
+}
+
 // Would fail if a walk changed its style from step to step.
 TEST(StepStyle, IsOneForTheWholeWalk) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
