@@ -17,6 +17,7 @@ struct ArrayMotion {
   // [joints] of the array: a joint's place is their mean. Of positions alone.
   std::vector<std::vector<int>> columns;
   std::vector<Vec3> positions;     // [frames x joints], in the file's unit and axes
+  std::vector<std::size_t> gaps;   // of positions alone: places that the file lacks, filled
   std::vector<Quat> orientations;  // [frames x joints], joint to world; empty: to be found
   bool is_krok = false;            // in Krok's unit and axes
   bool upright = false;            // the reference pose is +Y up and faces +Z, whatever the motion

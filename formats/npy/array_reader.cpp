@@ -10,6 +10,8 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/npy/array_motion_internal.h"
+#include "motion/ground_frame.h"
+#include "motion/place.h"
 #include "positions/from_positions.h"
 #include "scene/farthest.h"
 #include "scene/frame_moment.h"
@@ -20,6 +22,7 @@ namespace {
 
 constexpr double kFarOff = 0.02;  // metres, of joints with bones of constant length
 
+constexpr double kDeep = 0.3;  // metres: no step or slope of a room
 constexpr std::size_t kMaxSamples = 200;
 
 constexpr std::initializer_list<const char*> kPositionNames = {
@@ -124,6 +127,7 @@ class Reader {
     } else {
       find_rotations();
     }
+    check_ground();
     for (Diagnostic& diagnostic : capture_.diagnostics) {
       if (diagnostic.where.file.empty()) diagnostic.where.file = file_.name;
     }
@@ -228,6 +232,9 @@ class Reader {
   }
 
   void find_rotations() {
+    for (const std::size_t gap : motion_.gaps) motion_.positions[gap].setConstant(std::nan(""));
+    const std::vector<int> glitches =
+        remove_glitches(motion_.skeleton.parents, capture_.clip.rate, motion_.positions);
     PositionsToPose input;
     input.skeleton = motion_.skeleton;
     input.roles = motion_.roles;
@@ -254,6 +261,14 @@ class Reader {
                          "where '{}' is",
                          shown(names[0]), shown(names[1])));
     }
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      if (glitches[j] == 0) continue;
+      report(Severity::warning, "npy-glitch",
+             fmt::format("joint '{}' is off its bones in {}: filled from the frames before "
+                         "and after",
+                         shown(names[j]), counted(glitches[j], "frame")));
+      capture_.diagnostics.back().joint = names[j];
+    }
     if (found.rms > std::max(kFarOff, 3 * found.noise)) {
       report(Severity::warning, "npy-fit",
              fmt::format("joints are {} mm from the file's (RMS), '{}' at most: {} mm in frame {}",
@@ -267,6 +282,16 @@ class Reader {
                          readable(100 * found.length_variation, 3)),
              "is --skeleton the right one?");
     }
+  }
+
+  // Positions relative to the hips, as MediaPipe's landmarks in the world are.
+  void check_ground() {
+    const Clip& clip = capture_.clip;
+    const double depth = onto_ground(clip, foot_joints(clip.skeleton, capture_.roles)).position.y();
+    if (motion_.is_krok || depth < kDeep) return;
+    report(Severity::warning, "npy-ground",
+           fmt::format("the lowest foot is {} m below the ground", readable(depth, 3)),
+           "krok-edit --on-ground moves it to y = 0");
   }
 
   const ArrayFile& file_;

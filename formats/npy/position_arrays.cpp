@@ -2,13 +2,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/npy/array_motion_internal.h"
 #include "math/quaternion.h"
+#include "positions/from_positions.h"
 
 // Positions of joints, alone or with rotations.
 
@@ -17,29 +17,6 @@ namespace krok::npy {
 namespace {
 
 constexpr const char* kSkeletonHint = "say what its joints are: --skeleton NAME or NAME.json";
-
-// Fills values that are not finite from the frames before and after; false if a column has none.
-bool fill_gaps(std::vector<double>& values, std::size_t frames) {
-  const std::size_t columns = values.size() / frames;
-  for (std::size_t c = 0; c < columns; ++c) {
-    std::size_t before = frames;
-    for (std::size_t f = 0; f < frames; ++f) {
-      if (!std::isfinite(values[f * columns + c])) continue;
-      const std::size_t first = before == frames ? 0 : before + 1;
-      for (std::size_t g = first; g < f; ++g) {
-        const double from = values[(before == frames ? f : before) * columns + c];
-        const double share = before == frames ? 1 : double(g - before) / double(f - before);
-        values[g * columns + c] = from + share * (values[f * columns + c] - from);
-      }
-      before = f;
-    }
-    if (before == frames) return false;
-    for (std::size_t g = before + 1; g < frames; ++g) {
-      values[g * columns + c] = values[before * columns + c];
-    }
-  }
-  return true;
-}
 
 // How to bring an array into order.
 std::string advice_on_axes(std::span<const std::size_t> shape) {
@@ -115,35 +92,35 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
                       : "krok-import --clip NUMBER takes another, --clip all writes all"));
     }
   }
-  std::vector<double> values = array->numbers(at(wanted) * size, size);
-  const auto wrong = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
-  if (wrong != values.end()) {
-    const auto place = static_cast<std::size_t>(wrong - values.begin());
-    Error error("npy-value",
-                fmt::format("{} has {} for a coordinate of joint {} in frame {}", what, *wrong,
-                            place / 3 % columns, place / (3 * columns)),
-                "--repair fills gaps from the frames before and after");
-    error.frame = static_cast<std::int64_t>(place / (3 * columns));
-    for (std::size_t j = 0; j < arranged->columns.size(); ++j) {
-      if (arranged->columns[j] == std::vector{static_cast<int>(place / 3 % columns)}) {
-        error.joint = arranged->skeleton.names[j];
-      }
+  const std::vector<double> values = array->numbers(at(wanted) * size, size);
+  const std::size_t joints = arranged->columns.size();
+  motion.positions.assign(frames * joints, Vec3::Zero());
+  for (std::size_t i = 0; i < motion.positions.size(); ++i) {
+    const std::vector<int>& from = arranged->columns[i % joints];
+    for (const int column : from) {
+      motion.positions[i] += Vec3(&values[3 * (i / joints * columns + at(column))]);
     }
-    const bool filled = file.options.strictness == Strictness::repair && fill_gaps(values, frames);
+    motion.positions[i] /= static_cast<double>(from.size());
+    if (!motion.positions[i].allFinite()) motion.gaps.push_back(i);
+  }
+  if (!motion.gaps.empty()) {
+    const std::size_t first = motion.gaps.front();
+    Error error("npy-value",
+                fmt::format("{} of {} places of joints in {} are missing (nan or infinite), first "
+                            "of {} in frame {}",
+                            motion.gaps.size(), frames * joints, what,
+                            shown(arranged->skeleton.names[first % joints]), first / joints),
+                "--repair fills gaps from the frames before and after");
+    error.joint = arranged->skeleton.names[first % joints];
+    error.frame = static_cast<std::int64_t>(first / joints);
+    const bool filled = file.options.strictness == Strictness::repair &&
+                        fill_gaps(arranged->skeleton.parents, motion.positions);
     if (!filled) return error;
     error.severity = Severity::warning;
     error.code = "npy-repair";
-    error.message += "; gaps are filled from the frames before and after";
+    error.message += ": filled from the frames before and after";
     error.hint.clear();
     motion.diagnostics.push_back(error);
-  }
-  motion.positions.reserve(frames * arranged->columns.size());
-  for (std::size_t f = 0; f < frames; ++f) {
-    for (const std::vector<int>& from : arranged->columns) {
-      Vec3 sum = Vec3::Zero();
-      for (const int column : from) sum += Vec3(&values[3 * (f * columns + at(column))]);
-      motion.positions.emplace_back(sum / static_cast<double>(from.size()));
-    }
   }
   motion.skeleton = std::move(arranged->skeleton);
   motion.roles = std::move(arranged->roles);

@@ -262,8 +262,20 @@ class Solver {
     placed_[child * frames_ + f] = placed_[from] + turns_[from] * offsets_[child];
   }
 
+  Quat turn_at(int joint, std::size_t frame) const {
+    return joint < 0 ? Quat::Identity() : turns_[at(joint) * frames_ + frame];
+  }
   Quat turn_above(std::size_t joint, std::size_t frame) const {
-    return parents_[joint] < 0 ? Quat::Identity() : turns_[at(parents_[joint]) * frames_ + frame];
+    return turn_at(parents_[joint], frame);
+  }
+  // The joint above that a bone is turned against: past helpers, whose twist nothing shows.
+  int base_of(std::size_t j) const {
+    int base = parents_[j];
+    for (; base > 0 && targets_[at(base)].size() < 2; base = parents_[at(base)]) {
+      const Role role = input_.roles.roles.empty() ? Role::none : input_.roles.roles[at(base)];
+      if (role != Role::none && role != Role::helper) break;
+    }
+    return base;
   }
   Vec3 way(std::size_t joint, std::size_t child, std::size_t frame) const {
     return measured_[child * frames_ + frame] - measured_[joint * frames_ + frame];
@@ -271,11 +283,12 @@ class Solver {
 
   void measure_bone(std::size_t j) {
     const std::size_t target = at(targets_[j][0]);
+    const int base = base_of(j);
     double length = 0;
     Vec3 mean = Vec3::Zero();
     for (std::size_t f = 0; f < frames_; ++f) {
       length += way(j, target, f).norm();
-      mean += turn_above(j, f).conjugate() * way(j, target, f);
+      mean += turn_at(base, f).conjugate() * way(j, target, f);
     }
     const Vec3 direction = shapes_[j][0].norm() > kNoLength ? shapes_[j][0] : mean;
     shapes_[j][0] = length / static_cast<double>(frames_) * direction.stableNormalized();
@@ -345,10 +358,12 @@ class Solver {
 
   void point(std::size_t j) {
     const std::size_t target = at(targets_[j][0]);
+    const int base = base_of(j);
     const bool has_length = shapes_[j][0].norm() > kNoLength;
     const Vec3 along = bone(j);
+    std::vector<double> clear(frames_, 0);
     for (std::size_t f = 0; f < frames_; ++f) {
-      const Quat above = turn_above(j, f);
+      const Quat above = turn_at(base, f);
       Quat& turn = turns_[j * frames_ + f];
       turn = above;
       const Vec3 to = measured_[target * frames_ + f] - placed_[j * frames_ + f];
@@ -358,9 +373,15 @@ class Solver {
       Quat arc;
       arc.w() = 1 + from.dot(to) / length;
       arc.vec() = from.cross(to) / length;
+      clear[f] = smoother_step(arc.w());
       if (arc.w() < 0.1) arc = shortest_arc(from, to);
       turn = (arc * above).normalized();
     }
+    if (!has_length || base == parents_[j]) return;
+    // It turns slowly about itself, also where the arc from the base is large.
+    const std::vector<Turn> steps = twists_of(j, along, base), none(frames_, Turn(1));
+    const auto found = turns_over_time(none, steps, clear, input_.rate * input_.rate, 1e-5);
+    for (std::size_t f = 0; f < frames_; ++f) twist(j, f, along, found[f]);
   }
 
   // What a joint and those below it say on where it is to go, and how it turns.
@@ -487,11 +508,12 @@ class Solver {
     }
   }
 
-  // How far a joint has turned about its bone, from frame to frame.
-  std::vector<Turn> twists_of(std::size_t j, const Vec3& axis) const {
+  // How far a joint has turned about its bone, from frame to frame, against another (< 0: none).
+  std::vector<Turn> twists_of(std::size_t j, const Vec3& axis, int base) const {
     std::vector<Turn> turns(frames_, Turn(1));
     for (std::size_t f = 1; f < frames_; ++f) {
-      const Quat step = turns_[j * frames_ + f - 1].conjugate() * turns_[j * frames_ + f];
+      const Quat step = turns_[j * frames_ + f - 1].conjugate() * turn_at(base, f - 1) *
+                        turn_at(base, f).conjugate() * turns_[j * frames_ + f];
       const Turn half(step.w(), step.vec().dot(axis));
       const double size = std::norm(half);
       turns[f] = size > 0 ? turns[f - 1] * half * half / size : turns[f - 1];
@@ -514,7 +536,7 @@ class Solver {
     if (hinge.norm() < 1e-9) return;
     hinge.normalize();
     const Vec3 along_bone = bone(u), across = along_bone.cross(hinge);
-    const std::vector<Turn> base = twists_of(u, along_bone);
+    const std::vector<Turn> base = twists_of(u, along_bone, -1);
     std::vector<Turn> measured(frames_, Turn(1));
     std::vector<double> weights(frames_), clear(frames_);
     for (std::size_t f = 0; f < frames_; ++f) {
@@ -527,6 +549,8 @@ class Solver {
       const double length = std::sqrt(std::norm(turn));
       if (length > 0) measured[f] = turn / length;
       weights[f] = normal.squaredNorm() / (size * size);
+      // Where it is nearly straight, hinges that are a little aside decide its plane.
+      weights[f] *= smoother_step(4 * std::sqrt(weights[f]));
       clear[f] = weights[f] * smoother_step(2 * std::sqrt(weights[f]) - 0.5);
     }
     // A limb that is nearly straight may be bent the other way: it follows frames that are clearly

@@ -14,7 +14,8 @@
 // - A joint with children in several directions takes the rotation that fits them best (Kabsch
 //   1976; Wahba 1965), from the root down, each bone towards where its child was measured.
 // - A joint with one child takes its parent's rotation, turned by the smallest angle that points
-//   its bone at the child. The rest of the twist at the next joint that is known in full is spread
+//   its bone at the child; past joints without a role, such as the single hinges of a robot's hip,
+//   that of the last joint before them, and slowly in time. The rest of the twist at the next joint that is known in full is spread
 //   over such a chain, but not over arms and legs, whose hinges decide.
 // - Upper arms and upper legs are twisted so that elbow and knee bend about their hinges. Where the
 //   limb is straight the twist is carried over from before and after, by least squares over time.
@@ -55,6 +56,17 @@ struct PoseFromPositions {
 // Same input, same result. Fewer than 5 frames are not smoothed. Positions in one place give the
 // reference pose's rotations.
 PoseFromPositions from_positions(const PositionsToPose& input);
+
+// Fills places that are not finite, `positions`: [frames x joints], from the frames before and
+// after: bones turn, and change their length, evenly. Parents come first. False if a joint has no
+// place in any frame.
+bool fill_gaps(std::span<const int> parents, std::span<Vec3> positions);
+
+// Fills joints that are off their bones for up to a quarter of a second in the same way, and gaps:
+// a bone is longer or shorter than usual by 5 cm and 8 standard deviations, and its joint is the
+// one of its ends that is away from its own path. Returns how many frames of each joint.
+std::vector<int> remove_glitches(std::span<const int> parents, double rate,
+                                 std::span<Vec3> positions);
 
 // The standard deviation of white noise in each coordinate of each joint, metres, by the second
 // differences of bone lengths. `tracks`: [joints x frames]. 0 for fewer than 5 frames.

@@ -1,10 +1,81 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/index.h"
 #include "filter/series_denoiser.h"
+#include "math/window.h"
 #include "positions/from_positions.h"
 
 namespace krok {
+
+bool fill_gaps(std::span<const int> parents, std::span<Vec3> positions) {
+  const std::size_t joints = parents.size(), frames = joints == 0 ? 0 : positions.size() / joints;
+  for (std::size_t j = 0; j < joints; ++j) {
+    const auto origin = [&](std::size_t f) -> Vec3 {
+      return parents[j] < 0 ? Vec3(0, 0, 0) : positions[f * joints + at(parents[j])];
+    };
+    const auto offset = [&](std::size_t f) -> Vec3 {
+      return positions[f * joints + j] - origin(f);
+    };
+    std::size_t first = 0;  // of the frames that are not known
+    for (std::size_t f = 0; f <= frames; ++f) {
+      if (f < frames && !positions[f * joints + j].allFinite()) continue;
+      if (f == frames && first == 0) return false;
+      const Vec3 to = offset(f < frames ? f : first - 1), from = first > 0 ? offset(first - 1) : to;
+      for (std::size_t g = first; g < f; ++g) {
+        const double share = double(g - first + 1) / double(f - first + 1);
+        Vec3 between = from + share * (to - from);
+        if (parents[j] >= 0) {
+          between.stableNormalize();
+          between *= from.norm() + share * (to.norm() - from.norm());
+        }
+        positions[g * joints + j] = origin(g) + between;
+      }
+      first = f + 1;
+    }
+  }
+  return true;
+}
+
+std::vector<int> remove_glitches(std::span<const int> parents, double rate,
+                                 std::span<Vec3> positions) {
+  constexpr double kOff = 0.05, kDeviations = 8, kLongest = 0.25;  // metres, seconds
+  const std::size_t joints = parents.size(), frames = joints == 0 ? 0 : positions.size() / joints;
+  const auto longest = std::max<std::size_t>(2, std::size_t(kLongest * rate));
+  std::vector<std::size_t> glitches;
+  std::vector<double> lengths(frames), deviations(frames);
+  for (std::size_t j = 0; j < joints && frames > 2; ++j) {
+    if (parents[j] < 0) continue;
+    for (std::size_t f = 0; f < frames; ++f) {
+      lengths[f] = (positions[f * joints + j] - positions[f * joints + at(parents[j])]).norm();
+      // A gap, which is not compared.
+      if (!std::isfinite(lengths[f])) lengths[f] = f == 0 ? 0 : lengths[f - 1];
+    }
+    const double usual = upper_median(lengths);
+    for (std::size_t f = 0; f < frames; ++f) deviations[f] = std::abs(lengths[f] - usual);
+    const double limit = std::max(kOff, kDeviations / 0.6745 * upper_median(deviations));
+    for (std::size_t f = 0, first = 0; f < frames; first = ++f) {
+      while (f < frames && deviations[f] > limit) ++f;
+      if (f == first || f - first > longest) continue;
+      // The end that is farther from where it was before, or will be.
+      const auto away = [&](std::size_t end) {
+        const Vec3& before = positions[(first > 0 ? first - 1 : f) * joints + end];
+        const Vec3& after = positions[(f < frames ? f : first - 1) * joints + end];
+        return (positions[(first + f) / 2 * joints + end] - 0.5 * (before + after)).norm();
+      };
+      const std::size_t end = away(j) < away(at(parents[j])) ? at(parents[j]) : j;
+      for (std::size_t g = first; g < f; ++g) glitches.push_back(g * joints + end);
+    }
+  }
+  std::vector<int> counts(joints, 0);
+  for (const std::size_t i : glitches) {
+    if (!positions[i].allFinite()) continue;  // by another bone
+    positions[i].setConstant(std::nan(""));
+    ++counts[i % joints];
+  }
+  fill_gaps(parents, positions);
+  return counts;
+}
 
 std::vector<double> noise_of(std::span<const int> parents, std::span<const Vec3> tracks) {
   const std::size_t joints = parents.size(), frames = joints == 0 ? 0 : tracks.size() / joints;

@@ -73,7 +73,7 @@ ALLOWED = {
                              "formats/registry"},
     "formats/gltf": BASE | {"lib/nodes", "lib/skin", "lib/tracks"},
     "formats/assimp": BASE | {"lib/capture", "lib/character", "lib/nodes", "formats/registry"},
-    "formats/npy": BASE | {"lib/capture", "lib/positions", "lib/roles", "formats/json", "formats/zip"},
+    "formats/npy": BASE | {"lib/capture", "lib/motion", "lib/positions", "lib/roles", "formats/json", "formats/zip"},
     "formats/csv": BASE,
     "formats/film": {"lib/core"},
     "formats/opensim": {"lib/core", "formats/csv"},

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -142,6 +143,31 @@ TEST(Npy, axes_in_another_order_are_explained) {
   EXPECT_NE(hint_for({40, 263}).find("recover_from_ric()"), std::string::npos);
   EXPECT_NE(hint_for({40, 17, 3}).find("h36m17 or coco17"), std::string::npos);
   EXPECT_NE(hint_for({40, 22, 4}).find("a[..., :3]"), std::string::npos);
+}
+
+// Landmarks that begin at the hips: half of the body is below 0.
+TEST(Npy, feet_far_below_the_ground_lead_to_on_ground) {
+  for (const float height : {0.0F, 1.0F}) {
+    const auto arranged = krok::arrange(*krok::named_skeleton("smpl22"));
+    ASSERT_TRUE(arranged.ok());
+    std::vector<float> values;
+    for (int f = 0; f < 10; ++f) {
+      for (const auto& joint : krok::named_skeleton("smpl22")->joints) {
+        const int j = arranged->skeleton.find(joint.name);
+        const krok::Vec3& place = arranged->skeleton.reference[std::size_t(j)].position;
+        for (const int axis : {0, 1, 2}) {
+          values.push_back(static_cast<float>(place[axis]) + (axis == 1 ? height : 0));
+        }
+      }
+    }
+    const auto file = krok::npy::write(krok::npy::array_of(values, {10, 22, 3}));
+    const auto read = krok::npy::read(file, "a.npy");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    const bool warned = std::ranges::any_of(read->diagnostics, [](const krok::Diagnostic& d) {
+      return d.code == "npy-ground" && d.hint.find("--on-ground") != std::string::npos;
+    });
+    EXPECT_EQ(warned, height == 0);
+  }
 }
 
 TEST(Npy, published_orders_make_people) {

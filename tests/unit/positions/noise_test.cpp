@@ -1,8 +1,10 @@
 // If these fail, fast joints are taken for joints that jump to another place, so that their noise
-// stays, or what jumps is smeared over the frames before and after.
+// stays, or what jumps is smeared over the frames before and after; or a joint that is elsewhere
+// for a frame pulls its neighbours and the lengths of bones.
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -50,6 +52,48 @@ TEST(PositionNoise, FastJointsDoNotJump) {
 
 TEST(PositionNoise, JumpsStay) {
   EXPECT_LT(error_left(0.05, 2, 20), 0.7);
+}
+
+TEST(PositionNoise, GlitchesAreFilled) {
+  // An arm that swings: shoulder, elbow, hand.
+  const std::vector<int> parents = {-1, 0, 1};
+  std::vector<Vec3> places;
+  for (int f = 0; f < kFrames; ++f) {
+    const double angle = std::sin(3 * f / kRate);
+    for (const double along : {0.0, 0.3, 0.55}) {
+      places.emplace_back(along * std::cos(angle), 1.4, along * std::sin(angle));
+    }
+  }
+  const auto place_of = [](int frame, int joint) {
+    return static_cast<std::size_t>(3 * frame + joint);
+  };
+  std::vector<Vec3> tracks = places;
+  tracks[place_of(0, 2)] += Vec3(0.4, 0, 0);
+  for (const int f : {40, 41}) tracks[place_of(f, 1)] += Vec3(0, 0.4, 0);
+  tracks[place_of(50, 2)].setConstant(std::nan(""));
+  // For a second: no glitch.
+  for (int f = 60; f < 80; ++f) tracks[place_of(f, 2)] *= 1.2;
+  const std::vector<Vec3> before = tracks;
+  EXPECT_EQ(remove_glitches(parents, kRate, tracks), (std::vector<int>{0, 2, 1}));
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    EXPECT_LT((tracks[i] - (i < place_of(60, 0) ? places : before)[i]).norm(), 0.05) << i;
+  }
+  EXPECT_LT((tracks[place_of(50, 2)] - places[place_of(50, 2)]).norm(), 0.003);
+}
+
+TEST(PositionNoise, GapsTurnWithTheirBones) {
+  const Vec3 gap = Vec3::Constant(std::nan(""));
+  const std::vector<int> parents = {-1, 0};
+  std::vector<Vec3> track = {gap, {2, 0, 0}, {1, 0, 0}, {2, 0, 0}, gap,
+                             gap, {3, 0, 0}, {3, 1, 0}, gap, gap};
+  EXPECT_TRUE(fill_gaps(parents, track));
+  EXPECT_EQ(track[0], Vec3(1, 0, 0));
+  EXPECT_EQ(track[1], Vec3(2, 0, 0));
+  EXPECT_LT((track[4] - Vec3(2, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((track[5] - Vec3(2 + std::sqrt(0.5), std::sqrt(0.5), 0)).norm(), 1e-9);
+  EXPECT_EQ(track[9], Vec3(3, 1, 0));
+  std::vector<Vec3> empty = {{0, 0, 0}, gap};
+  EXPECT_FALSE(fill_gaps(parents, empty));
 }
 
 }  // namespace
