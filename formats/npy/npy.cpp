@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -172,19 +173,10 @@ Number number_at(const std::byte* place, bool swapped) {
   std::byte bytes[sizeof(Number)];
   std::memcpy(bytes, place, sizeof(Number));
   if (swapped) std::reverse(std::begin(bytes), std::end(bytes));
-  return std::bit_cast<Number>(bytes);
+  Number number;
+  std::memcpy(&number, bytes, sizeof(Number));
+  return number;
 }
-
-struct Half {
-  std::uint16_t bits;
-  explicit operator double() const {
-    const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
-    double size =
-        std::ldexp(exponent == 0 ? fraction : fraction + 1024, std::max(exponent, 1) - 25);
-    if (exponent == 31) size = fraction == 0 ? HUGE_VAL : std::nan("");
-    return (bits & 0x8000) != 0 ? -size : size;
-  }
-};
 
 // Calls take(place) with the elements from `first` on, `count` of them, row by row.
 template <typename Take>
@@ -245,12 +237,13 @@ std::vector<double> Array::numbers(std::size_t first, std::size_t most) const {
   std::vector<double> values(std::min(most, count() - first));
   using Add = void (*)(const Array&, std::size_t, std::vector<double>&);
   // For boolean, integer, natural and real elements of 1, 2, 4 and 8 bytes.
-  constexpr Add kAdd[][4] = {{add_numbers<std::uint8_t>},
-                             {add_numbers<std::int8_t>, add_numbers<std::int16_t>,
-                              add_numbers<std::int32_t>, add_numbers<std::int64_t>},
-                             {add_numbers<std::uint8_t>, add_numbers<std::uint16_t>,
-                              add_numbers<std::uint32_t>, add_numbers<std::uint64_t>},
-                             {nullptr, add_numbers<Half>, add_numbers<float>, add_numbers<double>}};
+  constexpr Add kAdd[][4] = {
+      {add_numbers<std::uint8_t>},
+      {add_numbers<std::int8_t>, add_numbers<std::int16_t>, add_numbers<std::int32_t>,
+       add_numbers<std::int64_t>},
+      {add_numbers<std::uint8_t>, add_numbers<std::uint16_t>, add_numbers<std::uint32_t>,
+       add_numbers<std::uint64_t>},
+      {nullptr, add_numbers<Eigen::half>, add_numbers<float>, add_numbers<double>}};
   kAdd[static_cast<std::size_t>(element)][std::countr_zero(item_size)](*this, first, values);
   if (element == Element::boolean) {
     for (double& value : values) value = value != 0 ? 1 : 0;

@@ -105,17 +105,17 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
   }
   if (!motion.gaps.empty()) {
     const std::size_t first = motion.gaps.front();
+    const bool repair = file.options.strictness == Strictness::repair;
     Error error("npy-value",
                 fmt::format("{} of {} places of joints in {} are missing (nan or infinite), first "
                             "of {} in frame {}",
                             motion.gaps.size(), frames * joints, what,
                             shown(arranged->skeleton.names[first % joints]), first / joints),
-                "--repair fills gaps from the frames before and after");
+                repair ? "a joint is missing in all frames"
+                       : "--repair fills gaps from the frames before and after");
     error.joint = arranged->skeleton.names[first % joints];
     error.frame = static_cast<std::int64_t>(first / joints);
-    const bool filled = file.options.strictness == Strictness::repair &&
-                        fill_gaps(arranged->skeleton.parents, motion.positions);
-    if (!filled) return error;
+    if (!repair || !fill_gaps(arranged->skeleton.parents, motion.positions)) return error;
     error.severity = Severity::warning;
     error.code = "npy-repair";
     error.message += ": filled from the frames before and after";

@@ -26,8 +26,27 @@ constexpr double kDamping = 10;      // levers of three misfits turn freely
 constexpr std::size_t kGrain = 256;
 constexpr std::size_t kFramesOfShape = 2000;
 
-// The rotation nearest to a sum of outer products target * source^T (Kabsch 1976; Wahba 1965).
-Quat turn_of(const Mat3& products) {
+// By a rotation vector in world axes, up to its third power, and at most a half turn.
+void turn_by(const Vec3& vector, Quat& turn) {
+  Quat by;
+  by.w() = 1;
+  by.vec() = 0.5 * vector;
+  turn = (by * turn).normalized();
+}
+
+// The rotation nearest to a sum of outer products target * source^T (Kabsch 1976; Wahba 1965), by
+// the method of Newton from one that is near.
+Quat turn_of(const Mat3& products, Quat near) {
+  for (int i = 0; i < 6; ++i) {
+    const Mat3 back = products * near.conjugate().toRotationMatrix();
+    const Mat3 bend = back.trace() * Mat3::Identity() - 0.5 * (back + back.transpose());
+    const double minor = bend(0, 0) * bend(1, 1) - bend(0, 1) * bend(1, 0);
+    if (!(bend(0, 0) > 0 && minor > 0 && bend.determinant() > 1e-9 * minor * bend.trace())) break;
+    const Vec3 step = bend.inverse() * Vec3(back(2, 1) - back(1, 2), back(0, 2) - back(2, 0),
+                                            back(1, 0) - back(0, 1));
+    turn_by(step, near);
+    if (step.squaredNorm() < 1e-14) return near;  // the error is its square
+  }
   return Quat(nearest_rotation(products)).normalized();
 }
 
@@ -329,7 +348,10 @@ class Solver {
       std::vector<Vec3> sums(shape.size(), Vec3::Zero());
       double count = 0;
       for (std::size_t f = 0; f < frames_; f += step, ++count) {
-        const Quat back = turn_of(products(j, f, measured_[j * frames_ + f])).conjugate();
+        Quat& turn = turns_[j * frames_ + f];
+        turn = turn_of(products(j, f, measured_[j * frames_ + f]),
+                       f == 0 || iteration > 0 ? turn : turns_[j * frames_ + f - step]);
+        const Quat back = turn.conjugate();
         for (std::size_t i = 0; i < sums.size(); ++i) {
           sums[i] += back * way(j, at(targets_[j][i]), f);
         }
@@ -344,14 +366,19 @@ class Solver {
     // As the reference pose stands, as nearly as the shape allows.
     Mat3 sum = 1e-9 * Mat3::Identity();
     for (std::size_t i = 0; i < shape.size(); ++i) sum += reference[i] * shape[i].transpose();
-    const Quat turn = turn_of(sum);
+    const Quat turn = turn_of(sum, Quat::Identity());
     for (Vec3& offset : shape) offset = turn * offset;
+    for (std::size_t f = 0; f < frames_; ++f) {
+      Quat& here = turns_[j * frames_ + f];
+      here = f % step == 0 ? here * turn.conjugate() : turns_[j * frames_ + f - f % step];
+    }
   }
 
   void fit(std::size_t j) {
     parallel_for(frames_, kGrain, input_.jobs, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
-        turns_[j * frames_ + f] = turn_of(products(j, f, placed_[j * frames_ + f]));
+        Quat& turn = turns_[j * frames_ + f];
+        turn = turn_of(products(j, f, placed_[j * frames_ + f]), turn);
       }
     });
   }
@@ -361,7 +388,8 @@ class Solver {
     const int base = base_of(j);
     const bool has_length = shapes_[j][0].norm() > kNoLength;
     const Vec3 along = bone(j);
-    std::vector<double> clear(frames_, 0);
+    const bool carried = has_length && base != parents_[j];
+    std::vector<double> clear(carried ? frames_ : 0, 0);
     for (std::size_t f = 0; f < frames_; ++f) {
       const Quat above = turn_at(base, f);
       Quat& turn = turns_[j * frames_ + f];
@@ -373,11 +401,11 @@ class Solver {
       Quat arc;
       arc.w() = 1 + from.dot(to) / length;
       arc.vec() = from.cross(to) / length;
-      clear[f] = smoother_step(arc.w());
+      if (carried) clear[f] = smoother_step(arc.w());
       if (arc.w() < 0.1) arc = shortest_arc(from, to);
       turn = (arc * above).normalized();
     }
-    if (!has_length || base == parents_[j]) return;
+    if (!carried) return;
     // It turns slowly about itself, also where the arc from the base is large.
     const std::vector<Turn> steps = twists_of(j, along, base), none(frames_, Turn(1));
     const auto found = turns_over_time(none, steps, clear, input_.rate * input_.rate, 1e-5);
@@ -469,18 +497,10 @@ class Solver {
       for (const int child : children_[j]) {
         pulls[at(child)].step = pull.step + turn.cross(placed_[at(child) * frames_ + f] - place);
       }
-      if (!children_[j].empty()) turn_by(turn, j, f);
+      if (!children_[j].empty()) turn_by(turn, turns_[j * frames_ + f]);
       if (parents_[j] < 0) place += pull.step;
     }
     for (std::size_t j = 1; j < joints_; ++j) hang(j, f);
-  }
-  // By a rotation vector in world axes.
-  void turn_by(const Vec3& vector, std::size_t j, std::size_t f) {
-    Quat by;
-    by.w() = 1;
-    by.vec() = 0.5 * vector;  // up to its third power, and at most a half turn
-    Quat& turn = turns_[j * frames_ + f];
-    turn = (by * turn).normalized();
   }
 
   // Turns a joint with one target about its bone, `axis`.

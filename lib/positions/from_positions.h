@@ -15,8 +15,9 @@
 //   1976; Wahba 1965), from the root down, each bone towards where its child was measured.
 // - A joint with one child takes its parent's rotation, turned by the smallest angle that points
 //   its bone at the child; past joints without a role, such as the single hinges of a robot's hip,
-//   that of the last joint before them, and slowly in time. The rest of the twist at the next joint that is known in full is spread
-//   over such a chain, but not over arms and legs, whose hinges decide.
+//   that of the last joint before them, and slowly in time. The rest of the twist at the next joint
+//   that is known in full is spread over such a chain, but not over arms and legs, whose hinges
+//   decide.
 // - Upper arms and upper legs are twisted so that elbow and knee bend about their hinges. Where the
 //   limb is straight the twist is carried over from before and after, by least squares over time.
 // - A joint without children keeps its rotation relative to its parent.

@@ -85,7 +85,7 @@ TEST(PositionNoise, GapsTurnWithTheirBones) {
   const Vec3 gap = Vec3::Constant(std::nan(""));
   const std::vector<int> parents = {-1, 0};
   std::vector<Vec3> track = {gap, {2, 0, 0}, {1, 0, 0}, {2, 0, 0}, gap,
-                             gap, {3, 0, 0}, {3, 1, 0}, gap, gap};
+                             gap, {3, 0, 0}, {3, 1, 0}, gap,       gap};
   EXPECT_TRUE(fill_gaps(parents, track));
   EXPECT_EQ(track[0], Vec3(1, 0, 0));
   EXPECT_EQ(track[1], Vec3(2, 0, 0));
