@@ -17,12 +17,13 @@ Result<PositionSkeleton> read_columns(std::string_view text) {
         if (of.role.empty() || parse_role_label(of.role)) return {};
         return given.member("role").wrong("\"" + shown(of.role) + "\" is no role");
       });
-  joint.field("mean_of", &PositionJoint::mean_of, json::list(json::text(), {"a column", 1}));
+  joint.field("mean_of", &PositionJoint::mean_of, json::list(json::text(), {"a column", 1, 1000}));
   json::Object<PositionSkeleton> file("the skeleton");
-  file.file("krok.columns/1", "Columns of an array of joints (krok.columns/1)");
+  std::string schema;  // may be missing
+  file.context("schema", schema, json::text()).comment();
   file.field("rate", &PositionSkeleton::rate, json::frame_rate());
   file.field("joints", &PositionSkeleton::joints,
-             json::list<PositionJoint>(json::object(joint), {"joint {0}", 1}))
+             json::list<PositionJoint>(json::object(joint), {"joint {0}", 1, 10'000}))
       .required();
   auto skeleton = file.read_text(text, "columns");
   if (!skeleton) return skeleton;
