@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <tuple>
@@ -161,12 +162,15 @@ class Compressor {
         }
       }
     }
-    for (OrderedJson& node : json_["nodes"]) {
-      for (const char* const place : {"translation", "rotation", "scale"}) {
-        if (!node.contains(place)) continue;
-        for (OrderedJson& number : node[place]) {
-          const auto value = static_cast<float>(number.get<double>());
-          number = parse_finite(shortest(value)).value_or(number.get<double>());
+    for (const char* const list : {"nodes", "accessors"}) {
+      for (OrderedJson& object : json_[list]) {
+        for (const char* const place : {"translation", "rotation", "scale", "min", "max"}) {
+          if (!object.contains(place)) continue;
+          for (OrderedJson& number : object[place]) {
+            const auto value = number.get<double>();
+            number = parse_finite(shortest(static_cast<float>(value))).value_or(value);
+            if (std::trunc(value) == value && std::abs(value) < 1e6) number = std::llround(value);
+          }
         }
       }
     }

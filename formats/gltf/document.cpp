@@ -12,6 +12,9 @@ namespace krok::gltf {
 
 namespace {
 
+// The longest key of a track: those of tracks that stay are often the same in many clips.
+constexpr std::size_t kConstantBytes = 16;
+
 int components_of(int type) {
   return tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
 }
@@ -84,9 +87,15 @@ std::vector<std::byte>& Document::own_part() {
 int Document::add_accessor(std::span<const std::byte> bytes, int component,
                            std::size_t component_size, int type, Use use, Keep keep) {
   assert(promised_ == 0);
-  const int accessor = add_accessor_of(bytes.size(), component, component_size, type, use);
+  const int next = static_cast<int>(gltf.accessors.size());
+  if (options_.compressed && use == Use::data && bytes.size() <= kConstantBytes) {
+    const auto [known, made] = constants_.try_emplace(
+        {component, type, std::vector<std::byte>(bytes.begin(), bytes.end())}, next);
+    if (!made) return known->second;
+  }
+  add_accessor_of(bytes.size(), component, component_size, type, use);
   put(bytes, keep);
-  return accessor;
+  return next;
 }
 
 void Document::put(std::span<const std::byte> bytes, Keep keep) {
@@ -246,15 +255,20 @@ std::string Document::unique_node_name(const std::string& wanted) {
 
 void Document::add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
                            int values) {
-  tinygltf::AnimationSampler sampler;
-  sampler.input = times;
-  sampler.output = values;
-  sampler.interpolation = "LINEAR";
+  auto& samplers = animation.samplers;
+  const auto known = std::ranges::find_if(samplers, [&](const tinygltf::AnimationSampler& sampler) {
+    return sampler.input == times && sampler.output == values;
+  });
   tinygltf::AnimationChannel channel;
-  channel.sampler = static_cast<int>(animation.samplers.size());
+  channel.sampler = static_cast<int>(known - samplers.begin());
   channel.target_node = node;
   channel.target_path = path;
-  animation.samplers.push_back(std::move(sampler));
+  if (known == samplers.end()) {
+    tinygltf::AnimationSampler& sampler = samplers.emplace_back();
+    sampler.input = times;
+    sampler.output = values;
+    sampler.interpolation = "LINEAR";
+  }
   animation.channels.push_back(std::move(channel));
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "core/file.h"
@@ -193,9 +194,11 @@ class Document {
   std::map<int, std::vector<VertexRange>> ranges_;   // of the primitives of a mesh
   std::map<int, std::vector<Vec3f>> displacements_;  // of accessors without data
   std::map<std::vector<float>, int> times_;          // accessors of key times
-  std::uint64_t size_ = 0;                           // bytes of the parts and the streamed data
-  std::uint64_t promised_ = 0;                       // bytes of the streamed data
-  std::size_t bounds_ = 0;                           // bounds that are not filled in yet
+  // Accessors of single keys, by component, type and bytes.
+  std::map<std::tuple<int, int, std::vector<std::byte>>, int> constants_;
+  std::uint64_t size_ = 0;      // bytes of the parts and the streamed data
+  std::uint64_t promised_ = 0;  // bytes of the streamed data
+  std::size_t bounds_ = 0;      // bounds that are not filled in yet
   OutputFile* file_ = nullptr;
   std::string json_;                  // with space reserved for the bounds
   std::vector<std::byte> unencoded_;  // the last bytes, fewer than one Base64 group

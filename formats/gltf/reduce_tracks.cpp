@@ -38,13 +38,11 @@ void keep(const std::vector<int>& frames, std::vector<Value>& values, std::vecto
 }
 
 // Without any key at the last frame the animation would end early: adds one to the first track.
-void lengthen(const JointTracks& tracks, int last, std::vector<KeptFrames>& joints) {
+void lengthen(int last, std::vector<KeptFrames>& joints) {
   std::vector<int>* first = nullptr;
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    const JointTrack& track = tracks.joints[j];
-    for (auto [frames, has_track] : {std::pair{&joints[j].position, !track.translations.empty()},
-                                     {&joints[j].rotation, !track.rotations.empty()}}) {
-      if (!has_track) continue;
+  for (KeptFrames& joint : joints) {
+    for (std::vector<int>* frames : {&joint.position, &joint.rotation}) {
+      if (frames->empty()) continue;
       if (frames->back() == last) return;
       if (first == nullptr) first = frames;
     }
@@ -65,10 +63,16 @@ Result<Reduction> reduce_tracks(const Skeleton& rest, const ReduceOptions& optio
   ReduceOptions smallest = options;
   smallest.most_kept =
       std::max(0.0, std::min(options.most_kept, 0.75 - 10.0 / static_cast<double>(times.size())));
+  std::vector<Transform> still;
+  for (const JointTrack& track : tracks.joints) {
+    still.push_back({track.rest_translation.cast<double>(),
+                     normalized_or_identity(track.rest_rotation.cast<double>())});
+  }
+  smallest.rest = still;
   auto reduction = choose_keys(rest.parents, times, local_transforms(tracks), smallest, jobs);
   if (!reduction || times.empty()) return reduction;
   const int last = static_cast<int>(times.size()) - 1;
-  lengthen(tracks, last, reduction->joints);
+  lengthen(last, reduction->joints);
   reduction->keys_before = reduction->keys_after = 0;
   for (std::size_t j = 0; j < tracks.joints.size(); ++j) {
     const KeptFrames& kept = reduction->joints[j];

@@ -9,7 +9,8 @@ namespace krok::gltf {
 
 // Removes keys with choose_keys(): what a viewer shows stays within the tolerance of the full
 // tracks, at every frame and for all joints. `rest` is the skeleton that the tracks were made for.
-// A track keeps all its keys if a separate time accessor would make it larger. Uses up to `jobs`
+// A track keeps all its keys if a separate time accessor would make it larger, none if it stays
+// at rest. Uses up to `jobs`
 // threads (as in parallel_for), which do not affect the result. Code: reduce-tolerance.
 Result<Reduction> reduce_tracks(const Skeleton& rest, const ReduceOptions& options, int jobs,
                                 JointTracks& tracks);

@@ -33,18 +33,18 @@ class Reducer {
         is_key_(tracks_ * frames_) {
     for (std::size_t track = 0; track < tracks_; ++track) {
       std::fill_n(is_key_.begin() + static_cast<std::ptrdiff_t>(track * frames_), frames_,
-                  task.keep[track] == Keep::first ? 0 : 1);
+                  task.keep[track] <= Keep::first ? 0 : 1);
     }
     for (std::size_t f = 0; f < frames_; ++f) {
       local_to_world(task.parents, task.local.subspan((begin_ + f) * joints_, joints_),
                      std::span(world_).subspan(f * joints_, joints_));
       for (std::size_t joint = 0; joint < joints_; ++joint) {
         const Transform& now = original(f, joint);
-        const Transform& still = task.local[joint];
-        const Keep* keep = task.keep.data() + kTracksPerJoint * joint;
-        reduced_[f * joints_ + joint] = {
-            keep[0] == Keep::first ? still.position : now.position,
-            keep[1] == Keep::first ? still.orientation : now.orientation};
+        const std::size_t track = kTracksPerJoint * joint;
+        const auto shown = [&](std::size_t t) -> const Transform& {
+          return task.keep[t] <= Keep::first ? task.constant(t) : now;
+        };
+        reduced_[f * joints_ + joint] = {shown(track).position, shown(track + 1).orientation};
         place(f, joint);
       }
     }

@@ -15,6 +15,7 @@ namespace krok::tracks_detail {
 inline constexpr std::size_t kTracksPerJoint = 2;
 
 enum class Keep : unsigned char {
+  rest,    // no keys: the value of ReduceOptions::rest
   first,   // constant: the value of frame 0
   needed,  // keys are removed where possible
   all
@@ -30,6 +31,11 @@ struct ReductionTask {
   std::vector<std::vector<int>> below;
   ReduceOptions options;
 
+  // What a track without keys, or with one, shows at all frames.
+  const Transform& constant(std::size_t track) const {
+    const std::size_t joint = track / kTracksPerJoint;
+    return keep[track] == Keep::rest ? options.rest[joint] : local[joint];
+  }
   double shell_of(std::size_t joint) const {
     return options.shell_distances.empty() ? options.shell_distance
                                            : options.shell_distances[joint];

@@ -70,8 +70,9 @@ Result<std::vector<std::vector<int>>> joints_below(const ReductionTask& task) {
   return below;
 }
 
-// Which tracks need more than the value of the first frame: those whose change alone would be
-// visible. Tracks kept constant may use up to a quarter of the tolerance on the longest chain.
+// Which tracks need more than the rest value or that of the first frame: those whose change alone
+// would be visible. Tracks kept constant may use up to a quarter of the tolerance on the longest
+// chain.
 std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::size_t frames) {
   const std::size_t joints = task.parents.size();
   std::vector<std::size_t> depth(joints, 1);
@@ -96,17 +97,24 @@ std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::s
   const double still =
       0.25 * task.options.tolerance / static_cast<double>(kTracksPerJoint * deepest);
   using tracks_detail::Keep;
-  std::vector<Keep> keep(kTracksPerJoint * joints, Keep::first);
-  for (std::size_t f = 1; f < frames; ++f) {
-    for (std::size_t j = 0; j < joints; ++j) {
-      const Transform& first = task.local[j];
-      const Transform& now = task.local[f * joints + j];
-      if ((now.position - first.position).norm() > still) keep[kTracksPerJoint * j] = Keep::needed;
-      if (tracks_detail::rotation_error(first.orientation, now.orientation, reach[j]) > still) {
-        keep[kTracksPerJoint * j + 1] = Keep::needed;
+  std::vector<Keep> keep(kTracksPerJoint * joints,
+                         task.options.rest.empty() ? Keep::first : Keep::rest);
+  const auto need = [&](std::span<const Transform> from, Keep now, Keep then) {
+    for (std::size_t i = 0; i < task.local.size(); ++i) {
+      const std::size_t j = i % joints;
+      Keep* const tracks = keep.data() + kTracksPerJoint * j;
+      if (tracks[0] == now && (task.local[i].position - from[j].position).norm() > still) {
+        tracks[0] = then;
+      }
+      if (tracks[1] == now &&
+          tracks_detail::rotation_error(from[j].orientation, task.local[i].orientation, reach[j]) >
+              still) {
+        tracks[1] = then;
       }
     }
-  }
+  };
+  if (!task.options.rest.empty()) need(task.options.rest, Keep::rest, Keep::first);
+  need(task.local.first(joints), Keep::first, Keep::needed);
   return keep;
 }
 
@@ -195,11 +203,11 @@ Result<Reduction> choose_keys(std::span<const int> parents, std::span<const doub
   for (int round = 1; round < kRounds && keep_all_where_few_go(options, reduction, task); ++round) {
     reduction = reduce_all(task, jobs);
   }
-  for (KeptFrames& joint : reduction.joints) {
-    for (std::vector<int>* kept : {&joint.position, &joint.rotation}) {
-      if (kept->empty()) kept->push_back(0);
-      reduction.keys_after += kept->size();
-    }
+  for (std::size_t track = 0; track < task.keep.size(); ++track) {
+    KeptFrames& joint = reduction.joints[track / kTracksPerJoint];
+    auto& kept = track % kTracksPerJoint == 0 ? joint.position : joint.rotation;
+    if (task.keep[track] == tracks_detail::Keep::first) kept.assign(1, 0);
+    reduction.keys_after += kept.size();
   }
   return reduction;
 }

@@ -21,9 +21,12 @@ struct ReduceOptions {
   // Tracks that would keep more than this fraction keep all their keys, for formats where separate
   // times per track cost more than a few values; 1 gives the fewest keys.
   double most_kept = 1;
+  // joint_to_parent of joints without keys, [joints], or none: tracks that stay there get no keys.
+  std::span<const Transform> rest{};
 };
 
-// Frames of a joint that are kept as keys, increasing; only the first if nothing moves.
+// Frames of a joint that are kept as keys, increasing; only the first if nothing moves,
+// none at rest.
 struct KeptFrames {
   std::vector<int> position;
   std::vector<int> rotation;
