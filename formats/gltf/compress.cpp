@@ -11,6 +11,7 @@
 #include "core/text.h"
 #include "formats/gltf/assemble_glb_internal.h"
 #include "formats/gltf/baked_writer.h"
+#include "formats/gltf/compression_internal.h"
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/gltf_writer.h"
 
@@ -76,15 +77,6 @@ std::vector<unsigned char> encode_indices(const ViewGroup& group) {
       meshopt_encodeIndexBufferBound(count, std::size_t{largest} + 1));
   meshopt_encodeIndexVersion(1);
   encoded.resize(meshopt_encodeIndexBuffer(encoded.data(), encoded.size(), indices.data(), count));
-  return encoded;
-}
-
-std::vector<unsigned char> encode_attributes(const ViewGroup& group) {
-  const std::size_t stride = group.kind.stride, count = group.bytes.size() / stride;
-  std::vector<unsigned char> encoded(meshopt_encodeVertexBufferBound(count, stride));
-  meshopt_encodeVertexVersion(0);
-  encoded.resize(meshopt_encodeVertexBuffer(encoded.data(), encoded.size(), group.bytes.data(),
-                                            count, stride));
   return encoded;
 }
 
@@ -186,7 +178,8 @@ class Compressor {
         views.push_back(std::move(view));
         continue;
       }
-      const auto encoded = is_index(group.kind) ? encode_indices(group) : encode_attributes(group);
+      const auto encoded = is_index(group.kind) ? encode_indices(group)
+                                                : encode_attributes(group.bytes, group.kind.stride);
       assert(!encoded.empty());
       OrderedJson extension = {
           {"buffer", 0},
@@ -221,6 +214,15 @@ class Compressor {
 };
 
 }  // namespace
+
+std::vector<unsigned char> encode_attributes(std::span<const std::byte> bytes, std::size_t stride) {
+  const std::size_t count = bytes.size() / stride;
+  std::vector<unsigned char> encoded(meshopt_encodeVertexBufferBound(count, stride));
+  meshopt_encodeVertexVersion(0);
+  encoded.resize(
+      meshopt_encodeVertexBuffer(encoded.data(), encoded.size(), bytes.data(), count, stride));
+  return encoded;
+}
 
 Status Document::write_compressed(OutputFile& file) {
   if (size_ > kMaxDataBytes) return Error("gltf-too-large", "the file exceeds glTF's limit");

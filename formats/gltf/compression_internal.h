@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/child_process.h"
 #include "core/result.h"
@@ -35,5 +36,8 @@ void unfilter_colours(std::span<std::byte> colours, std::size_t stride);
 // (see core/child_process.h). Codes: gltf-compression, gltf-too-large.
 Status unpack_draco(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_bytes,
                     const GivenLimits& given);
+
+// What a buffer view of elements of `stride` bytes, a multiple of 4, is encoded to.
+std::vector<unsigned char> encode_attributes(std::span<const std::byte> bytes, std::size_t stride);
 
 }  // namespace krok::gltf

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <set>
 
 #include "core/index.h"
+#include "formats/gltf/compression_internal.h"
+#include "formats/gltf/filters_internal.h"
 #include "formats/gltf/reduce_tracks.h"
 #include "formats/gltf/track_poses.h"
 #include "skin/morph.h"
@@ -17,6 +21,8 @@ namespace {
 constexpr double kBitsShare = 0.15;
 // What a loader computes from the file may be off by, beside rounded() and quantized().
 constexpr double kDecodingShare = 0.002;
+// Of the error that bits may make, from one attempt to the next.
+constexpr double kCoarser = 1.5;
 constexpr int kMinBits = 6, kMaxBits = 23;
 // Of joints without vertices, for what viewers attach to them: metres.
 constexpr double kMinReach = 0.05, kMinShell = 0.03;
@@ -99,19 +105,47 @@ ShapeAtMoment shape_of(const TrackedMesh& mesh) {
   };
 }
 
-// About the bytes of the keys of a file: what compression leaves of each is alike in all.
-double size_of(const JointTracks& tracks) {
-  double bits = 0;
+// The bytes of the keys of a file, with about what the JSON takes.
+std::size_t size_of(const JointTracks& tracks, bool filtered) {
+  constexpr std::size_t kAccessor = 100, kChannel = 85, kTranslation = 12, kRotation = 16;
+  std::vector<std::uint32_t> translations, wide;
+  std::vector<std::int16_t> rotations;
+  std::set<std::vector<int>> times;
+  std::size_t size = 0;
+  const auto add = [&](const auto& values, std::size_t each, const std::vector<int>& frames,
+                       const auto& stored, auto& all) {
+    if (values.empty()) return;
+    size += kAccessor + kChannel;
+    if (filtered && stored) {
+      all.insert(all.end(), stored->begin(), stored->end());
+    } else {
+      size += values.size() * each;
+    }
+    if (times.insert(frames).second) size += kAccessor + (filtered ? 3 : 4) * frames.size();
+  };
   for (const JointTrack& track : tracks.joints) {
-    const auto translations = static_cast<double>(track.translations.size());
-    const auto rotations = static_cast<double>(track.rotations.size());
-    bits += 3 * translations * std::clamp(4 - track.translation_exponent, 8, 32);
-    bits += 3 * rotations * (track.rotation_bits == JointTrack::kExact ? 32 : track.rotation_bits);
-    // Keys of their own times.
-    bits +=
-        16 * static_cast<double>(track.translation_frames.size() + track.rotation_frames.size());
+    const std::span<const Vec3f> moves = track.translations;
+    const std::span<const Quatf> turns = track.rotations;
+    const int bits = track.rotation_bits;
+    std::optional<std::vector<std::uint32_t>> steps, wide_steps;
+    std::optional<std::vector<std::int16_t>> shorts;
+    if (filtered && !moves.empty()) {
+      steps = exponential({moves.data()->data(), 3 * moves.size()}, track.translation_exponent);
+    }
+    add(moves, kTranslation, track.translation_frames, steps, translations);
+    if (bits <= JointTrack::kShortBits) {
+      if (filtered) shorts = quaternion(turns, bits);
+      add(turns, kRotation / 2, track.rotation_frames, shorts, rotations);
+    } else {
+      if (filtered && bits < JointTrack::kExact && !turns.empty()) {
+        wide_steps = exponential({turns.data()->coeffs().data(), 4 * turns.size()}, 1 - bits);
+      }
+      add(turns, kRotation, track.rotation_frames, wide_steps, wide);
+    }
   }
-  return bits / 8;
+  return size + encode_attributes(std::as_bytes(std::span(translations)), kTranslation).size() +
+         encode_attributes(std::as_bytes(std::span(wide)), kRotation).size() +
+         encode_attributes(std::as_bytes(std::span(rotations)), kRotation / 2).size();
 }
 
 std::size_t key_count(const JointTracks& tracks) {
@@ -145,25 +179,26 @@ Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMes
   const JointTracks full = tracks;
   const std::vector<double> shells = shells_of(model.model), reaches = reaches_of(model.model);
   MeshReduction best;
-  double best_size = std::numeric_limits<double>::infinity();
+  std::size_t best_size = std::numeric_limits<std::size_t>::max();
   // Compressed, a key takes about 3.6 bytes, its time 2.8 and the JSON of separate times 105.
   const auto frames = static_cast<double>(std::max<std::size_t>(full.times.size(), 1));
-  const double most_kept = std::max(0.56 - 16.4 / frames, 2.0 / frames);
+  const double most_kept = options.filtered ? std::max(0.56 - 16.4 / frames, 2.0 / frames) : 1.0;
   // Keys within `factor` of the tolerance, with bits within `bits_error` metres and then, with
   // `coarser`, fewer as long as that fits.
-  const auto attempt = [&](double factor, double bits_error, bool coarser) -> Result<bool> {
+  const auto attempt = [&](double factor, double bits_error, bool coarser,
+                           double kept_share) -> Result<bool> {
     JointTracks fewer = full;
     auto reduction = reduce_tracks(model.model.skeleton,
                                    {.tolerance = factor * options.tolerance,
                                     .shell_distances = shells,
-                                    .most_kept = options.filtered ? most_kept : 1.0},
+                                    .most_kept = kept_share},
                                    jobs, fewer);
     if (!reduction) return std::move(reduction).error();
-    for (bool fits_any = false;; fits_any = true, bits_error *= 2) {
+    for (bool fits_any = false;; fits_any = true, bits_error *= kCoarser) {
       if (options.short_keys) choose_bits(reaches, bits_error, options.filtered, fewer);
       const MeshError error = mesh_error(model, full, kept, rounded(fewer, options.filtered), jobs);
       if (error.largest > (1 - kDecodingShare) * options.tolerance) return fits_any;
-      if (const double size = size_of(fewer); size < best_size) {
+      if (const std::size_t size = size_of(fewer, options.filtered); size < best_size) {
         best = {error, reduction->keys_before, reduction->keys_after};
         best_size = size;
         tracks = fewer;
@@ -176,18 +211,19 @@ Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMes
   constexpr int kRounds = 6;
   for (int round = 0; round < kRounds; ++round) {
     const double middle = round == 0 ? 1.0 : std::sqrt(low * high);
-    const auto fits = attempt(middle, kBitsShare * middle * options.tolerance, false);
+    const auto fits = attempt(middle, kBitsShare * middle * options.tolerance, false, most_kept);
     if (!fits) return fits.error();
     (*fits ? low : high) = middle;
   }
-  // What keys leave of the tolerance, and more of it, for fewer bits.
-  for (const double share : {1.0, 0.5, 0.125}) {
+  // What keys leave of the tolerance, and more of it, for fewer bits; all of it with all keys.
+  for (const double share : {1.0, 0.5, 0.125, 0.0}) {
     if (!options.short_keys || !options.filtered) break;
     const auto fits =
-        attempt(share * low, 2 * kBitsShare * std::min(1.0, low) * options.tolerance, true);
+        attempt(std::max(share * low, 0.1), 2 * kBitsShare * std::min(1.0, low) * options.tolerance,
+                true, share > 0 ? most_kept : 0.0);
     if (!fits) return fits.error();
   }
-  if (std::isfinite(best_size)) return best;
+  if (best_size < std::numeric_limits<std::size_t>::max()) return best;
   tracks = full;
   return MeshReduction{mesh_error(model, full, kept, tracks, jobs), key_count(full),
                        key_count(full)};

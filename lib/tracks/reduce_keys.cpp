@@ -192,6 +192,9 @@ Result<Reduction> choose_keys(std::span<const int> parents, std::span<const doub
   }
   ReductionTask task{parents, times, joint_to_parent, {}, {}, options};
   task.keep = moving_tracks(task, frames);
+  if (options.most_kept == 0) {
+    std::ranges::replace(task.keep, tracks_detail::Keep::needed, tracks_detail::Keep::all);
+  }
   auto below = joints_below(task);
   if (!below) return below.error();
   task.below = *std::move(below);

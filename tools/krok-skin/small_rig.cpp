@@ -16,8 +16,8 @@ namespace krok::cli::skin {
 
 namespace {
 
-// Of the tolerance of --reduce, what positions, and weights, of vertices may take alone.
-constexpr double kVertexShare = 0.5;
+// Of the tolerance of --reduce, what positions, and weights, of vertices may take alone, and both.
+constexpr double kMinVertexShare = 0.15, kMaxVertexShare = 0.7, kMaxShareOfBoth = 0.8;
 
 std::string millimetres(double metres) {
   return readable(1e3 * metres, 3) + " mm";
@@ -191,10 +191,25 @@ class BitsLost {
     gltf::Quantization result{.filtered = filtered};
     if (filtered) result.coordinate_bits = 14;
     if (tolerance == 0) return result;
-    // A vertex, and each of its targets, is off by half a step along each axis.
-    result.position_step = kVertexShare * tolerance * 2 / std::sqrt(3.0) / shapes_at_once();
-    result.weight_bits = weight_bits_within(kVertexShare * tolerance, filtered);
-    return result;
+    // A bit less of all vertices, or of all keys, takes a number of bytes in proportion to theirs.
+    // About half of the keys are left.
+    const auto vertices = static_cast<double>(rig_.model.vertex_count());
+    double keys = 0;
+    for (const gltf::JointTracks& tracks : full_) {
+      for (const gltf::JointTrack& track : tracks.joints) {
+        keys += 0.5 * static_cast<double>(track.translations.size() + track.rotations.size());
+      }
+    }
+    double share = std::clamp(vertices / (vertices + keys), kMinVertexShare, kMaxVertexShare);
+    for (;; share *= 0.8) {
+      // A vertex, and each of its targets, is off by half a step along each axis.
+      result.position_step = share * tolerance * 2 / std::sqrt(3.0) / shapes_at_once();
+      result.weight_bits = weight_bits_within(share * tolerance, filtered);
+      if (share <= kMinVertexShare ||
+          largest(shown(result), full_).first.largest < kMaxShareOfBoth * tolerance) {
+        return result;
+      }
+    }
   }
 
  private:
