@@ -85,16 +85,18 @@ std::vector<std::byte>& Document::own_part() {
 }
 
 int Document::add_accessor(std::span<const std::byte> bytes, int component,
-                           std::size_t component_size, int type, Use use, Keep keep) {
+                           std::size_t component_size, int type, Use use, Keep keep,
+                           Filter filter) {
   assert(promised_ == 0);
   const int next = static_cast<int>(gltf.accessors.size());
   if (options_.compressed && use == Use::data && bytes.size() <= kConstantBytes) {
     const auto [known, made] = constants_.try_emplace(
-        {component, type, std::vector<std::byte>(bytes.begin(), bytes.end())}, next);
+        {component, type, filter, std::vector<std::byte>(bytes.begin(), bytes.end())}, next);
     if (!made) return known->second;
   }
   add_accessor_of(bytes.size(), component, component_size, type, use);
   put(bytes, keep);
+  if (filter != Filter::none) filters_[gltf.accessors.back().bufferView] = filter;
   return next;
 }
 
@@ -166,16 +168,16 @@ int Document::add_strided(std::span<const std::byte> bytes, std::size_t stride, 
 }
 
 int Document::add_filtered(std::span<const std::byte> bytes, int type, Filter filter, Use use) {
-  int index = 0;
   if (filter == Filter::octahedral) {
-    index = add_strided(bytes, 4, TINYGLTF_COMPONENT_TYPE_BYTE, type, true);
-  } else if (filter == Filter::quaternion) {
-    index = add_accessor(bytes, TINYGLTF_COMPONENT_TYPE_SHORT, sizeof(std::int16_t), type, use);
-    gltf.accessors[static_cast<std::size_t>(index)].normalized = true;
-  } else {
-    index = add_accessor(bytes, TINYGLTF_COMPONENT_TYPE_FLOAT, sizeof(float), type, use);
+    const int index = add_strided(bytes, 4, TINYGLTF_COMPONENT_TYPE_BYTE, type, true);
+    filters_[gltf.accessors[static_cast<std::size_t>(index)].bufferView] = filter;
+    return index;
   }
-  filters_[gltf.accessors[static_cast<std::size_t>(index)].bufferView] = filter;
+  const bool is_short = filter == Filter::quaternion;
+  const int index =
+      add_accessor(bytes, is_short ? TINYGLTF_COMPONENT_TYPE_SHORT : TINYGLTF_COMPONENT_TYPE_FLOAT,
+                   is_short ? sizeof(std::int16_t) : sizeof(float), type, use, Keep::copy, filter);
+  gltf.accessors[static_cast<std::size_t>(index)].normalized = is_short;
   return index;
 }
 

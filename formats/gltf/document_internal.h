@@ -165,7 +165,7 @@ class Document {
   Result<int> add_texture(const Texture& texture);
   int add_sampler(const Texture& texture);
   int add_accessor(std::span<const std::byte> bytes, int component, std::size_t component_size,
-                   int type, Use use, Keep keep = Keep::copy);
+                   int type, Use use, Keep keep = Keep::copy, Filter filter = Filter::none);
   int add_accessor_of(std::size_t bytes, int component, std::size_t component_size, int type,
                       Use use);
   std::vector<std::byte>& own_part();
@@ -194,8 +194,8 @@ class Document {
   std::map<int, std::vector<VertexRange>> ranges_;   // of the primitives of a mesh
   std::map<int, std::vector<Vec3f>> displacements_;  // of accessors without data
   std::map<std::vector<float>, int> times_;          // accessors of key times
-  // Accessors of single keys, by component, type and bytes.
-  std::map<std::tuple<int, int, std::vector<std::byte>>, int> constants_;
+  // Accessors of single keys, by component, type, filter and bytes.
+  std::map<std::tuple<int, int, Filter, std::vector<std::byte>>, int> constants_;
   std::uint64_t size_ = 0;      // bytes of the parts and the streamed data
   std::uint64_t promised_ = 0;  // bytes of the streamed data
   std::size_t bounds_ = 0;      // bounds that are not filled in yet
