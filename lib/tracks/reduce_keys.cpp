@@ -100,16 +100,16 @@ std::vector<tracks_detail::Keep> moving_tracks(const ReductionTask& task, std::s
   std::vector<Keep> keep(kTracksPerJoint * joints,
                          task.options.rest.empty() ? Keep::first : Keep::rest);
   const auto need = [&](std::span<const Transform> from, Keep now, Keep then) {
-    for (std::size_t i = 0; i < task.local.size(); ++i) {
-      const std::size_t j = i % joints;
-      Keep* const tracks = keep.data() + kTracksPerJoint * j;
-      if (tracks[0] == now && (task.local[i].position - from[j].position).norm() > still) {
-        tracks[0] = then;
-      }
-      if (tracks[1] == now &&
-          tracks_detail::rotation_error(from[j].orientation, task.local[i].orientation, reach[j]) >
-              still) {
-        tracks[1] = then;
+    for (std::size_t f = 0; f < frames; ++f) {
+      for (std::size_t j = 0; j < joints; ++j) {
+        const Transform& here = task.local[f * joints + j];
+        Keep& position = keep[kTracksPerJoint * j];
+        Keep& rotation = keep[kTracksPerJoint * j + 1];
+        if (position == now && (here.position - from[j].position).norm() > still) position = then;
+        if (rotation == now && tracks_detail::rotation_error(from[j].orientation, here.orientation,
+                                                             reach[j]) > still) {
+          rotation = then;
+        }
       }
     }
   };
