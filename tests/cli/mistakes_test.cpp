@@ -82,7 +82,7 @@ TEST_F(Mistakes, WordsOfOtherProgramsLeadOn) {
   EXPECT_THAT(refused("krok", {"convert", "in.bvh"}), HasSubstr("krok import"));
   EXPECT_THAT(refused("krok-cam", {"in.bvh", "--follow", "hip", "-o", "a.cam"}),
               HasSubstr("did you mean 'Hips'?"));
-  put("hero.glb", "glTF\2\0\0\0");
+  put("hero.glb", std::string("glTF\2\0\0\0", 8));
   EXPECT_THAT(refused("krok-body", {"hero.glb", "-o", "a.model"}),
               HasSubstr("krok-import converts it: --save-character"));
   EXPECT_THAT(refused("krok-import", {"in.bvh", "-o", "hero.character"}),

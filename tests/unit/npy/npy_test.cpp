@@ -16,7 +16,7 @@
 
 namespace {
 
-using std::string_literals::operator""s;
+using namespace std::string_literals;
 using krok::npy::Array;
 
 std::span<const std::byte> bytes_of(const std::string& text) {
