@@ -147,12 +147,14 @@ TEST(Npy, axes_in_another_order_are_explained) {
 
 // Landmarks that begin at the hips: half of the body is below 0.
 TEST(Npy, feet_far_below_the_ground_lead_to_on_ground) {
+  const auto named = krok::named_skeleton("smpl22");
+  ASSERT_TRUE(named.has_value());
   for (const float height : {0.0F, 1.0F}) {
-    const auto arranged = krok::arrange(*krok::named_skeleton("smpl22"));
+    const auto arranged = krok::arrange(*named);
     ASSERT_TRUE(arranged.ok());
     std::vector<float> values;
     for (int f = 0; f < 10; ++f) {
-      for (const auto& joint : krok::named_skeleton("smpl22")->joints) {
+      for (const auto& joint : named->joints) {
         const int j = arranged->skeleton.find(joint.name);
         const krok::Vec3& place = arranged->skeleton.reference[std::size_t(j)].position;
         for (const int axis : {0, 1, 2}) {
