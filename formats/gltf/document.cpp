@@ -258,19 +258,19 @@ std::string Document::unique_node_name(const std::string& wanted) {
 void Document::add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
                            int values) {
   auto& samplers = animation.samplers;
-  const auto known = std::ranges::find_if(samplers, [&](const tinygltf::AnimationSampler& sampler) {
-    return sampler.input == times && sampler.output == values;
-  });
-  tinygltf::AnimationChannel channel;
-  channel.sampler = static_cast<int>(known - samplers.begin());
-  channel.target_node = node;
-  channel.target_path = path;
-  if (known == samplers.end()) {
+  if (samplers.empty()) samplers_.clear();
+  const auto [known, made] =
+      samplers_.try_emplace({times, values}, static_cast<int>(samplers.size()));
+  if (made) {
     tinygltf::AnimationSampler& sampler = samplers.emplace_back();
     sampler.input = times;
     sampler.output = values;
     sampler.interpolation = "LINEAR";
   }
+  tinygltf::AnimationChannel channel;
+  channel.sampler = known->second;
+  channel.target_node = node;
+  channel.target_path = path;
   animation.channels.push_back(std::move(channel));
 }
 

@@ -196,9 +196,10 @@ class Document {
   std::map<std::vector<float>, int> times_;          // accessors of key times
   // Accessors of single keys, by component, type, filter and bytes.
   std::map<std::tuple<int, int, Filter, std::vector<std::byte>>, int> constants_;
-  std::uint64_t size_ = 0;      // bytes of the parts and the streamed data
-  std::uint64_t promised_ = 0;  // bytes of the streamed data
-  std::size_t bounds_ = 0;      // bounds that are not filled in yet
+  std::map<std::pair<int, int>, int> samplers_;  // of the animation, by times and values
+  std::uint64_t size_ = 0;                       // bytes of the parts and the streamed data
+  std::uint64_t promised_ = 0;                   // bytes of the streamed data
+  std::size_t bounds_ = 0;                       // bounds that are not filled in yet
   OutputFile* file_ = nullptr;
   std::string json_;                  // with space reserved for the bounds
   std::vector<std::byte> unencoded_;  // the last bytes, fewer than one Base64 group

@@ -129,7 +129,7 @@ std::size_t size_of(const JointTracks& tracks, bool filtered) {
     const int bits = track.rotation_bits;
     std::optional<std::vector<std::uint32_t>> steps, wide_steps;
     std::optional<std::vector<std::int16_t>> shorts;
-    if (filtered && !moves.empty()) {
+    if (filtered && track.translation_exponent != JointTrack::kExact && !moves.empty()) {
       steps = exponential({moves.data()->data(), 3 * moves.size()}, track.translation_exponent);
     }
     add(moves, kTranslation, track.translation_frames, steps, translations);

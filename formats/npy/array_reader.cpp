@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kFarOff = 0.02;  // metres, of joints with bones of constant length
 
-constexpr double kDeep = 0.3;  // metres: no step or slope of a room
+constexpr double kDeep = 0.3;  // metres: deeper than a step goes
 constexpr std::size_t kMaxSamples = 200;
 
 constexpr std::initializer_list<const char*> kPositionNames = {

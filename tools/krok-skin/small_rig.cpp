@@ -200,7 +200,8 @@ class BitsLost {
         keys += 0.5 * static_cast<double>(track.translations.size() + track.rotations.size());
       }
     }
-    double share = std::clamp(vertices / (vertices + keys), kMinVertexShare, kMaxVertexShare);
+    double share =
+        std::clamp(vertices / std::max(1.0, vertices + keys), kMinVertexShare, kMaxVertexShare);
     for (;; share *= 0.8) {
       // A vertex, and each of its targets, is off by half a step along each axis.
       result.position_step = share * tolerance * 2 / std::sqrt(3.0) / shapes_at_once();

@@ -142,6 +142,34 @@ TEST_F(ReduceTracks, AnActorThatStandsStillLastsAsLong) {
   }
 }
 
+// Would fail if a joint that does not leave its rest pose visibly had keys, or another pose.
+TEST_F(ReduceTracks, JointsThatStayAtRestHaveNoTracks) {
+  Clip clip = test::swinging_clip(test::human_skeleton(), 60, 30);
+  const std::vector<Transform>& rest = clip.skeleton.reference;
+  std::vector<Transform> pose(rest.size());
+  const int neck = clip.skeleton.find("Neck");
+  ASSERT_GE(neck, 0);
+  const auto parent =
+      static_cast<std::size_t>(clip.skeleton.parents[static_cast<std::size_t>(neck)]);
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    clip.get_pose(f, pose);
+    const auto n = static_cast<std::size_t>(neck);
+    const Transform to_parent = rest[parent].inverse() * rest[n];
+    pose[n] = pose[parent] * to_parent;
+    pose[n].orientation = pose[n].orientation * from_rotation_vector(Vec3(1e-5 * (f % 3), 0, 0));
+    clip.set_pose(f, pose);
+  }
+  auto tracks = gltf::joint_tracks(clip.skeleton, clip);
+  ASSERT_TRUE(tracks.ok());
+  ASSERT_FALSE(tracks->joints[static_cast<std::size_t>(neck)].rotations.empty());
+  nodes::Scene all, fewer;
+  write(clip.skeleton, *tracks, all);
+  ASSERT_TRUE(gltf::reduce_tracks(clip.skeleton, {.tolerance = 1e-3}, 1, *tracks).ok());
+  EXPECT_TRUE(tracks->joints[static_cast<std::size_t>(neck)].rotations.empty());
+  write(clip.skeleton, *tracks, fewer);
+  EXPECT_LE(largest_error(all, fewer, clip.duration(), 240), 1e-3);
+}
+
 TEST_F(ReduceTracks, SuccessiveRotationsThatStayLieInOneHemisphere) {
   const Clip clip = test::swinging_clip(test::turned_human(), 300, 60);
   auto tracks = gltf::joint_tracks(clip.skeleton, clip);
