@@ -674,22 +674,20 @@ class Solver {
   }
 
   void measure_variation() {
-    double bones = 0;
+    double lengths = 0;
     for (std::size_t j = 0; j < joints_ && frames_ > 0; ++j) {
       const double length = offsets_[j].norm();
-      if (parents_[j] < 0 || length < kNoLength || (parents_[j] == 0 && result_.root_at_body)) {
-        continue;
-      }
+      if (parents_[j] < 0 || (parents_[j] == 0 && result_.root_at_body)) continue;
       double squares = 0;
       for (std::size_t f = 0; f < frames_; ++f) {
         const Vec3 here =
             input_.positions[f * joints_ + j] - input_.positions[f * joints_ + at(parents_[j])];
         squares += (here.norm() - length) * (here.norm() - length);
       }
-      result_.length_variation += std::sqrt(squares / static_cast<double>(frames_)) / length;
-      ++bones;
+      result_.length_variation += std::sqrt(squares / static_cast<double>(frames_));
+      lengths += length;
     }
-    if (bones > 0) result_.length_variation /= bones;
+    if (lengths > 0) result_.length_variation /= lengths;
   }
 
   const PositionsToPose& input_;

@@ -50,7 +50,7 @@ struct PoseFromPositions {
   // Distance of joints in the clip to `positions`, metres.
   double rms = 0, largest = 0;
   int largest_joint = 0, largest_frame = 0;
-  // Mean over joints of the bones' standard deviations, per length: 0 for a rigid body.
+  // Sum of the bones' standard deviations over the sum of their lengths: 0 for a rigid body.
   double length_variation = 0;
 };
 

@@ -81,6 +81,26 @@ TEST(PositionNoise, GlitchesAreFilled) {
   EXPECT_LT((tracks[place_of(50, 2)] - places[place_of(50, 2)]).norm(), 0.003);
 }
 
+// Would fail if an end site that lies in its joint but for a tenth of a millimetre made a rigid
+// body one whose bones change their lengths, or if bones that do were missed.
+TEST(PositionNoise, BonesOfHardlyAnyLengthDoNotCount) {
+  Skeleton skeleton;
+  skeleton.add("shoulder", -1, {Vec3::Zero(), Quat::Identity()});
+  skeleton.add("elbow", 0, {Vec3(0.3, 0, 0), Quat::Identity()});
+  skeleton.add("hand", 1, {Vec3(0.55, 0, 0), Quat::Identity()});
+  skeleton.add("hand_end", 2, {Vec3(0.55, 0, 0), Quat::Identity()});
+  for (const double breath : {0.0, 0.4}) {
+    std::vector<Vec3> places;
+    for (int f = 0; f < kFrames; ++f) {
+      const double size = 1 + breath * std::sin(f);
+      for (const double along : {0.0, 0.3, 0.55, 0.55}) places.emplace_back(size * along, 1.4, 0);
+      places.back().z() += 1e-4 * (f % 3);
+    }
+    const auto made = from_positions({skeleton, {}, places, kRate, false});
+    EXPECT_NEAR(made.length_variation, 0.71 * breath, 0.02) << breath;
+  }
+}
+
 TEST(PositionNoise, GapsTurnWithTheirBones) {
   const Vec3 gap = Vec3::Constant(std::nan(""));
   const std::vector<int> parents = {-1, 0};
