@@ -48,4 +48,24 @@ Mat3 nearest_rotation(const Mat3& a) {
   return u * svd.matrixV().transpose();
 }
 
+Quat nearest_rotation(const Mat3& a, const Quat& near) {
+  constexpr int kSteps = 6;
+  Quat turn = near;
+  for (int i = 0; i < kSteps; ++i) {
+    // The trace of back, turned by a small vector, to the second order.
+    const Mat3 back = a * turn.conjugate().toRotationMatrix();
+    const Mat3 bend = back.trace() * Mat3::Identity() - 0.5 * (back + back.transpose());
+    const double minor = bend(0, 0) * bend(1, 1) - bend(0, 1) * bend(1, 0);
+    if (!(bend(0, 0) > 0 && minor > 0 && bend.determinant() > 1e-9 * minor * bend.trace())) break;
+    const Vec3 step = bend.inverse() * Vec3(back(2, 1) - back(1, 2), back(0, 2) - back(2, 0),
+                                            back(1, 0) - back(0, 1));
+    Quat by;
+    by.w() = 1;
+    by.vec() = 0.5 * step;
+    turn = (by * turn).normalized();
+    if (step.squaredNorm() < 1e-14) return turn;  // the error is its square
+  }
+  return Quat(nearest_rotation(a)).normalized();
+}
+
 }  // namespace krok

@@ -40,5 +40,8 @@ PivotedColumns pivoted_columns(const Eigen::MatrixXd& a, double threshold);
 // The rotation nearest to a matrix (Kabsch 1976: U V^T of its singular vectors); if that is a
 // reflection, the direction of the smallest singular value is flipped.
 Mat3 nearest_rotation(const Mat3& a);
+// The same by the method of Newton from a rotation that is near it, several times as fast; by
+// singular values where that does not converge, as for a reflection or a matrix of rank 1.
+Quat nearest_rotation(const Mat3& a, const Quat& near);
 
 }  // namespace krok

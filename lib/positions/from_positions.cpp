@@ -34,22 +34,6 @@ void turn_by(const Vec3& vector, Quat& turn) {
   turn = (by * turn).normalized();
 }
 
-// The rotation nearest to a sum of outer products target * source^T (Kabsch 1976; Wahba 1965), by
-// the method of Newton from one that is near.
-Quat turn_of(const Mat3& products, Quat near) {
-  for (int i = 0; i < 6; ++i) {
-    const Mat3 back = products * near.conjugate().toRotationMatrix();
-    const Mat3 bend = back.trace() * Mat3::Identity() - 0.5 * (back + back.transpose());
-    const double minor = bend(0, 0) * bend(1, 1) - bend(0, 1) * bend(1, 0);
-    if (!(bend(0, 0) > 0 && minor > 0 && bend.determinant() > 1e-9 * minor * bend.trace())) break;
-    const Vec3 step = bend.inverse() * Vec3(back(2, 1) - back(1, 2), back(0, 2) - back(2, 0),
-                                            back(1, 0) - back(0, 1));
-    turn_by(step, near);
-    if (step.squaredNorm() < 1e-14) return near;  // the error is its square
-  }
-  return Quat(nearest_rotation(products)).normalized();
-}
-
 // The angle of a rotation about an axis (unit), in (-pi, pi].
 double twist_about(const Vec3& axis, const Quat& rotation) {
   double angle = 2 * std::atan2(rotation.vec().dot(axis), rotation.w());
@@ -58,6 +42,7 @@ double twist_about(const Vec3& axis, const Quat& rotation) {
   return angle;
 }
 
+// In place: without jumps of a whole turn, their mean within half a turn.
 void unwrap(std::vector<double>& angles) {
   double turns = 0, mean = 0;
   for (std::size_t t = 1; t < angles.size(); ++t) {
@@ -349,8 +334,8 @@ class Solver {
       double count = 0;
       for (std::size_t f = 0; f < frames_; f += step, ++count) {
         Quat& turn = turns_[j * frames_ + f];
-        turn = turn_of(products(j, f, measured_[j * frames_ + f]),
-                       f == 0 || iteration > 0 ? turn : turns_[j * frames_ + f - step]);
+        turn = nearest_rotation(products(j, f, measured_[j * frames_ + f]),
+                                f == 0 || iteration > 0 ? turn : turns_[j * frames_ + f - step]);
         const Quat back = turn.conjugate();
         for (std::size_t i = 0; i < sums.size(); ++i) {
           sums[i] += back * way(j, at(targets_[j][i]), f);
@@ -366,7 +351,7 @@ class Solver {
     // As the reference pose stands, as nearly as the shape allows.
     Mat3 sum = 1e-9 * Mat3::Identity();
     for (std::size_t i = 0; i < shape.size(); ++i) sum += reference[i] * shape[i].transpose();
-    const Quat turn = turn_of(sum, Quat::Identity());
+    const Quat turn = nearest_rotation(sum, Quat::Identity());
     for (Vec3& offset : shape) offset = turn * offset;
     for (std::size_t f = 0; f < frames_; ++f) {
       Quat& here = turns_[j * frames_ + f];
@@ -378,7 +363,7 @@ class Solver {
     parallel_for(frames_, kGrain, input_.jobs, [&](std::size_t begin, std::size_t end) {
       for (std::size_t f = begin; f < end; ++f) {
         Quat& turn = turns_[j * frames_ + f];
-        turn = turn_of(products(j, f, placed_[j * frames_ + f]), turn);
+        turn = nearest_rotation(products(j, f, placed_[j * frames_ + f]), turn);
       }
     });
   }
