@@ -241,11 +241,13 @@ class Transfer {
                                        [](const JointSource& entry) { return entry.first >= 0; }));
     const int fewer = std::min(joints_without_ends(source_.skeleton), joints_without_ends(target_));
     if (shared * 5 < fewer * 3 || shared == 0) {
-      return Error("retarget-roles",
-                   fmt::format("the skeletons are not both humanoid ({}), and share only {} of {} "
-                               "joint names",
-                               missing_text(source_roles_, target_roles_), shared, fewer),
-                   "assign joint roles with --map and --onto-map; krok-info shows those found");
+      return Error(
+          "retarget-roles",
+          fmt::format("the skeletons are not both humanoid ({}), and share only {} of {} "
+                      "joint names",
+                      missing_text(source_roles_, target_roles_), shared, fewer),
+          "assign joint roles with krok-retarget's --map and --onto-map; krok-info shows those "
+          "found");
     }
     turns_ = align_by_names({source_.skeleton, source_roles_, rest_},
                             {target_, target_roles_, target_rest_}, plan_.mapping);

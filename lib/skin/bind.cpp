@@ -76,8 +76,8 @@ Result<Model> bind_to(Model model, const Skeleton& skeleton) {
   if (!missing.empty()) {
     return missing_joints(missing,
                           fmt::format("the motion's joints are {}, ...; the model and the "
-                                      "motion must come from the same skeleton; krok-retarget "
-                                      "--onto brings a motion onto the model's",
+                                      "motion must come from the same skeleton; krok-skin "
+                                      "--retarget, or krok-retarget, moves motions to the model's",
                                       skeleton.empty() ? "none" : skeleton.names[0]));
   }
 

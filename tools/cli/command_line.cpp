@@ -194,6 +194,7 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
       app_(spec.details.empty() ? spec.summary : spec.summary + "\n\n" + spec.details, spec.name),
       tool_(spec.name),
       folder_endings_(spec.folder_endings),
+      keeps_going_(spec.keeps_going),
       needs_output_(spec.has_output && spec.needs_output),
       default_output_(spec.default_output),
       takes_many_(spec.batch.has_value()) {
@@ -327,11 +328,11 @@ void CommandLine::note_given() {
 }
 
 Status CommandLine::check_use_of_batch_options() const {
-  const char* const first = !base.empty()    ? "--base"
-                            : !shard.empty() ? "--shard"
-                            : keep_going     ? "--keep-going"
-                            : force          ? "--force"
-                                             : nullptr;
+  const char* const first = !base.empty()                 ? "--base"
+                            : !shard.empty()              ? "--shard"
+                            : keep_going && !keeps_going_ ? "--keep-going"
+                            : force                       ? "--force"
+                                                          : nullptr;
   if (form_ != Form::single || first == nullptr) return {};
   return Error("usage", fmt::format("{} is for batch mode only", first),
                "add --out-dir or --manifest");
@@ -550,6 +551,7 @@ ToolContext CommandLine::context() const {
   context.report.tool = tool_;
   context.report.version = version();
   context.jobs = jobs;
+  context.keep_going = keep_going;
   context.limits = limits();
   context.no_clobber = no_clobber;
   context.quiet = quiet;

@@ -111,6 +111,7 @@ class CommandLine {
   std::vector<GivenOption> given_;
   std::string tool_;
   std::vector<std::string> folder_endings_;
+  bool keeps_going_ = false;
   bool needs_output_ = false;
   std::function<std::string()> default_output_;
   bool takes_many_ = false;

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/numbers.h"
 #include "core/result.h"
 #include "math/types.h"
 #include "tools/cli/json.h"
@@ -33,6 +34,11 @@ struct Report {
 
   Json to_json() const;
 };
+
+// A length as text: "0.25 mm".
+inline std::string millimetres(double metres) {
+  return readable(1e3 * metres, 3) + " mm";
+}
 
 // Angles of reports are in degrees.
 inline double to_degrees(double radians) {

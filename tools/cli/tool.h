@@ -57,6 +57,7 @@ class ToolContext : public io::Inputs {
   // The files that this run writes: -o, --json=FILE and every option whose value is named OUT... in
   // the help. open_input rejects them.
   std::vector<std::string> destinations;
+  bool keep_going = false;  // of many inputs, those that cannot be used are left out
   // Report path: --json=FILE, "-", or empty.
   std::string report_path;
   // Outputs of a single run that wait for its report; all are put in place together.
@@ -158,6 +159,7 @@ struct ToolSpec {
   std::string report_name;                  // alias of --json, "--report", or empty
   bool has_output = true;                   // has -o
   bool needs_output = true;                 // -o is required
+  bool keeps_going = false;                 // --keep-going also of many inputs for one output
   std::optional<registry::Kind> writes;     // what -o is, if it is always the same
   std::vector<std::string> output_endings;  // that -o may have, of what is no Kind; none: any
   // Where the output goes without -o, after the options are parsed: "" for nowhere. No file there

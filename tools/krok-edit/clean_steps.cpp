@@ -17,10 +17,6 @@ namespace krok::cli::edit {
 
 namespace {
 
-std::string in_millimetres(double metres) {
-  return readable(metres * 1000, 3) + " mm";
-}
-
 // How far foot contacts moved: the error that a filter adds to ground contact.
 Json foot_change(const Displacement& change, const Edit& edit, std::string& line) {
   const auto feet = foot_joints(edit.clip.skeleton, edit.roles);
@@ -29,7 +25,7 @@ Json foot_change(const Displacement& change, const Edit& edit, std::string& line
   line += change.distance == 0
               ? fmt::format("; {} did not move", known ? "feet" : "joints")
               : fmt::format("; {} moved by at most {} ({}, frame {})", known ? "feet" : "joints",
-                            in_millimetres(change.distance), name, change.frame);
+                            millimetres(change.distance), name, change.frame);
   Json json;
   json["distance"] = change.distance;
   json["joint"] = name;
@@ -56,7 +52,7 @@ Diagnostic spike_note(const filter::Spike& spike, const Edit& edit, const std::s
   note.message =
       fmt::format("{}, {}: the {} jumped by {} and back; replaced", note.joint, frames,
                   spike.of_position ? "position" : "rotation",
-                  spike.of_position ? in_millimetres(spike.size) : in_degrees(spike.size));
+                  spike.of_position ? millimetres(spike.size) : in_degrees(spike.size));
   return note;
 }
 
@@ -157,7 +153,7 @@ Status remove_spikes(const Options& options, ToolContext& context,
 
 std::string noise_line(double angle, double distance, const std::string& spikes) {
   return fmt::format("filtered: noise of {} and {}, {}", in_degrees(angle),
-                     in_millimetres(distance), spikes);
+                     millimetres(distance), spikes);
 }
 
 Status filter_noise_of_frames(const Options& options, ToolContext& context,

@@ -15,23 +15,21 @@
 #include "formats/registry/registry.h"
 #include "gait/shown_prints.h"
 #include "plant/follow_feet.h"
-#include "retarget/stance.h"
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
-#include "tools/krok-retarget/outcome.h"
 #include "tools/krok-retarget/takes.h"
 #include "tools/shared/keys_choice.h"
 #include "tools/shared/planting.h"
+#include "tools/shared/retarget_outcome.h"
 
 namespace krok::cli::retarget {
 
 namespace {
 
-// The target: a skeleton, and the floor height below its mesh, if any.
 struct Target {
-  Clip clip;  // without frames if it is a model
-  std::optional<double> floor;
+  Clip clip;                // without frames if it is a model
+  std::vector<Vec3f> mesh;  // of a model
 };
 
 Result<Target> read_target(const std::string& path, ToolContext& context) {
@@ -42,10 +40,7 @@ Result<Target> read_target(const std::string& path, ToolContext& context) {
     target.clip = std::move(actor->motions[0].clip);
     return target;
   }
-  for (const Vec3f& position : actor->model.positions) {
-    const double height = position.y();
-    target.floor = std::min(target.floor.value_or(height), height);
-  }
+  target.mesh = std::move(actor->model.positions);
   target.clip.skeleton = std::move(actor->model.skeleton);
   return target;
 }
@@ -78,71 +73,6 @@ Status take_pose(const char* option, const MatchingPose& given, const Skeleton& 
   pose.resize(skeleton.names.size());
   clip->get_pose(*given.frame, pose);
   return {};
-}
-
-// A mesh bottom far above or below the feet is not their floor.
-std::optional<double> believable_floor(const Target& target, const RoleMap& roles) {
-  if (!target.floor || !roles.humanoid) return std::nullopt;
-  double lowest = 0;
-  bool found = false;
-  for (std::size_t j = 0; j < roles.roles.size(); ++j) {
-    const double height = target.clip.skeleton.reference[j].position.y();
-    if (!found || height < lowest) lowest = height;
-    found = true;
-  }
-  const double under = lowest - *target.floor;
-  const bool near = under > -0.02 && under < 0.06 * reference_extent(target.clip.skeleton);
-  return near ? target.floor : std::nullopt;
-}
-
-// Radians; feet of T-poses point up to 30 degrees outwards.
-constexpr double kTurnedFoot = 40 * kRadiansPerDegree;
-
-void report_choices(const Outcome& outcome, bool pose_is_given, ToolContext& context) {
-  const krok::retarget::Report& report = outcome.report;
-  const auto note = [&](std::string code, std::string message, std::string hint = {}) {
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::note;
-    diagnostic.code = std::move(code);
-    diagnostic.message = std::move(message);
-    diagnostic.hint = std::move(hint);
-    context.diagnose(std::move(diagnostic));
-  };
-  const std::vector<Transform>& reference = outcome.source.reference;
-  if (!pose_is_given && outcome.source_roles.humanoid &&
-      report.method == krok::retarget::Method::roles &&
-      !krok::retarget::stands({outcome.source, outcome.source_roles, reference})) {
-    note("retarget-stance",
-         "the input's reference pose does not stand; a T-pose built from this take replaces it",
-         "takes of an actor are aligned alike with --takes and --save-alignment, then --alignment");
-  }
-  const auto note_frame = [&](const std::optional<int>& frame, const char* whose) {
-    if (!frame) return;
-    note("retarget-reference",
-         fmt::format("frame {} of the {} is used as its reference pose", *frame, whose));
-  };
-  note_frame(report.source_frame, "input");
-  note_frame(report.target_frame, "target");
-  for (const krok::retarget::MappedJoint& joint : report.mapped) {
-    const Role role = outcome.target_roles.roles[static_cast<std::size_t>(joint.target)];
-    if ((role != Role::left_foot && role != Role::right_foot) ||
-        std::abs(joint.heading) < kTurnedFoot) {
-      continue;
-    }
-    context.warn("retarget-foot",
-                 fmt::format("{} is turned by {:.0f} deg about the vertical against the input's",
-                             outcome.target.names[static_cast<std::size_t>(joint.target)],
-                             std::abs(joint.heading) / kRadiansPerDegree),
-                 "do the toes have the right roles? krok-info -v shows them, --map and --onto-map "
-                 "set them");
-  }
-  if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
-    note("retarget-fingers",
-         "the input's fingers never move; the target's fingers keep their reference pose");
-  }
-  if (report.method == krok::retarget::Method::names) {
-    note("retarget-names", "joints were mapped by name; foot contacts are not preserved");
-  }
 }
 
 Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
@@ -261,7 +191,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
   if (!target_roles) return target_roles.error();
   if (!options.ground.empty()) how.feet = krok::retarget::Feet::free;
-  how.target_floor = believable_floor(*target, *target_roles);
+  how.target_floor = floor_below(target->mesh, target->clip.skeleton, *target_roles);
   Status posed = take_pose("--reference-pose", options.reference_pose, source->skeleton,
                            how.source_pose, context);
   if (posed) {
@@ -292,7 +222,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
                         result->report};
   const bool pose_is_given = how.source_frame || !how.source_pose.empty();
-  report_choices(outcome, pose_is_given, context);
+  for (Diagnostic& choice : choices_of(outcome, pose_is_given)) context.diagnose(std::move(choice));
 
   Clip& clip = result->clip;
   clip.provenance = context.provenance();

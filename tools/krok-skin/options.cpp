@@ -124,6 +124,9 @@ void declare(CommandOptions& command, Options& o) {
                      "Motions: .anim, or captures read as by krok-import; several of one skeleton "
                      "become the clips of one rig, named after their files, or walk=IN.anim to "
                      "call one walk. Without any, the mesh is in its reference pose");
+  command.add_flag("--retarget", o.retarget,
+                   "Move the motions to the mesh's skeleton first, as krok-retarget does without "
+                   "further options");
   declare_what(command, o);
   declare_mesh(command, o);
 }
@@ -132,6 +135,7 @@ Status check(const Options& options) {
   if (options.has_weights_by_clip() && options.motions.empty()) {
     return usage("{clip} in the name of --weights needs a motion");
   }
+  if (options.retarget && options.motions.empty()) return usage("--retarget needs a motion");
   if (!options.weights.empty() && options.morphs.empty() &&
       extension(options.subject) == ".model") {
     return usage("--weights needs morph targets", "add --morph IN.exr; a .character has its own");
@@ -218,11 +222,14 @@ ToolSpec make_spec() {
   spec.summary = "Skins a mesh with a motion; writes glTF, a point cache or OBJ files";
   spec.exit_no = "the file is written, but its error is larger than --reduce allows";
   spec.inputs = "IN.model IN.anim...";
+  spec.keeps_going = true;
   spec.folder_endings = io::motion_endings();
   spec.examples = {
       {"krok-skin body.model walk.anim -o walk.glb", "a rig for a game engine or Blender"},
       {"krok-skin hero.character walk.anim run.anim idle.anim -o hero.glb",
        "one character with three clips: walk, run and idle"},
+      {"krok-skin hero.glb takes --retarget -o hero_clips.glb",
+       "all captures of a folder on another skeleton, a clip each"},
       {"krok-skin hero.character walk.anim run.anim --as motion -o hero_moves.glb",
        "the clips alone, on the same skeleton"},
       {"krok-skin hero.character walk.anim --weights smile.csv -o hero.glb",

@@ -28,6 +28,7 @@ struct Options {
   std::string subject;                      // a model or a character
   std::vector<std::string> motions;         // none: the reference pose
   std::vector<std::string> clip_names;      // of `motions`; empty: after its file
+  bool retarget = false;                    // motions of other skeletons are moved to the mesh's
   std::string morphs;                       // --morph, empty: none
   std::string weights;                      // --weights, empty: none
   std::string correctives;                  // --correctives, empty: none

@@ -19,10 +19,6 @@ namespace {
 // Of the tolerance of --reduce, what positions, and weights, of vertices may take alone, and both.
 constexpr double kMinVertexShare = 0.15, kMaxVertexShare = 0.7, kMaxShareOfBoth = 0.8;
 
-std::string millimetres(double metres) {
-  return readable(1e3 * metres, 3) + " mm";
-}
-
 // The palettes of a motion's frames.
 PaletteSource palettes_of(const Skeleton& skeleton, const Clip& clip, const Stretches& stretches) {
   return [&clip, &stretches, back = inverse_reference(skeleton)](int frame,

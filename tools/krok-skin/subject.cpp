@@ -22,12 +22,14 @@
 #include "formats/obj/obj_reader.h"
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
+#include "retarget/retarget.h"
 #include "roles/roles.h"
 #include "skin/bind.h"
 #include "skin/reference_pose.h"
 #include "skin/twist_joints.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/usage.h"
+#include "tools/shared/retarget_outcome.h"
 
 namespace krok::cli::skin {
 
@@ -37,7 +39,7 @@ constexpr double kStillRate = 30.0;  // frames per second, if neither motion nor
 
 class Loader {
  public:
-  Loader(const Options& options, ToolContext& context) : options_(options), context_(context) {}
+  Loader(Options& options, ToolContext& context) : options_(options), context_(context) {}
 
   Result<Subject> load() {
     for (const auto step : {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights,
@@ -74,6 +76,7 @@ class Loader {
     subject_.morphs = std::move(actor->morphs);
     rest_weights_ = std::move(actor->rest_weights);
     context_.diagnose_in(options_.subject, reference_pose_faults(subject_.model));
+    if (options_.retarget) prepare_retargeting();
     if (Status status = add_twist_joints(options_.twist, subject_.model); !status) {
       return std::move(status.error()).in_file(options_.subject);
     }
@@ -147,15 +150,26 @@ class Loader {
       clip.set_pose(0, clip.skeleton.reference);
       return {};
     }
+    // With --keep-going the first that can be used.
+    for (Status status = read_first(); !status; status = read_first()) {
+      status = leave_out(0, std::move(status).error());
+      if (!status) return status;
+    }
+    return {};
+  }
+
+  Status read_first() {
+    Clip& clip = subject_.clip;
     const std::string& path = options_.motions.front();
-    auto read = io::open_motion(path, context_, {.stretches = &subject_.stretches});
+    auto read = open(path, subject_.stretches);
     if (!read) return read.error();
     clip = std::move(*read);
-    subject_.clip_name = names_.make(clip_name(0));
     carry_twist_joints(subject_.model.skeleton, clip, subject_.stretches);
-    auto bound = bind_to(std::move(subject_.model), clip.skeleton);
+    auto bound =
+        bind_to(context_.keep_going ? subject_.model : std::move(subject_.model), clip.skeleton);
     if (!bound) return std::move(bound.error()).in_file(path);
     subject_.model = std::move(*bound);
+    subject_.clip_name = names_.make(clip_name(0));
     const auto is_removed = [&](const auto& one) {
       return subject_.model.skeleton.find(one.joint) < 0;
     };
@@ -165,39 +179,89 @@ class Loader {
     return {};
   }
 
+  // Opens a motion; with --retarget, of the mesh's skeleton as it was read.
+  Result<Clip> open(const std::string& path, Stretches& stretches) {
+    auto clip = io::open_motion(path, context_, {.stretches = &stretches});
+    if (!clip || !options_.retarget) return clip;
+    const RoleMap roles = find_roles(clip->skeleton);
+    auto moved = krok::retarget::transfer(*clip, roles, target_, target_roles_, how_);
+    if (!moved) return std::move(moved).error().in_file(path);
+    const Outcome outcome{clip->skeleton, roles, target_.skeleton, target_roles_, moved->report};
+    context_.diagnose_in(path, choices_of(outcome, false));
+    if (context_.verbose) context_.log(fmt::format("{}: {}", path, summary(outcome)));
+    stretches.clear();
+    return std::move(moved->clip);
+  }
+
+  void prepare_retargeting() {
+    target_.skeleton = subject_.model.skeleton;
+    target_roles_ = find_roles(target_.skeleton);
+    how_.target_floor = floor_below(subject_.model.positions, target_.skeleton, target_roles_);
+    how_.jobs = context_.jobs;
+  }
+
+  // A motion that cannot be used is an error, or with --keep-going a warning while others are left.
+  Status leave_out(std::size_t motion, Error error) {
+    if (options_.motions.size() == 1) return error;
+    if (!context_.keep_going) {
+      error.hint += fmt::format("{}--keep-going leaves it out", error.hint.empty() ? "" : "; ");
+      return error;
+    }
+    Diagnostic diagnostic = error;
+    diagnostic.severity = Severity::warning;
+    diagnostic.hint = "left out";
+    context_.diagnose(std::move(diagnostic));
+    const auto place = static_cast<std::ptrdiff_t>(motion);
+    options_.motions.erase(options_.motions.begin() + place);
+    options_.clip_names.erase(options_.clip_names.begin() + place);
+    ++subject_.left_out;
+    return {};
+  }
+
   // The further motions, which must be of the first one's skeleton.
   Status read_others() {
-    for (std::size_t i = 1; i < options_.motions.size(); ++i) {
-      const std::string& path = options_.motions[i];
-      Stretches stretches;
-      auto clip = io::open_motion(path, context_, {.stretches = &stretches});
-      if (!clip) return clip.error();
-      carry_twist_joints(subject_.model.skeleton, *clip, stretches);
-      const std::string difference =
-          difference_in_structure(subject_.model.skeleton, clip->skeleton);
-      if (!difference.empty()) {
-        return Error("skin-motions",
-                     fmt::format("its skeleton is not that of {}: {}",
-                                 base_name(options_.motions.front()), difference),
-                     "krok-retarget puts a motion on another skeleton")
-            .in_file(path);
+    for (std::size_t i = 1; i < options_.motions.size();) {
+      Status status = read_other(i);
+      if (status) {
+        ++i;
+      } else if (status = leave_out(i, std::move(status).error()); !status) {
+        return status;
       }
-      report_differences(*clip, path);
-      if (options_.every > 1 && clip->frame_count() > 0) {
-        const int last = clip->frame_count() - 1;
-        stretches = cut(stretches, clip->joint_count(), 0, last, options_.every);
-        *clip = cut(*clip, 0, last, options_.every);
-      }
-      Subject::Motion& other = subject_.others.emplace_back();
-      other = {names_.make(clip_name(i)), std::move(*clip), std::move(stretches), {}};
-      if (!options_.has_weights_by_clip()) continue;
+    }
+    return {};
+  }
+
+  Status read_other(std::size_t i) {
+    const std::string& path = options_.motions[i];
+    Stretches stretches;
+    auto clip = open(path, stretches);
+    if (!clip) return clip.error();
+    carry_twist_joints(subject_.model.skeleton, *clip, stretches);
+    const std::string difference = difference_in_structure(subject_.model.skeleton, clip->skeleton);
+    if (!difference.empty()) {
+      return Error("skin-motions",
+                   fmt::format("its skeleton is not that of {}: {}",
+                               base_name(options_.motions.front()), difference),
+                   "--retarget puts motions on the skeleton of the mesh")
+          .in_file(path);
+    }
+    report_differences(*clip, path);
+    if (options_.every > 1 && clip->frame_count() > 0) {
+      const int last = clip->frame_count() - 1;
+      stretches = cut(stretches, clip->joint_count(), 0, last, options_.every);
+      *clip = cut(*clip, 0, last, options_.every);
+    }
+    Subject::Motion other{names_.make(clip_name(i)), std::move(*clip), std::move(stretches), {}};
+    if (options_.has_weights_by_clip()) {
       const auto weights = weights_of(i);
       if (!weights) return weights.error();
-      if (!*weights || other.clip.frame_count() == 0) continue;
-      auto sampled = sample((*weights)->curves, other.clip.rate, other.clip.frame_count());
-      if (!sampled) return Error(sampled.error()).in_file(path);
-      other.weights = *std::move(sampled);
+      if (*weights && other.clip.frame_count() > 0) {
+        auto sampled = sample((*weights)->curves, other.clip.rate, other.clip.frame_count());
+        if (!sampled) return Error(sampled.error()).in_file(path);
+        other.weights = *std::move(sampled);
+      }
     }
+    subject_.others.push_back(std::move(other));
     return {};
   }
 
@@ -464,12 +528,15 @@ class Loader {
     return held;
   }
 
-  const Options& options_;
+  Options& options_;
   ToolContext& context_;
   Subject subject_;
   std::vector<float> rest_weights_;  // [targets], for characters
   std::optional<weights::WeightFile> weights_;
   UniqueNames names_;  // of the motions
+  Clip target_;        // of --retarget: the mesh's skeleton, without frames
+  RoleMap target_roles_;
+  krok::retarget::Options how_;
 };
 
 }  // namespace
@@ -486,7 +553,7 @@ std::vector<Subject::NamedMotion> Subject::all_motions(const std::string& still_
   return motions;
 }
 
-Result<Subject> load(const Options& options, ToolContext& context) {
+Result<Subject> load(Options& options, ToolContext& context) {
   return Loader(options, context).load();
 }
 

@@ -44,6 +44,8 @@ struct Subject {
   };
   std::vector<Motion> others;  // on the same skeleton, for --as rig and motion; names are unique
 
+  int left_out = 0;  // motions that could not be used
+
   MorphSet morphs;       // may have no targets
   MorphWeights weights;  // at the frames of `clip`, for the targets of `morphs`; or empty
 
@@ -61,7 +63,8 @@ struct Subject {
 };
 
 // Reads the input files. Codes: those of their readers, of bind_to() and chosen_range(),
-// skin-empty-model, skin-morphs, skin-attach.
-Result<Subject> load(const Options& options, ToolContext& context);
+// skin-empty-model, skin-morphs, skin-attach; with --retarget of transfer(). Motions that
+// --keep-going leaves out are removed from the options.
+Result<Subject> load(Options& options, ToolContext& context);
 
 }  // namespace krok::cli::skin

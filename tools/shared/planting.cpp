@@ -30,10 +30,6 @@ Json stay_json(const FixedStay& stay, const Clip& clip) {
   return json;
 }
 
-std::string millimetres(double metres) {
-  return readable(metres * 1000, 3) + " mm";
-}
-
 }  // namespace
 
 Result<std::optional<std::vector<Contact>>> read_planting_contacts(const std::string& contacts,

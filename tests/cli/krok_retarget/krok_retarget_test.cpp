@@ -116,6 +116,36 @@ TEST_F(KrokRetarget, OntoAModelItTellsWhatItDid) {
   EXPECT_EQ(clip.provenance.sources[1].name, "hero.model");
 }
 
+// One command in place of two would show another motion, or a folder with one bad take nothing.
+TEST_F(KrokRetarget, SkinningMovesMotionsToTheMeshAlike) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  retarget({"walk.anim", "--onto", "hero.model", "-o", "moved.anim"});
+  ASSERT_EQ(
+      run_here("krok-skin", {"hero.model", "walk=moved.anim", "-o", "two_steps.glb"}).exit_code, 0);
+  std::filesystem::create_directory(path("takes"));
+  std::filesystem::copy(path("walk.anim"), path("takes/walk.anim"));
+  const std::vector<std::string> arguments = {"hero.model", "takes", "-o", "one_step.glb"};
+  const auto skin = [&](std::vector<std::string> further) {
+    further.insert(further.begin(), arguments.begin(), arguments.end());
+    return run_here("krok-skin", std::move(further));
+  };
+  const ToolRun other = skin({});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("krok-skin --retarget"));
+  ASSERT_EQ(skin({"--retarget"}).exit_code, 0);
+  const ToolRun same = run_here("krok-diff", {"two_steps.glb", "one_step.glb"});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+
+  put("takes/a_bad_one.bvh", "HIERARCHY nothing");
+  const ToolRun bad = skin({"--retarget"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_THAT(bad.err, HasSubstr("--keep-going leaves it out"));
+  const ToolRun kept = skin({"--retarget", "--keep-going"});
+  EXPECT_EQ(kept.exit_code, 3);
+  EXPECT_THAT(kept.err, AllOf(HasSubstr("a_bad_one.bvh:1:11: warning"), HasSubstr("left out")));
+  EXPECT_EQ(run_here("krok-diff", {"two_steps.glb", "one_step.glb"}).exit_code, 0);
+}
+
 TEST_F(KrokRetarget, TheReportHoldsTheSame) {
   Clip target;
   target.skeleton = test::human_skeleton(2);

@@ -99,7 +99,7 @@ TEST_F(SkinClips, SeveralMotionsAreRefusedWhereOneIsMeant) {
   tool("krok-import", {"other.bvh", "-o", "other.anim"});
   const ToolRun other =
       tool("krok-skin", {"hero.character", "in.anim", "other.anim", "-o", "x.glb"}, 2);
-  EXPECT_THAT(other.err, AllOf(HasSubstr("other.anim"), HasSubstr("krok-retarget")));
+  EXPECT_THAT(other.err, AllOf(HasSubstr("other.anim"), HasSubstr("--retarget")));
   EXPECT_FALSE(std::filesystem::exists(path("x.glb")));
 }
 

@@ -1,4 +1,4 @@
-#include "tools/krok-retarget/outcome.h"
+#include "tools/shared/retarget_outcome.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,14 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
+#include "retarget/stance.h"
 
-namespace krok::cli::retarget {
+namespace krok::cli {
 
 namespace {
+
+// Radians; feet of T-poses point up to 30 degrees outwards.
+constexpr double kTurnedFoot = 40 * kRadiansPerDegree;
 
 std::string method_name(krok::retarget::Method method) {
   switch (method) {
@@ -26,10 +30,6 @@ std::string method_name(krok::retarget::Method method) {
 std::string label_of(const RoleMap& roles, int joint) {
   const std::string label = role_label(roles, joint);
   return label == "none" ? "-" : label;
-}
-
-std::string millimetres(double metres) {
-  return readable(metres * 1000, 3) + " mm";
 }
 
 std::string names_of(const Skeleton& skeleton, const std::vector<int>& joints) {
@@ -201,4 +201,66 @@ Json to_json(const Outcome& outcome) {
   return json;
 }
 
-}  // namespace krok::cli::retarget
+Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
+  Diagnostics choices;
+  const krok::retarget::Report& report = outcome.report;
+  const auto note = [&](std::string code, std::string message, std::string hint = {}) {
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::note;
+    diagnostic.code = std::move(code);
+    diagnostic.message = std::move(message);
+    diagnostic.hint = std::move(hint);
+    choices.push_back(std::move(diagnostic));
+  };
+  const std::vector<Transform>& reference = outcome.source.reference;
+  if (!pose_is_given && outcome.source_roles.humanoid &&
+      report.method == krok::retarget::Method::roles &&
+      !krok::retarget::stands({outcome.source, outcome.source_roles, reference})) {
+    note("retarget-stance",
+         "the input's reference pose does not stand; a T-pose built from this take replaces it",
+         "takes of an actor are aligned alike with --takes and --save-alignment, then --alignment");
+  }
+  const auto note_frame = [&](const std::optional<int>& frame, const char* whose) {
+    if (!frame) return;
+    note("retarget-reference",
+         fmt::format("frame {} of the {} is used as its reference pose", *frame, whose));
+  };
+  note_frame(report.source_frame, "input");
+  note_frame(report.target_frame, "target");
+  for (const krok::retarget::MappedJoint& joint : report.mapped) {
+    const Role role = outcome.target_roles.roles[at(joint.target)];
+    if ((role != Role::left_foot && role != Role::right_foot) ||
+        std::abs(joint.heading) < kTurnedFoot) {
+      continue;
+    }
+    choices.push_back(make_warning(
+        "retarget-foot",
+        fmt::format("{} is turned by {:.0f} deg about the vertical against the input's",
+                    outcome.target.names[at(joint.target)],
+                    std::abs(joint.heading) / kRadiansPerDegree),
+        "do the toes have the right roles? krok-info -v shows them, --map and --onto-map of "
+        "krok-retarget set them"));
+  }
+  if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
+    note("retarget-fingers",
+         "the input's fingers never move; the target's fingers keep their reference pose");
+  }
+  if (report.method == krok::retarget::Method::names) {
+    note("retarget-names", "joints were mapped by name; foot contacts are not preserved");
+  }
+  return choices;
+}
+
+std::optional<double> floor_below(std::span<const Vec3f> mesh, const Skeleton& skeleton,
+                                  const RoleMap& roles) {
+  if (mesh.empty() || skeleton.empty() || !roles.humanoid) return std::nullopt;
+  const auto height = [](const auto& point) { return static_cast<double>(point.y()); };
+  const double floor = height(std::ranges::min(mesh, {}, height));
+  double lowest = skeleton.reference.front().position.y();
+  for (const Transform& joint : skeleton.reference) lowest = std::min(lowest, joint.position.y());
+  const double under = lowest - floor;
+  const bool near = under > -0.02 && under < 0.06 * reference_extent(skeleton);
+  return near ? std::optional(floor) : std::nullopt;
+}
+
+}  // namespace krok::cli
