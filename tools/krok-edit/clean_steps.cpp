@@ -49,10 +49,9 @@ Diagnostic spike_note(const filter::Spike& spike, const Edit& edit, const std::s
       spike.first_frame == spike.last_frame
           ? fmt::format("frame {}", spike.first_frame)
           : fmt::format("frames {} to {}", spike.first_frame, spike.last_frame);
-  note.message =
-      fmt::format("{}, {}: the {} jumped by {} and back; replaced", note.joint, frames,
-                  spike.of_position ? "position" : "rotation",
-                  spike.of_position ? millimetres(spike.size) : in_degrees(spike.size));
+  note.message = fmt::format("{}, {}: the {} jumped by {} and back; replaced", note.joint, frames,
+                             spike.of_position ? "position" : "rotation",
+                             spike.of_position ? millimetres(spike.size) : in_degrees(spike.size));
   return note;
 }
 
@@ -152,8 +151,8 @@ Status remove_spikes(const Options& options, ToolContext& context,
 }
 
 std::string noise_line(double angle, double distance, const std::string& spikes) {
-  return fmt::format("filtered: noise of {} and {}, {}", in_degrees(angle),
-                     millimetres(distance), spikes);
+  return fmt::format("filtered: noise of {} and {}, {}", in_degrees(angle), millimetres(distance),
+                     spikes);
 }
 
 Status filter_noise_of_frames(const Options& options, ToolContext& context,
