@@ -34,6 +34,7 @@ class Finder {
       : source_(source),
         roles_(roles),
         part_(std::max(options.part, 1)),
+        contacts_alone_(options.contacts_alone),
         margin_(static_cast<int>(
             std::min<double>(std::ceil(options.margin * source.rate), source.frame_count))) {}
 
@@ -53,15 +54,18 @@ class Finder {
     found.stop = end == source_.frame_count ? INFINITY : end / source_.rate;
     auto contacts = find_contacts(*clip, roles_);
     if (!contacts) return contacts.error();
-    Gait gait = find_gait(*clip, roles_, *contacts);
+    Gait gait;
+    if (!contacts_alone_) gait = find_gait(*clip, roles_, *contacts);
     found.warnings = std::move(contacts->warnings);
     std::ranges::move(gait.warnings, std::back_inserter(found.warnings));
     std::erase_if(gait.keytimes, [&](const Keytime& key) {
       return key.time + from < found.start || key.time + from >= found.stop;
     });
-    found.steps = step_measures(*clip, roles_, gait.keytimes);
-    found.duration = clip->duration();
-    found.way = slide_speed(*clip, roles_) * found.duration;
+    if (!contacts_alone_) {
+      found.steps = step_measures(*clip, roles_, gait.keytimes);
+      found.duration = clip->duration();
+      found.way = slide_speed(*clip, roles_) * found.duration;
+    }
     found.keys = {std::move(contacts->contacts), std::move(gait.keytimes)};
     for (Contact& contact : found.keys.contacts) {
       contact.start += from;
@@ -160,7 +164,9 @@ class Finder {
 
   const FrameSource& source_;
   const RoleMap& roles_;
-  int part_, margin_;
+  int part_;
+  bool contacts_alone_;
+  int margin_;
   LongTake result_;
   std::set<std::string> codes_;
   std::vector<std::pair<std::optional<double>*, double>> means_;  // of result_.steps, weights

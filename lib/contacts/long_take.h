@@ -12,8 +12,9 @@
 namespace krok {
 
 struct LongTakeOptions {
-  int part = 1 << 14;    // frames; memory is in proportion to it
-  double margin = 10.0;  // seconds before and after a part that are looked at with it
+  int part = 1 << 14;           // frames; memory is in proportion to it
+  double margin = 10.0;         // seconds before and after a part that are looked at with it
+  bool contacts_alone = false;  // no keytimes and measures
 };
 
 struct LongTake {

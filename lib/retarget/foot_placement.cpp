@@ -64,16 +64,14 @@ double ankle_over_floor(const Actor& actor, Role foot, const Floor& floor) {
   return ankle - lowest_of_foot(actor, foot) + floor.sole;
 }
 
-double standing_height(const Clip& clip, const Actor& stance) {
-  if (clip.frame_count() == 0) return 0;
+void add_lowest(const Clip& clip, const Actor& stance, std::vector<float>& lowest) {
   std::vector<std::pair<int, float>> heights;  // foot joints, above the lowest of the foot
   for (const Role foot : {Role::left_foot, Role::right_foot}) {
-    const double lowest = lowest_of_foot(stance, foot);
+    const double sole = lowest_of_foot(stance, foot);
     for (const int joint : joints_below(stance.skeleton, stance.roles.joint(foot))) {
-      heights.emplace_back(joint, static_cast<float>(stance.pose[at(joint)].position.y() - lowest));
+      heights.emplace_back(joint, static_cast<float>(stance.pose[at(joint)].position.y() - sole));
     }
   }
-  std::vector<float> lowest;
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const auto positions = clip.frame_positions(frame);
     float least = std::numeric_limits<float>::max();
@@ -82,6 +80,10 @@ double standing_height(const Clip& clip, const Actor& stance) {
     }
     lowest.push_back(least);
   }
+}
+
+double standing_height(std::vector<float> lowest) {
+  if (lowest.empty()) return 0;
   const auto place = lowest.begin() + static_cast<std::ptrdiff_t>(lowest.size() / 5);
   std::nth_element(lowest.begin(), place, lowest.end());
   return *place;
@@ -199,49 +201,57 @@ Vec3 LegPlacement::heading_of(const Quat& source_ankle) const {
   return flat((source_ankle * sideways_).cross(kUp)).stableNormalized();
 }
 
-LegPlacement::Stances LegPlacement::find_stances(const Clip& source,
-                                                 std::span<const Contact> contacts) {
-  const int frames = source.frame_count();
-  std::vector<double> near(at(frames)), still(at(frames), 0.0), upright(at(frames));
-  std::vector<double> rolls(at(frames));
-  std::vector<char> heel(at(frames), 0), front(at(frames), 0);
-  std::vector<double> left, ahead;  // of the ankle placed by the heel, from that by the ball
+LegPlacement::Track LegPlacement::begin_track(std::span<const Contact> contacts, int frames,
+                                              double rate) const {
+  Track track;
+  track.heel.assign(at(frames), 0);
+  track.front.assign(at(frames), 0);
   for (const Contact& contact : contacts) {
     const bool own = std::ranges::any_of(
         source_points_, [&](const Point& point) { return point.joint == contact.joint; });
     if (!own) continue;
-    const int last = std::min(frames - 1, static_cast<int>(std::floor(contact.end * source.rate)));
-    for (auto f = static_cast<int>(std::ceil(contact.start * source.rate)); f <= last; ++f) {
-      still[at(f)] = 1;
-      (contact.joint == source_ankle_ ? heel : front)[at(f)] = 1;
+    const int last = std::min(frames - 1, static_cast<int>(std::floor(contact.end * rate)));
+    for (auto f = static_cast<int>(std::ceil(contact.start * rate)); f <= last; ++f) {
+      (contact.joint == source_ankle_ ? track.heel : track.front)[at(f)] = 1;
     }
   }
+  return track;
+}
+
+void LegPlacement::add(const Clip& source, int begin, int end, Track& track) const {
   std::vector<Transform> pose(source.skeleton.names.size());
-  for (int f = 0; f < frames; ++f) {
+  for (int f = begin; f < end; ++f) {
     source.get_pose(f, pose);
+    const char heel = track.heel[track.near.size()], front = track.front[track.near.size()];
     const double height = depth(pose, source_points_, source_floor_.motion) / leg_;
-    near[at(f)] = std::max(1 - smooth_step(kNearFloor, kFarFromFloor, height), still[at(f)]);
+    track.near.push_back(
+        std::max(1 - smooth_step(kNearFloor, kFarFromFloor, height), heel | front ? 1.0 : 0.0));
     const Vec3 shank = pose[at(source_ankle_)].position - pose[at(source_knee_)].position;
     const double lean = kPi / 2 + elevation(shank);  // angle from straight down
-    upright[at(f)] = 1 - smooth_step(60 * kRadiansPerDegree, 85 * kRadiansPerDegree, lean);
-    const double rolled = -elevation(pose[at(source_ankle_)].orientation * ahead_);
-    rolls[at(f)] = smooth_step(0, 6 * kRadiansPerDegree, rolled);
-    if (heel[at(f)] != front[at(f)]) rolls[at(f)] = front[at(f)];
-    if (heel[at(f)] == 0 || front[at(f)] == 0) continue;
+    track.upright.push_back(1 - smooth_step(60 * kRadiansPerDegree, 85 * kRadiansPerDegree, lean));
     const Quat& ankle = pose[at(source_ankle_)].orientation;
+    const double rolled = -elevation(ankle * ahead_);
+    track.rolls.push_back(heel != front ? front : smooth_step(0, 6 * kRadiansPerDegree, rolled));
+    if (heel == 0 || front == 0) continue;
     const Vec3 heading = heading_of(ankle);
     const auto over = [&](const Sole& sole) {
       return Vec3(ankle * (scale_ * sole.source - onto_target_ * sole.target));
     };
     const Vec3 apart = over(heel_) - over(ball_);
-    left.push_back(apart.dot(kUp.cross(heading)));
-    ahead.push_back(apart.dot(heading));
+    track.left.push_back(apart.dot(kUp.cross(heading)));
+    track.ahead.push_back(apart.dot(heading));
   }
-  if (!left.empty()) {
-    ball_.apart.x() = heel_.apart.x() + median(left);
-    ball_.apart.z() = heel_.apart.z() + median(ahead);
+}
+
+LegPlacement::Stances LegPlacement::find_stances(Track track, double rate) {
+  const std::vector<char>&heel = track.heel, &front = track.front;
+  std::vector<double>& rolls = track.rolls;
+  const int frames = static_cast<int>(rolls.size());
+  if (!track.left.empty()) {
+    ball_.apart.x() = heel_.apart.x() + median(std::move(track.left));
+    ball_.apart.z() = heel_.apart.z() + median(std::move(track.ahead));
   }
-  const int reach = softening_reach(source.rate);
+  const int reach = softening_reach(rate);
   const auto for_runs = [&](char of, const auto& body) {
     for (int f = 0; f < frames; ++f) {
       int end = f;
@@ -269,11 +279,13 @@ LegPlacement::Stances LegPlacement::find_stances(const Clip& source,
       rolls[at(f)] = std::clamp(rolls[at(f)], 0.0, 1.0);
     }
   });
-  const std::vector<double> stands = softened(near, reach);
+  const std::vector<double> stands = softened(std::exchange(track.near, {}), reach);
+  std::vector<double> still(at(frames));
+  for (std::size_t f = 0; f < at(frames); ++f) still[f] = heel[f] | front[f];
   Stances result{std::vector<FootStance>(at(frames)), softened(still, reach)};
   for (std::size_t f = 0; f < at(frames); ++f) {
-    result.feet[f] = {upright[f] * stands[f], rolls[f]};
-    result.bearing[f] *= upright[f];
+    result.feet[f] = {track.upright[f] * stands[f], rolls[f]};
+    result.bearing[f] *= track.upright[f];
   }
   return result;
 }

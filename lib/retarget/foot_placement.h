@@ -41,10 +41,13 @@ double lowest_of_foot(const Actor& actor, Role foot);
 // The height of the ankle above the floor in a pose in which the foot is planted.
 double ankle_over_floor(const Actor& actor, Role foot, const Floor& floor);
 
-// The height of the lowest foot joints in stance over a motion: per frame the lowest joint,
-// measured from its height within the foot in `stance`; of these the 20th percentile. 0 for a clip
-// without frames.
-double standing_height(const Clip& clip, const Actor& stance);
+// Adds the height of the lowest foot joint in each frame, measured from its height within the foot
+// in `stance`.
+void add_lowest(const Clip& clip, const Actor& stance, std::vector<float>& lowest);
+
+// The height of the lowest foot joints in stance over a motion: the 20th percentile of what
+// add_lowest() gives. 0 without frames.
+double standing_height(std::vector<float> lowest);
 
 // The number of frames in 0.12 s at `rate` fps, at most 256.
 int softening_reach(double rate);
@@ -82,9 +85,19 @@ class LegPlacement {
     std::vector<FootStance> feet;
     std::vector<double> bearing;
   };
+
+  // What stances are found from, of all frames of a take.
+  struct Track {
+    std::vector<char> heel, front;             // in contact
+    std::vector<double> near, upright, rolls;  // of the frames that were added
+    std::vector<double> left, ahead;           // of the ankle placed by the heel, from the ball
+  };
+  Track begin_track(std::span<const Contact> contacts, int frames, double rate) const;
+  // The frames [begin, end) of a clip, in order.
+  void add(const Clip& source, int begin, int end, Track& track) const;
   // Heel and ball are placed alike from here on where both are in contact, however the foot is
   // pitched there.
-  Stances find_stances(const Clip& source, std::span<const Contact> contacts);
+  Stances find_stances(Track track, double rate);
 
   // Adds what the leg needs of the hips to be as bent as the source's.
   void add_lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,

@@ -18,29 +18,25 @@ constexpr int kShiftRounds = 2;
 
 class FrameTransfer {
  public:
-  FrameTransfer(const Clip& source, const Skeleton& target, TransferPlan& plan,
-                const Options& options)
-      : source_(source), target_(target), plan_(plan), options_(options) {}
+  FrameTransfer(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
+                const TouchKeeping* touches)
+      : run_(run), source_(run.clip), target_(target), plan_(plan), jobs_(jobs), touches_(touches) {
+    find_below_anchor();
+  }
+
+  void note(TouchKeeping& touches) const {
+    for_frames([&](std::size_t f, std::span<const Transform>, std::span<Transform> pose) {
+      touches.note(static_cast<int>(f), pose);
+    });
+  }
 
   Clip run(Report& report) {
-    find_below_anchor();
     Clip clip;
     clip.skeleton = target_;
     clip.rate = source_.rate;
     const auto frames = at(source_.frame_count());
     clip.resize(source_.frame_count());
-    const bool touches = plan_.touches && !plan_.touches->empty();
-    if (options_.progress != nullptr) {
-      const std::size_t rounds = 1 + (touches ? 1 : 0) + (plan_.legs.empty() ? 0 : 1) +
-                                 (touches || !plan_.legs.empty() ? kShiftRounds : 0);
-      options_.progress->begin("retargeting", rounds * frames);
-    }
-    if (touches) {
-      for_frames([&](std::size_t f, std::span<const Transform>, std::span<Transform> pose) {
-        plan_.touches->note(static_cast<int>(f), pose);
-      });
-      plan_.touches->settle();
-    }
+    const bool touches = touches_ != nullptr && !touches_->empty();
     if (touches || !plan_.legs.empty()) shifts_ = find_shifts(report);
     const std::vector<double> drops = plan_.legs.empty() ? std::vector<double>() : find_drops();
     std::vector<std::array<LegPlacement::Outcome, 2>> outcomes(frames);
@@ -48,29 +44,36 @@ class FrameTransfer {
       const int frame = static_cast<int>(f);
       if (!shifts_.empty()) shift_body(shifts_[f], pose);
       if (!drops.empty()) move_body(-drops[f] * kUp, pose);
-      if (touches) plan_.touches->place_knees(frame, plan_.local, pose);
+      if (touches) touches_->place_knees(frame, plan_.local, pose);
       for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
         const PlacedLeg& leg = plan_.legs[i];
-        const double kneels = touches ? plan_.touches->kneels(frame, leg.is_left) : 0;
+        const double kneels = touches ? touches_->kneels(frame, leg.is_left) : 0;
         outcomes[f][i] =
-            leg.placement.place(from, plan_.local, leg.stances.feet[f], 1 - kneels, pose);
+            leg.placement.place(from, plan_.local, leg.stances.feet[in_take(f)], 1 - kneels, pose);
       }
       if (touches) {
-        plan_.touches->place_feet(frame, plan_.local, pose);
-        plan_.touches->place_arms(frame, from, plan_.local, pose);
+        touches_->place_feet(frame, plan_.local, pose);
+        touches_->place_arms(frame, from, plan_.local, pose);
       }
       clip.set_pose(frame, pose);
     });
-    if (options_.progress != nullptr) options_.progress->end();
     for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
-      (plan_.legs[i].is_left ? report.left_foot : report.right_foot) = summary(outcomes, i);
+      add(outcomes, i, *(plan_.legs[i].is_left ? report.left_foot : report.right_foot));
     }
-    if (!drops.empty()) report.largest_drop = *std::max_element(drops.begin(), drops.end());
-    if (touches) report.contacts = plan_.touches->report(source_, clip);
+    for (const double drop : kept(drops)) report.largest_drop = std::max(report.largest_drop, drop);
+    if (touches_ != nullptr) add(touches_->report(run_, plan_.kept, clip), report.contacts);
     return clip;
   }
 
  private:
+  std::size_t in_take(std::size_t frame) const { return at(run_.first) + frame; }
+
+  template <typename Value>
+  std::span<const Value> kept(const std::vector<Value>& values) const {
+    if (values.empty()) return {};
+    return std::span(values).subspan(at(run_.kept_begin), at(run_.kept_end - run_.kept_begin));
+  }
+
   // The rotation of a source joint since the reference pose.
   Quat turn_of(std::span<const Transform> pose, int joint) const {
     return pose[at(joint)].orientation * plan_.rest_back[at(joint)];
@@ -137,7 +140,7 @@ class FrameTransfer {
   template <typename Body>
   void for_frames(const Body& body) const {
     const auto frames = at(source_.frame_count());
-    parallel_for(frames, kFramesATime, options_.jobs, [&](std::size_t begin, std::size_t end) {
+    parallel_for(frames, kFramesATime, jobs_, [&](std::size_t begin, std::size_t end) {
       std::vector<Transform> source_pose(source_.skeleton.names.size());
       std::vector<Transform> pose(target_.names.size());
       for (std::size_t f = begin; f < end; ++f) {
@@ -146,7 +149,6 @@ class FrameTransfer {
         place(source_pose, pose);
         body(f, source_pose, pose);
       }
-      if (options_.progress != nullptr) options_.progress->advance(end - begin);
     });
   }
 
@@ -158,7 +160,7 @@ class FrameTransfer {
 
   void shift_body(const BodyShift& shift, std::span<Transform> pose) const {
     move_body(shift.hips, pose);
-    if (plan_.touches) plan_.touches->turn_trunk(shift.turn, plan_.local, pose);
+    if (touches_ != nullptr) touches_->turn_trunk(shift.turn, plan_.local, pose);
   }
 
   // How hips and trunk move in each frame so that limbs that touch something are bent as the
@@ -172,9 +174,10 @@ class FrameTransfer {
         shift_body(shifts[f], pose);
         ShiftSolver solver(plan_.leg_length);
         for (const PlacedLeg& leg : plan_.legs) {
-          leg.placement.add_lack(from, pose, leg.stances.feet[f], leg.stances.bearing[f], solver);
+          leg.placement.add_lack(from, pose, leg.stances.feet[in_take(f)],
+                                 leg.stances.bearing[in_take(f)], solver);
         }
-        if (plan_.touches) plan_.touches->add_lacks(static_cast<int>(f), pose, solver);
+        if (touches_ != nullptr) touches_->add_lacks(static_cast<int>(f), pose, solver);
         more[f] = solver.solve();
       });
       more = smoothed(more, softening_reach(source_.rate));
@@ -183,7 +186,7 @@ class FrameTransfer {
         shifts[f].turn += more[f].turn;
       }
     }
-    for (const BodyShift& shift : shifts) {
+    for (const BodyShift& shift : kept(shifts)) {
       report.largest_shift = std::max(report.largest_shift, shift.hips.norm());
       report.largest_turn = std::max(report.largest_turn, shift.turn.norm());
     }
@@ -196,7 +199,7 @@ class FrameTransfer {
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       if (!shifts_.empty()) shift_body(shifts_[f], pose);
       for (const PlacedLeg& leg : plan_.legs) {
-        drops[f] = std::max(drops[f], leg.placement.lack(from, pose, leg.stances.feet[f]));
+        drops[f] = std::max(drops[f], leg.placement.lack(from, pose, leg.stances.feet[in_take(f)]));
       }
     });
     const double most = 0.06 * plan_.leg_length;
@@ -205,36 +208,62 @@ class FrameTransfer {
     return softened(drops, softening_reach(source_.rate));
   }
 
-  static FootReport summary(const std::vector<std::array<LegPlacement::Outcome, 2>>& outcomes,
-                            std::size_t side) {
-    FootReport report;
-    for (std::size_t f = 0; f < outcomes.size(); ++f) {
-      const LegPlacement::Outcome& outcome = outcomes[f][side];
-      if (outcome.correction > report.largest_correction) {
-        report.largest_correction = outcome.correction;
-        report.largest_correction_frame = static_cast<int>(f);
+  void add(const std::vector<std::array<LegPlacement::Outcome, 2>>& outcomes, std::size_t side,
+           FootReport& foot) const {
+    for (int f = run_.kept_begin; f < run_.kept_end; ++f) {
+      const LegPlacement::Outcome& outcome = outcomes[at(f)][side];
+      if (outcome.correction > foot.largest_correction) {
+        foot.largest_correction = outcome.correction;
+        foot.largest_correction_frame = run_.first + f;
       }
-      if (outcome.miss > report.largest_miss) {
-        report.largest_miss = outcome.miss;
-        report.largest_miss_frame = static_cast<int>(f);
+      if (outcome.miss > foot.largest_miss) {
+        foot.largest_miss = outcome.miss;
+        foot.largest_miss_frame = run_.first + f;
       }
     }
-    return report;
   }
 
+  // Those that began in earlier frames go on.
+  void add(std::vector<ContactReport> found, std::vector<ContactReport>& all) const {
+    for (ContactReport& contact : found) {
+      const auto before = std::find_if(all.rbegin(), all.rend(), [&](const ContactReport& other) {
+        return other.part == contact.part && other.on == contact.on;
+      });
+      if (before == all.rend() || before->end != contact.start) {
+        all.push_back(std::move(contact));
+        continue;
+      }
+      const double part = contact.end - contact.start, seconds = contact.end - before->start;
+      if (seconds > 0) {
+        before->slide += part / seconds * (contact.slide - before->slide);
+        before->source_slide += part / seconds * (contact.source_slide - before->source_slide);
+      }
+      before->end = contact.end;
+      before->height = std::max(before->height, contact.height);
+      before->apart = std::max(before->apart, contact.apart);
+    }
+  }
+
+  const FrameRun& run_;
   const Clip& source_;
   const Skeleton& target_;
-  TransferPlan& plan_;
-  const Options& options_;
+  const TransferPlan& plan_;
+  int jobs_;
+  const TouchKeeping* touches_;                     // of the run
   std::vector<BodyShift> shifts_;                   // [frames] or empty
   std::vector<char> below_anchor_, beside_anchor_;  // [target joints]
 };
 
 }  // namespace
 
-Clip transfer_frames(const Clip& source, const Skeleton& target, TransferPlan& plan,
-                     const Options& options, Report& report) {
-  return FrameTransfer(source, target, plan, options).run(report);
+void note_touches(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
+                  TouchKeeping& touches) {
+  FrameTransfer(run, target, plan, jobs, nullptr).note(touches);
+}
+
+Clip transfer_frames(const FrameRun& run, const Skeleton& target, const TransferPlan& plan,
+                     int jobs, const TouchKeeping* touches, Report& report) {
+  return FrameTransfer(run, target, plan, jobs, touches).run(report);
 }
 
 }  // namespace krok::retarget

@@ -9,7 +9,7 @@
 #include "retarget/joint_mapping.h"
 #include "retarget/retarget.h"
 #include "retarget/touch_keeping.h"
-#include "scene/clip.h"
+#include "scene/frame_blocks.h"
 #include "scene/skeleton.h"
 
 namespace krok::retarget {
@@ -32,13 +32,19 @@ struct TransferPlan {
   double scale = 1;             // lengths of the target over those of the source
   double rise = 0;              // metres the target's hips are raised for the height of its ankles
   std::vector<PlacedLeg> legs;  // empty with Feet::free
-  std::optional<TouchKeeping> touches;  // absent: not kept
-  double leg_length = 0;                // metres, of the target; unused without legs and touches
+  GroundStays stays;            // of all frames
+  std::vector<KeptContact> kept;  // likewise
+  double leg_length = 0;          // metres, of the target; unused without legs and touches
 };
 
-// The motion of `source` on the skeleton `target`. Sets in `report` what the legs needed: the two
-// feet, largest_drop and what touches. The touches of `plan` are settled.
-Clip transfer_frames(const Clip& source, const Skeleton& target, TransferPlan& plan,
-                     const Options& options, Report& report);
+// Notes in `touches`, which are those of `run`, where the target is by rotations alone.
+void note_touches(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
+                  TouchKeeping& touches);
+
+// The frames of `run` on the skeleton `target`. Adds to `report` what the legs needed in the frames
+// that are kept: the two feet, largest_drop and what touches. `touches` are settled; null: none are
+// kept.
+Clip transfer_frames(const FrameRun& run, const Skeleton& target, const TransferPlan& plan,
+                     int jobs, const TouchKeeping* touches, Report& report);
 
 }  // namespace krok::retarget

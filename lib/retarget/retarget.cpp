@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
-#include "contacts/contacts.h"
+#include "contacts/long_take.h"
+#include "contacts/sole_points.h"
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
@@ -22,34 +24,64 @@ namespace krok::retarget {
 
 namespace {
 
+// Seconds before and after a block that its result depends on: a touch fades for 0.3 s, and four
+// times values are smoothed over 0.12 s on either side.
+constexpr double kOverlap = 2;
+constexpr int kSamples = 8, kOfSample = 2048;  // frames
+
 // Copies orientations and scales positions, without rounding except by the scale.
-Retargeted copy_of(const Clip& source, const Skeleton& target, const SameSkeleton& same,
-                   double scale) {
-  Retargeted result;
-  Clip& clip = result.clip;
-  clip.skeleton = target;
-  clip.rate = source.rate;
-  clip.resize(source.frame_count());
-  for (int frame = 0; frame < source.frame_count(); ++frame) {
-    const auto positions = source.frame_positions(frame);
-    const auto orientations = source.frame_orientations(frame);
-    for (int k = 0; k < target.joint_count(); ++k) {
-      const auto from = at(same.source_joint[at(k)]);
-      clip.frame_orientations(frame)[at(k)] = orientations[from];
-      const Vec3f& position = positions[from];
-      clip.frame_positions(frame)[at(k)] =
-          scale == 1 ? position : Vec3f((scale * position.cast<double>()).cast<float>());
+RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
+                         const SameSkeleton& same) {
+  const auto copy = [target, same](Clip& frames) {
+    const Clip before = std::move(frames);
+    frames.skeleton = target;
+    frames.rate = before.rate;
+    frames.resize(before.frame_count());
+    for (int frame = 0; frame < before.frame_count(); ++frame) {
+      const auto positions = before.frame_positions(frame);
+      const auto orientations = before.frame_orientations(frame);
+      for (int k = 0; k < target.joint_count(); ++k) {
+        const auto from = at(same.source_joint[at(k)]);
+        frames.frame_orientations(frame)[at(k)] = orientations[from];
+        const Vec3f& position = positions[from];
+        frames.frame_positions(frame)[at(k)] =
+            same.scale == 1 ? position
+                            : Vec3f((same.scale * position.cast<double>()).cast<float>());
+      }
     }
-  }
-  result.report.method = Method::same_skeleton;
-  result.report.scale = scale;
+    return Status();
+  };
+  RetargetedFrames result{changed(source, copy), std::make_shared<Report>()};
+  result.frames.skeleton = target;
+  Report& report = *result.report;
+  report.method = Method::same_skeleton;
+  report.scale = same.scale;
+  report.source_pose = source.skeleton.reference;
+  report.target_pose = target.reference;
   for (int k = 0; k < target.joint_count(); ++k) {
     if (target.end_sites[at(k)] != 0) continue;
-    MappedJoint& joint = result.report.mapped.emplace_back();
+    MappedJoint& joint = report.mapped.emplace_back();
     joint.target = k;
     joint.source = same.source_joint[at(k)];
   }
   return result;
+}
+
+// All of a short take, eight parts of a longer one.
+Result<Clip> sample_of(const FrameSource& source, int jobs) {
+  if (source.frame_count <= kSamples * kOfSample) return load(source, jobs);
+  Clip sample;
+  sample.skeleton = source.skeleton;
+  sample.rate = source.rate;
+  for (int i = 0; i < kSamples; ++i) {
+    const int first = (source.frame_count - kOfSample) / (kSamples - 1) * i;
+    const auto part = load(part_of(source, first, kOfSample), jobs);
+    if (!part) return part.error();
+    sample.positions.insert(sample.positions.end(), part->positions.begin(), part->positions.end());
+    sample.orientations.insert(sample.orientations.end(), part->orientations.begin(),
+                               part->orientations.end());
+  }
+  return sample;
 }
 
 std::string list_of(const std::vector<Role>& roles) {
@@ -83,33 +115,39 @@ int first_mapped(const JointMapping& mapping) {
 // Finds how the skeletons correspond, then transfers the frames.
 class Transfer {
  public:
-  Transfer(const Clip& source, const RoleMap& source_roles, const Clip& target,
-           const RoleMap& target_roles, const Options& options)
+  Transfer(const FrameSource& source, const RoleMap& source_roles, const Clip& target,
+           const RoleMap& target_roles, const Options& options, int block_frames)
       : source_(source),
         source_roles_(source_roles),
         target_clip_(target),
         target_(target.skeleton),
         target_roles_(target_roles),
-        options_(options) {}
+        options_(options),
+        size_{std::max(block_frames, 1), static_cast<int>(std::ceil(kOverlap * source.rate))} {}
 
-  Result<Retargeted> run() {
+  // The frames keep `self`, which is this.
+  Result<RetargetedFrames> run(const std::shared_ptr<Transfer>& self) {
+    if (options_.progress != nullptr) {
+      options_.progress->begin("retargeting", 2 * at(source_.frame_count));
+    }
     const bool by_roles = source_roles_.humanoid && target_roles_.humanoid;
-    auto source_stance = find_stance(source_, source_roles_, options_.source_frame);
+    const auto sample = sample_of(source_, options_.jobs);
+    if (!sample) return sample.error();
+    auto source_stance = options_.source_frame ? stance_of_frame(source_, *options_.source_frame)
+                                               : find_stance(*sample, source_roles_, {});
     if (!source_stance) return source_stance.error();
     auto target_stance = find_stance(target_clip_, target_roles_, options_.target_frame);
     if (!target_stance) return target_stance.error();
     rest_ = options_.source_pose.empty() ? source_stance->pose : options_.source_pose;
     target_rest_ = options_.target_pose.empty() ? target_stance->pose : options_.target_pose;
-    report_.source_frame = source_stance->frame;
-    report_.target_frame = target_stance->frame;
-    report_.source_pose = rest_;
-    report_.target_pose = target_rest_;
-    if (by_roles) {
-      prepare_roles();
-    } else if (Status status = prepare_names(); !status) {
+    report_->source_frame = source_stance->frame;
+    report_->target_frame = target_stance->frame;
+    report_->source_pose = rest_;
+    report_->target_pose = target_rest_;
+    if (Status status = by_roles ? prepare_roles() : prepare_names(); !status) {
       return status.error();
     }
-    if (!(report_.scale > 0) || !std::isfinite(report_.scale)) {
+    if (!(report_->scale > 0) || !std::isfinite(report_->scale)) {
       return Error("retarget-scale", "cannot compute a scale from the lengths of the skeletons",
                    "set it with --scale");
     }
@@ -118,34 +156,89 @@ class Transfer {
       plan_.aligned.push_back(turns_[at(k)] * target_rest_[at(k)].orientation);
     }
     for (const Transform& joint : rest_) plan_.rest_back.push_back(joint.orientation.conjugate());
-    Retargeted result;
-    plan_.scale = report_.scale;
-    result.clip = transfer_frames(source_, target_, plan_, options_, report_);
+    plan_.scale = report_->scale;
+    if (by_roles) {
+      if (Status status = prepare_feet(find_feet(*sample, source_roles_)); !status) {
+        return status.error();
+      }
+    }
     note_joints();
-    result.report = std::move(report_);
+    RetargetedFrames result{
+        changed_in_blocks(source_, size_, options_.jobs,
+                          [self](FrameRun& frames) { return self->transfer(frames); }),
+        report_};
+    result.frames.skeleton = target_;
     return result;
   }
 
  private:
-  void prepare_roles() {
-    report_.method = Method::roles;
-    report_.left_fingers_at_rest =
-        fingers_never_move(source_, source_roles_, rest_, Role::left_hand, Role::left_fingers);
-    report_.right_fingers_at_rest =
-        fingers_never_move(source_, source_roles_, rest_, Role::right_hand, Role::right_fingers);
+  Actor from() const { return {source_.skeleton, source_roles_, rest_}; }
+  Actor onto() const { return {target_, target_roles_, target_rest_}; }
+
+  void advance(const FrameRun& frames) const {
+    if (options_.progress == nullptr) return;
+    options_.progress->advance(static_cast<std::uint64_t>(frames.kept_end - frames.kept_begin));
+  }
+
+  // What the source touches in some frames of it, or none if that does not matter.
+  std::optional<TouchKeeping> find_touches(const FrameRun& frames) const {
+    if (report_->method != Method::roles || options_.touches == Touches::free) return {};
+    TouchKeeping touches(frames.clip, from(), onto(), plan_.scale, source_floor_.motion,
+                         leg_length(source_.skeleton, source_roles_), options_.feet == Feet::keep);
+    note_touches(frames, target_, plan_, options_.jobs, touches);
+    return touches;
+  }
+
+  Status transfer(FrameRun& frames) {
+    auto touches = touches_ ? std::exchange(touches_, {}) : find_touches(frames);
+    if (touches) {
+      touches->settle(plan_.stays, stances(), frames.first);
+      touches->find_on_body(frames.clip, from(), onto(),
+                            leg_length(source_.skeleton, source_roles_));
+    }
+    const int end = frames.first + frames.kept_end;
+    const bool again = end <= reported_;
+    Report of_before;
+    if (again) of_before = *report_;
+    frames.clip = transfer_frames(frames, target_, plan_, options_.jobs,
+                                  touches ? &*touches : nullptr, again ? of_before : *report_);
+    if (again) return {};
+    reported_ = end;
+    advance(frames);
+    if (options_.progress != nullptr && end == source_.frame_count) options_.progress->end();
+    return {};
+  }
+
+  StancesOfFeet stances() const {
+    StancesOfFeet feet;
+    for (const PlacedLeg& leg : plan_.legs) feet[leg.is_left ? 0 : 1] = leg.stances.feet;
+    return feet;
+  }
+
+  Status prepare_roles() {
+    report_->method = Method::roles;
+    bool& left_rests = report_->left_fingers_at_rest = true;
+    bool& right_rests = report_->right_fingers_at_rest = true;
+    Status status = for_each_block(source_, options_.jobs, [&](int, const Clip& block) {
+      left_rests = left_rests && fingers_never_move(block, source_roles_, rest_, Role::left_hand,
+                                                    Role::left_fingers);
+      right_rests = right_rests && fingers_never_move(block, source_roles_, rest_, Role::right_hand,
+                                                      Role::right_fingers);
+      add_lowest(block, from(), lowest_);
+      return Status();
+    });
+    if (!status) return status;
     plan_.mapping = map_by_roles(source_.skeleton, source_roles_, target_, target_roles_,
-                                 report_.left_fingers_at_rest, report_.right_fingers_at_rest);
-    const Actor from{source_.skeleton, source_roles_, rest_};
-    const Actor to{target_, target_roles_, target_rest_};
-    turns_ = align_by_roles(from, to, plan_.mapping);
-    report_.scale = options_.scale.value_or(leg_length(target_, target_roles_) /
-                                            leg_length(source_.skeleton, source_roles_));
+                                 left_rests, right_rests);
+    turns_ = align_by_roles(from(), onto(), plan_.mapping);
+    report_->scale = options_.scale.value_or(leg_length(target_, target_roles_) /
+                                             leg_length(source_.skeleton, source_roles_));
     take_anchor_of_roles();
     plan_.source_sides = {source_roles_.joint(Role::left_upper_leg),
                           source_roles_.joint(Role::right_upper_leg)};
     plan_.target_sides = {target_roles_.joint(Role::left_upper_leg),
                           target_roles_.joint(Role::right_upper_leg)};
-    prepare_feet(from, to);
+    return {};
   }
 
   // The hips. Ancestors at the same position, as in Biped, rotate and move with them.
@@ -169,7 +262,9 @@ class Transfer {
              *options_.target_floor;
     }
     if (target_clip_.frame_count() == 0) return std::nullopt;
-    const double sole = standing_height(target_clip_, to);
+    std::vector<float> lowest;
+    add_lowest(target_clip_, to, lowest);
+    const double sole = standing_height(std::move(lowest));
     return is_sole(sole, leg_length(target_, target_roles_)) ? std::optional(sole) : std::nullopt;
   }
 
@@ -178,63 +273,78 @@ class Transfer {
     return height > -0.02 * leg && height < 0.08 * leg;
   }
 
-  void prepare_feet(const Actor& from, const Actor& to) {
-    const double standing = standing_height(source_, from);
-    const auto sole = target_sole(to);
+  Status prepare_feet(const krok::Feet& feet) {
+    const double standing = standing_height(std::exchange(lowest_, {}));
+    const auto sole = target_sole(onto());
     if (sole && is_sole(standing, leg_length(source_.skeleton, source_roles_))) {
       source_floor_.sole = standing;
       target_floor_.sole = *sole;
     } else {
       source_floor_.motion = standing;
     }
-    target_floor_.motion = report_.scale * source_floor_.motion;
-    report_.floor = target_floor_.motion;
+    target_floor_.motion = report_->scale * source_floor_.motion;
+    report_->floor = target_floor_.motion;
     for (const Role foot : {Role::left_foot, Role::right_foot}) {
-      plan_.rise += 0.5 * (ankle_over_floor(to, foot, target_floor_) -
-                           report_.scale * ankle_over_floor(from, foot, source_floor_));
+      plan_.rise += 0.5 * (ankle_over_floor(onto(), foot, target_floor_) -
+                           report_->scale * ankle_over_floor(from(), foot, source_floor_));
     }
     plan_.leg_length = leg_length(target_, target_roles_);
-    std::array<std::vector<double>, 2> stands;
     std::vector<Contact> contacts;
-    std::array<std::optional<Vec3>, 2> heel_of_source;
-    if (auto found = find_contacts(source_, source_roles_)) {
-      contacts = std::move(found->contacts);
-      for (const auto& [point, speed, height] : found->tracks) {
-        if (point.part == FootPart::heel)
-          heel_of_source[static_cast<std::size_t>(point.side)] = point.offset;
-      }
-    }
-    std::array<std::optional<PointPair>, 2> heels;
-    if (options_.feet == Feet::keep) stands = prepare_legs(from, to, contacts, heel_of_source);
-    for (const PlacedLeg& leg : plan_.legs) heels[leg.is_left ? 0 : 1] = leg.placement.heel();
-    if (options_.touches == Touches::free) return;
-    plan_.touches.emplace(source_, from, to, report_.scale, source_floor_.motion,
-                          leg_length(source_.skeleton, source_roles_), stands,
-                          options_.feet == Feet::keep);
-    plan_.touches->report_feet(contacts, from, to, source_floor_, target_floor_, source_.rate,
-                               stands, heels);
+    auto found =
+        find_in_long_take(source_, source_roles_, options_.jobs, nullptr, {.contacts_alone = true});
+    if (!found && found.error().code != "contacts-feet") return found.error();
+    if (found) contacts = std::move(found->keys.contacts);
+    if (options_.feet == Feet::keep) add_legs(feet);
+    return find_stances(contacts);
   }
 
-  // How much both feet stand, [2][frames], empty where a leg is missing.
-  std::array<std::vector<double>, 2> prepare_legs(const Actor& from, const Actor& to,
-                                                  std::span<const Contact> contacts,
-                                                  std::span<const std::optional<Vec3>> heels) {
-    std::array<std::vector<double>, 2> standing;
+  void add_legs(const krok::Feet& feet) {
     for (const bool is_left : {true, false}) {
-      auto leg = LegPlacement::create(from, to, turns_, report_.scale, source_floor_, target_floor_,
-                                      is_left, heels[is_left ? 0 : 1]);
-      if (!leg) continue;
-      auto stances = leg->find_stances(source_, contacts);
-      for (const FootStance& foot : stances.feet) {
-        standing[is_left ? 0 : 1].push_back(foot.standing);
+      std::optional<Vec3> heel;
+      for (const SolePoint& point : feet.points[is_left ? 0 : 1]) {
+        if (point.part == FootPart::heel) heel = point.offset;
       }
-      plan_.legs.push_back({std::move(*leg), std::move(stances), is_left});
+      auto leg = LegPlacement::create(from(), onto(), turns_, report_->scale, source_floor_,
+                                      target_floor_, is_left, heel);
+      if (!leg) continue;
+      (is_left ? report_->left_foot : report_->right_foot).emplace();
+      plan_.legs.push_back({std::move(*leg), {}, is_left});
     }
-    return standing;
+  }
+
+  // How feet stand, and what the body touches on the ground, over the whole take.
+  Status find_stances(std::span<const Contact> contacts) {
+    std::vector<LegPlacement::Track> tracks;
+    for (const PlacedLeg& leg : plan_.legs) {
+      tracks.push_back(leg.placement.begin_track(contacts, source_.frame_count, source_.rate));
+    }
+    const auto look = [&](FrameRun& frames) {
+      for (std::size_t i = 0; i < tracks.size(); ++i) {
+        plan_.legs[i].placement.add(frames.clip, frames.kept_begin, frames.kept_end, tracks[i]);
+      }
+      touches_ = find_touches(frames);
+      if (touches_) touches_->add_stays(frames, plan_.stays);
+      if (source_.frame_count > size_.frames) touches_.reset();
+      advance(frames);
+      return Status();
+    };
+    Status status =
+        read_through(changed_in_blocks(source_, size_, options_.jobs, look), options_.jobs);
+    if (!status) return status;
+    std::array<std::optional<PointPair>, 2> heels;
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      PlacedLeg& leg = plan_.legs[i];
+      leg.stances = leg.placement.find_stances(std::move(tracks[i]), source_.rate);
+      heels[leg.is_left ? 0 : 1] = leg.placement.heel();
+    }
+    if (options_.touches == Touches::free) return {};
+    plan_.kept = kept_contacts(contacts, from(), onto(), plan_.scale, source_floor_, target_floor_,
+                               source_.rate, stances(), heels);
+    return {};
   }
 
   Status prepare_names() {
-    report_.method = Method::names;
+    report_->method = Method::names;
     plan_.mapping = map_by_names(source_.skeleton, target_);
     const auto shared =
         static_cast<int>(std::count_if(plan_.mapping.begin(), plan_.mapping.end(),
@@ -251,7 +361,7 @@ class Transfer {
     }
     turns_ = align_by_names({source_.skeleton, source_roles_, rest_},
                             {target_, target_roles_, target_rest_}, plan_.mapping);
-    report_.scale = options_.scale.value_or(bone_ratio(source_.skeleton, target_, plan_.mapping));
+    report_->scale = options_.scale.value_or(bone_ratio(source_.skeleton, target_, plan_.mapping));
     plan_.anchor = first_mapped(plan_.mapping);
     plan_.source_sides = {plan_.mapping[at(plan_.anchor)].first,
                           plan_.mapping[at(plan_.anchor)].first};
@@ -266,42 +376,56 @@ class Transfer {
     for (int k = 0; k < target_.joint_count(); ++k) {
       const JointSource& from = plan_.mapping[at(k)];
       if (from.first < 0) {
-        if (target_.end_sites[at(k)] == 0) report_.following_target.push_back(k);
+        if (target_.end_sites[at(k)] == 0) report_->following_target.push_back(k);
         continue;
       }
       used[at(from.first)] = 1;
       if (from.second >= 0) used[at(from.second)] = 1;
       const Vec3 ahead = hips_turn.conjugate() * turns_[at(k)] * Vec3::UnitZ();
-      report_.mapped.push_back({k, from.first, from.second, from.share,
-                                angle_between(Quat::Identity(), turns_[at(k)]),
-                                std::atan2(ahead.x(), ahead.z())});
+      report_->mapped.push_back({k, from.first, from.second, from.share,
+                                 angle_between(Quat::Identity(), turns_[at(k)]),
+                                 std::atan2(ahead.x(), ahead.z())});
     }
     for (std::size_t j = 0; j < used.size(); ++j) {
       if (used[j] == 0 && source_.skeleton.end_sites[j] == 0) {
-        report_.unused_source.push_back(static_cast<int>(j));
+        report_->unused_source.push_back(static_cast<int>(j));
       }
     }
   }
 
-  const Clip& source_;
+  const FrameSource source_;
   const RoleMap& source_roles_;
   const Clip& target_clip_;
   const Skeleton& target_;
   const RoleMap& target_roles_;
-  const Options& options_;
+  const Options options_;
+  const BlockSize size_;
 
   std::vector<Transform> rest_;         // the source's reference pose, joint_to_world
   std::vector<Transform> target_rest_;  // that of the target
   std::vector<Quat> turns_;             // [target joints], alignment of the reference pose
+  std::vector<float> lowest_;           // of add_lowest(), until the floor is known
   Floor source_floor_, target_floor_;
+  std::optional<TouchKeeping> touches_;  // those of a take that is one block
   TransferPlan plan_;
-  Report report_;
+  std::shared_ptr<Report> report_ = std::make_shared<Report>();
+  int reported_ = 0;  // frames that report_ is of
 };
 
 }  // namespace
 
 Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, const Clip& target,
                             const RoleMap& target_roles, const Options& options) {
+  auto made = transfer(frames_of(source), source_roles, target, target_roles, options);
+  if (!made) return made.error();
+  auto clip = load(made->frames, options.jobs);
+  if (!clip) return clip.error();
+  return Retargeted{*std::move(clip), std::move(*made->report)};
+}
+
+Result<RetargetedFrames> transfer(const FrameSource& source, const RoleMap& source_roles,
+                                  const Clip& target, const RoleMap& target_roles,
+                                  const Options& options, int block_frames) {
   if (source.skeleton.empty()) return Error("retarget-empty", "the motion has no joints");
   if (target.skeleton.empty()) return Error("retarget-empty", "the target has no joints");
   if (options.scale && (!(*options.scale > 0) || !std::isfinite(*options.scale))) {
@@ -319,12 +443,11 @@ Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, con
   const bool given = options.source_frame || options.target_frame || !options.source_pose.empty() ||
                      !options.target_pose.empty();
   if (same && !given && (!options.scale || *options.scale == same->scale)) {
-    auto copied = copy_of(source, target.skeleton, *same, same->scale);
-    copied.report.source_pose = source.skeleton.reference;
-    copied.report.target_pose = target.skeleton.reference;
-    return copied;
+    return copy_of(source, target.skeleton, *same);
   }
-  return Transfer(source, source_roles, target, target_roles, options).run();
+  const auto made =
+      std::make_shared<Transfer>(source, source_roles, target, target_roles, options, block_frames);
+  return made->run(made);
 }
 
 }  // namespace krok::retarget

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,7 +8,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "roles/roles.h"
-#include "scene/clip.h"
+#include "scene/frame_blocks.h"
 #include "scene/skeleton.h"
 
 // Retargeting: transfers a motion from one skeleton to another.
@@ -129,5 +130,18 @@ struct Retargeted {
 // retarget-pose (a pose of another number of joints).
 Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, const Clip& target,
                             const RoleMap& target_roles, const Options& options);
+
+struct RetargetedFrames {
+  FrameSource frames;              // to be read about in order
+  std::shared_ptr<Report> report;  // complete, but for what frames show until all were read
+};
+
+// The same of frames generated on demand, in blocks, in memory that hardly grows with their number
+// (about 60 bytes a frame): the result does not depend on `block_frames`. Contacts are those of
+// find_in_long_take(); heels and T-poses come from eight parts of 2048 frames, all of a shorter
+// take. The frames are read four times beforehand. The arguments must outlive the result.
+Result<RetargetedFrames> transfer(const FrameSource& source, const RoleMap& source_roles,
+                                  const Clip& target, const RoleMap& target_roles,
+                                  const Options& options, int block_frames = 8192);
 
 }  // namespace krok::retarget

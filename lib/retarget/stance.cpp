@@ -7,6 +7,7 @@
 
 #include "retarget/actor_view_internal.h"
 #include "roles/limbs.h"
+#include "scene/frame_blocks.h"
 
 namespace krok::retarget {
 
@@ -54,21 +55,23 @@ bool stands(const Actor& actor) {
   return Posture(actor).least_along(Vec3::UnitY()) > 0.5;
 }
 
-Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame) {
-  Stance stance;
-  stance.pose = clip.skeleton.reference;
-  const int frames = clip.frame_count();
-  if (frame) {
-    if (*frame < 0 || *frame >= frames) {
-      return Error("retarget-frame",
-                   fmt::format("no frame {} to use as reference pose; the motion has {} frames, "
-                               "numbered from 0",
-                               *frame, frames));
-    }
-    clip.get_pose(*frame, stance.pose);
-    stance.frame = frame;
-    return stance;
+Result<Stance> stance_of_frame(const FrameSource& source, int frame) {
+  if (frame < 0 || frame >= source.frame_count) {
+    return Error("retarget-frame",
+                 fmt::format("no frame {} to use as reference pose; the motion has {} frames, "
+                             "numbered from 0",
+                             frame, source.frame_count));
   }
+  const auto clip = load(part_of(source, frame, 1), 1);
+  if (!clip) return clip.error();
+  Stance stance{source.skeleton.reference, frame};
+  clip->get_pose(0, stance.pose);
+  return stance;
+}
+
+Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame) {
+  if (frame) return stance_of_frame(frames_of(clip), *frame);
+  Stance stance{clip.skeleton.reference, {}};
   const Actor actor{clip.skeleton, roles, clip.skeleton.reference};
   if (!roles.humanoid || stands(actor)) return stance;
   stance.pose = build_stance(clip, roles, !Posture(actor).in_line());

@@ -6,6 +6,7 @@
 #include "core/result.h"
 #include "retarget/pose_alignment.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 namespace krok::retarget {
 
@@ -26,6 +27,7 @@ bool stands(const Actor& actor);
 // selects a frame's pose directly; an Error (code retarget-frame) if there is no such frame.
 // Skeletons that are not humanoids keep their reference pose.
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame);
+Result<Stance> stance_of_frame(const FrameSource& source, int frame);
 
 // A clip's skeleton with a reference pose that angles of an anatomy can be measured from and bodies
 // built in: its own where trunk, thighs and shanks lie within 60 degrees of one line, whichever way

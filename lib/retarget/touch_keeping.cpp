@@ -125,8 +125,7 @@ std::vector<BodyShift> smoothed(const std::vector<BodyShift>& shifts, int reach)
 }
 
 TouchKeeping::TouchKeeping(const Clip& clip, const Actor& source, const Actor& target, double scale,
-                           double floor, double leg, std::span<const std::vector<double>> standing,
-                           bool on_ground)
+                           double floor, double leg, bool on_ground)
     : points_(body_points(source, target)),
       scale_(scale),
       leg_(leg),
@@ -160,13 +159,10 @@ TouchKeeping::TouchKeeping(const Clip& clip, const Actor& source, const Actor& t
     if (top < 0 || turns_with_trunk_[at(top)] == 0) continue;
     for (const int joint : joints_below(target.skeleton, top)) turns_with_trunk_[at(joint)] = 2;
   }
-  if (clip.frame_count() == 0) return;
-  if (on_ground) find_on_ground(clip, floor, leg, standing);
-  find_on_body(clip, source, target, leg);
+  if (on_ground) find_on_ground(clip, floor, leg);
 }
 
-void TouchKeeping::find_on_ground(const Clip& clip, double floor, double leg,
-                                  std::span<const std::vector<double>> standing) {
+void TouchKeeping::find_on_ground(const Clip& clip, double floor, double leg) {
   for (const GroundLimits& limits : kGroundLimits) {
     const PointPair& point = points_[static_cast<std::size_t>(limits.part)];
     if (point.source.joint < 0) continue;
@@ -177,15 +173,6 @@ void TouchKeeping::find_on_ground(const Clip& clip, double floor, double leg,
         heights, speeds_of(entry.place, clip.rate),
         {limits.near * leg, limits.far * leg, limits.speed * leg / kUsualLeg, limits.shortest},
         clip.rate);
-    const bool is_left = limits.part == BodyPart::left_foot;
-    const bool is_foot = is_left || limits.part == BodyPart::right_foot;
-    if (is_foot && !standing[is_left ? 0 : 1].empty()) {
-      const std::vector<double>& stands = standing[is_left ? 0 : 1];
-      for (std::size_t f = 0; f < stands.size(); ++f) entry.touch.weight[f] *= 1 - stands[f];
-      std::erase_if(entry.touch.stays, [&](const Stay& stay) {
-        return stands[at((stay.first + stay.last) / 2)] > 0.5;
-      });
-    }
     if (entry.touch.stays.empty()) continue;
     for (Vec3& place : entry.place) place *= scale_;
     entry.natural.resize(entry.place.size());
@@ -198,7 +185,7 @@ void TouchKeeping::find_on_body(const Clip& clip, const Actor& source, const Act
   std::array<std::vector<Vec3>, 2> palms;
   for (std::size_t side = 0; side < 2; ++side) {
     const BodyPoint& palm = points_[side].source;
-    if (palm.joint < 0 || !arms_[side]) return;
+    if (palm.joint < 0 || !arms_[side] || clip.frame_count() == 0) return;
     palms[side] = track_of(clip, palm);
   }
   const auto frames = at(clip.frame_count());
@@ -233,18 +220,42 @@ void TouchKeeping::note(int frame, std::span<const Transform> target_pose) {
   for (OnGround& entry : ground_) entry.natural[at(frame)] = entry.point.target.in(target_pose);
 }
 
-void TouchKeeping::settle() {
+void TouchKeeping::add_stays(const FrameRun& run, GroundStays& stays) const {
+  for (const OnGround& entry : ground_) {
+    std::vector<GroundStay>& all = stays[static_cast<std::size_t>(entry.part)];
+    for (const Stay& stay : entry.touch.stays) {
+      const int begin = std::max(stay.first, run.kept_begin);
+      const int end = std::min(stay.last + 1, run.kept_end);
+      if (begin >= end) continue;
+      const bool goes_on = !all.empty() && all.back().stay.last + 1 == run.first + begin;
+      if (!goes_on) all.push_back({{run.first + begin, 0}});
+      all.back().stay.last = run.first + end - 1;
+      for (int f = begin; f < end; ++f) {
+        all.back().off += flat(entry.natural[at(f)] - entry.place[at(f)]);
+      }
+    }
+  }
+}
+
+void TouchKeeping::settle(const GroundStays& stays, const StancesOfFeet& feet, int first) {
   for (OnGround& entry : ground_) {
     const std::size_t frames = entry.place.size();
-    entry.shift.assign(frames, Vec3::Zero());
-    std::vector<Vec3> of_stay;
-    for (const Stay& stay : entry.touch.stays) {
-      Vec3 sum = Vec3::Zero();
-      for (int f = stay.first; f <= stay.last; ++f) {
-        sum += flat(entry.natural[at(f)] - entry.place[at(f)]);
-      }
-      of_stay.push_back(sum / (stay.last - stay.first + 1));
+    const bool is_left = entry.part == BodyPart::left_foot;
+    const bool is_foot = is_left || entry.part == BodyPart::right_foot;
+    const auto stances = is_foot ? feet[is_left ? 0 : 1] : std::span<const FootStance>();
+    for (std::size_t f = 0; f < frames && !stances.empty(); ++f) {
+      entry.touch.weight[f] *= 1 - stances[at(first) + f].standing;
     }
+    entry.shift.assign(frames, Vec3::Zero());
+    entry.touch.stays.clear();
+    std::vector<Vec3> of_stay;
+    for (const auto& [stay, off] : stays[static_cast<std::size_t>(entry.part)]) {
+      if (is_foot && !stances.empty() && stances[at((stay.first + stay.last) / 2)].standing > 0.5)
+        continue;
+      of_stay.push_back(off / (stay.last - stay.first + 1));
+      entry.touch.stays.push_back({stay.first - first, stay.last - first});
+    }
+    if (of_stay.empty()) continue;
     std::size_t next = 0;  // the first stay that does not end before the frame
     for (std::size_t f = 0; f < frames; ++f) {
       const int frame = static_cast<int>(f);
@@ -262,6 +273,7 @@ void TouchKeeping::settle() {
       if (entry.part == BodyPart::hips) entry.shift[f] = entry.natural[f] - entry.place[f];
     }
   }
+  std::erase_if(ground_, [](const OnGround& entry) { return entry.touch.stays.empty(); });
 }
 
 const TouchKeeping::OnGround* TouchKeeping::on_ground(BodyPart part) const {
@@ -415,11 +427,12 @@ void TouchKeeping::place_arms(int frame, std::span<const Transform> source_pose,
   }
 }
 
-void TouchKeeping::report_feet(std::span<const Contact> contacts, const Actor& source,
-                               const Actor& target, const Floor& source_floor,
-                               const Floor& target_floor, double rate,
-                               std::span<const std::vector<double>> standing,
-                               const std::array<std::optional<PointPair>, 2>& heels) {
+std::vector<KeptContact> kept_contacts(std::span<const Contact> contacts, const Actor& source,
+                                       const Actor& target, double scale, const Floor& source_floor,
+                                       const Floor& target_floor, double rate,
+                                       const StancesOfFeet& feet,
+                                       const std::array<std::optional<PointPair>, 2>& heels) {
+  std::vector<KeptContact> kept;
   for (const Contact& contact : contacts) {
     const Role role = source.roles.roles[at(contact.joint)];
     for (const bool is_left : {true, false}) {
@@ -431,7 +444,7 @@ void TouchKeeping::report_feet(std::span<const Contact> contacts, const Actor& s
         return actor.pose[at(joint)].position.y() - lowest_of_foot(actor, leg.foot) + floor.sole +
                floor.motion;
       };
-      Standing entry;
+      KeptContact entry;
       entry.part = std::string(is_left ? "left " : "right ") + (role == leg.foot ? "heel" : "ball");
       entry.point = {at_joint(contact.joint), at_joint(onto)};
       entry.stay = {static_cast<int>(std::ceil(contact.start * rate - 1e-6)),
@@ -440,26 +453,36 @@ void TouchKeeping::report_feet(std::span<const Contact> contacts, const Actor& s
         entry.point = *heel;
       } else {
         entry.rise = height(target, onto, target_floor) -
-                     scale_ * height(source, contact.joint, source_floor);
+                     scale * height(source, contact.joint, source_floor);
       }
       // A foot that lies on the ground, as in kneeling, is found on its own.
-      const std::vector<double>& stands = standing[is_left ? 0 : 1];
+      const auto& stances = feet[is_left ? 0 : 1];
       const int middle = (entry.stay.first + entry.stay.last) / 2;
-      if (!stands.empty() && stands[at(middle)] < 0.5) continue;
-      if (entry.stay.last > entry.stay.first) standing_.push_back(std::move(entry));
+      if (!stances.empty() && stances[at(middle)].standing < 0.5) continue;
+      if (entry.stay.last > entry.stay.first) kept.push_back(std::move(entry));
     }
   }
+  return kept;
 }
 
-std::vector<ContactReport> TouchKeeping::report(const Clip& source, const Clip& result) const {
+std::vector<ContactReport> TouchKeeping::report(const FrameRun& run,
+                                                std::span<const KeptContact> kept,
+                                                const Clip& result) const {
+  const Clip& source = run.clip;
   std::vector<ContactReport> reports;
   const auto entry_of = [&](const Stay& stay, const char* part, const char* on) {
     ContactReport report;
     report.part = part;
     report.on = on;
-    report.start = stay.first / source.rate;
-    report.end = stay.last / source.rate;
+    report.start = (run.first + stay.first) / source.rate;
+    report.end = (run.first + stay.last) / source.rate;
     return report;
+  };
+  // With one frame before the kept ones, as speeds are of two.
+  const auto in_run = [&](Stay stay) {
+    stay.first = std::max(stay.first, std::max(run.kept_begin - 1, 0));
+    stay.last = std::min(stay.last, run.kept_end - 1);
+    return stay;
   };
   // In the frames of `stay`; `wanted` is the source's point, scaled.
   const auto report_ground = [&](const char* part, const Stay& stay, std::span<const Vec3> places,
@@ -478,17 +501,20 @@ std::vector<ContactReport> TouchKeeping::report(const Clip& source, const Clip& 
     reports.push_back(report);
   };
   for (const OnGround& entry : ground_) {
-    for (const Stay& stay : entry.touch.stays) {
+    for (const Stay& whole : entry.touch.stays) {
+      const Stay stay = in_run(whole);
+      if (stay.last < stay.first) continue;
       const auto wanted = std::span(entry.place).subspan(at(stay.first));
       report_ground(name_of(entry.part), stay, track_of(result, entry.point.target, stay), wanted,
                     0);
     }
   }
-  for (const Standing& entry : standing_) {
-    Stay stay = entry.stay;
+  for (const KeptContact& entry : kept) {
+    Stay stay = in_run({entry.stay.first - run.first, entry.stay.last - run.first});
+    if (stay.last <= stay.first) continue;
     const Stay first{0, std::min(3, source.frame_count() - 1)};
-    const bool jumps =
-        stay.first == 0 && jumps_at_start(track_of(source, entry.point.source, first), leg_);
+    const bool jumps = run.first + stay.first == 0 &&
+                       jumps_at_start(track_of(source, entry.point.source, first), leg_);
     if (jumps && ++stay.first >= stay.last) continue;
     auto wanted = track_of(source, entry.point.source, stay);
     for (Vec3& place : wanted) place *= scale_;
@@ -501,7 +527,9 @@ std::vector<ContactReport> TouchKeeping::report(const Clip& source, const Clip& 
     to[side] = track_of(result, points_[side].target);
   }
   if (hands_) {
-    for (const Stay& stay : hands_->stays) {
+    for (const Stay& whole : hands_->stays) {
+      const Stay stay = in_run(whole);
+      if (stay.last < stay.first) continue;
       ContactReport report = entry_of(stay, name_of(BodyPart::left_hand), "right hand");
       for (int f = stay.first; f <= stay.last; ++f) {
         report.apart =
@@ -516,7 +544,9 @@ std::vector<ContactReport> TouchKeeping::report(const Clip& source, const Clip& 
     const auto source_to = track_of(source, {entry.bone.to, Vec3::Zero()});
     const auto onto_from = track_of(result, {entry.bone.onto_from, Vec3::Zero()});
     const auto onto_to = track_of(result, {entry.bone.onto_to, Vec3::Zero()});
-    for (const Stay& stay : entry.touch.stays) {
+    for (const Stay& whole : entry.touch.stays) {
+      const Stay stay = in_run(whole);
+      if (stay.last < stay.first) continue;
       ContactReport report =
           entry_of(stay, name_of(other_side(BodyPart::left_hand, entry.side)), entry.bone.name);
       for (int f = stay.first; f <= stay.last; ++f) {

@@ -9,6 +9,7 @@
 #include "retarget/moved_limb.h"
 #include "retarget/retarget.h"
 #include "retarget/touches.h"
+#include "scene/frame_blocks.h"
 #include "scene/motion_keys.h"
 
 // Keeps what an actor touches: goals for hands, elbows, knees and feet of the target, and the shift
@@ -47,24 +48,49 @@ class ShiftSolver {
 // Averages over `reach` frames on either side, with raised-cosine weights.
 std::vector<BodyShift> smoothed(const std::vector<BodyShift>& shifts, int reach);
 
-// What one actor's motion touches, and where the target is to touch it.
+// The touches of the ground of a take.
+struct GroundStay {
+  Stay stay;
+  Vec3 off = Vec3::Zero();  // horizontal, metres: the sum over the frames of where the target's
+                            // point is by rotations alone, from the source's, scaled
+};
+using GroundStays = std::array<std::vector<GroundStay>, kBodyParts>;  // in order, apart
+
+// [2][frames of the take], empty where a foot's stances are unknown.
+using StancesOfFeet = std::array<std::span<const FootStance>, 2>;
+
+// A contact of a foot that stands, kept by LegPlacement.
+struct KeptContact {
+  std::string part;
+  PointPair point;
+  Stay stay;        // frames of the take
+  double rise = 0;  // of the target's joint above the scaled source's, metres
+};
+
+// What one actor's motion touches, and where the target is to touch it, in some frames of a take.
 class TouchKeeping {
  public:
-  // Finds the touches of a motion. `scale` is lengths of the target over those of the source,
-  // `floor` the height of the source's ground, `leg` the length of its legs, `standing` [2][frames]
-  // how much each foot stands (those that do are kept elsewhere); empty if they are unknown.
-  // The actors stand in their poses.
+  // Finds the touches of the ground. `scale` is lengths of the target over those of the source,
+  // `floor` the height of the source's ground, `leg` the length of its legs. The actors stand in
+  // their poses.
   TouchKeeping(const Clip& clip, const Actor& source, const Actor& target, double scale,
-               double floor, double leg, std::span<const std::vector<double>> standing,
-               bool on_ground);
+               double floor, double leg, bool on_ground);
 
-  bool empty() const { return ground_.empty() && on_body_.empty() && !hands_ && standing_.empty(); }
+  bool empty() const { return ground_.empty() && on_body_.empty() && !hands_; }
 
   // Keeps where the target's points are by rotations alone. One frame each, on any thread.
   void note(int frame, std::span<const Transform> target_pose);
 
-  // After all frames: where on the ground the target touches it in each stay.
-  void settle();
+  // After all frames were noted: adds the kept frames of `run`, the clip of which this is, to the
+  // stays of the take. The runs come in order.
+  void add_stays(const FrameRun& run, GroundStays& stays) const;
+
+  // Where on the ground the target touches it, from the stays of the take. Feet that stand, as
+  // `feet` has it, are kept elsewhere. `first` is the number of the clip's first frame.
+  void settle(const GroundStays& stays, const StancesOfFeet& feet, int first);
+
+  // Finds the touches of the body. The arguments are those of the constructor.
+  void find_on_body(const Clip& clip, const Actor& source, const Actor& target, double leg);
 
   // What the frame's touches of the ground need of hips and trunk. The pivot of the trunk's turn is
   // pivot().
@@ -88,15 +114,10 @@ class TouchKeeping {
   void place_arms(int frame, std::span<const Transform> source_pose,
                   std::span<const Transform> local, std::span<Transform> pose) const;
 
-  // Adds contacts of feet that stand, kept elsewhere, to what is reported. Heights are those above
-  // the actors' floors, `standing` as above, `heels` what the ankles' contacts are of.
-  void report_feet(std::span<const Contact> contacts, const Actor& source, const Actor& target,
-                   const Floor& source_floor, const Floor& target_floor, double rate,
-                   std::span<const std::vector<double>> standing,
-                   const std::array<std::optional<PointPair>, 2>& heels);
-
-  // Every stay, as it is in `result`.
-  std::vector<ContactReport> report(const Clip& source, const Clip& result) const;
+  // Every stay, and every contact of `kept`, as far as it is in the kept frames of `run` and the
+  // one before, as it is in `result`. Times are those of the take.
+  std::vector<ContactReport> report(const FrameRun& run, std::span<const KeptContact> kept,
+                                    const Clip& result) const;
 
  private:
   struct OnGround {
@@ -113,16 +134,7 @@ class TouchKeeping {
     Touch touch;
   };
 
-  struct Standing {
-    std::string part;
-    PointPair point;
-    Stay stay;
-    double rise = 0;  // of the target's joint above the scaled source's, metres
-  };
-
-  void find_on_ground(const Clip& clip, double floor, double leg,
-                      std::span<const std::vector<double>> standing);
-  void find_on_body(const Clip& clip, const Actor& source, const Actor& target, double leg);
+  void find_on_ground(const Clip& clip, double floor, double leg);
   const OnGround* on_ground(BodyPart part) const;
   // The goal's way from where the point is, times its weight; zero where it touches nothing.
   Vec3 lack(BodyPart part, int frame, std::span<const Transform> pose) const;
@@ -137,8 +149,15 @@ class TouchKeeping {
   std::array<std::optional<MovedLimb>, 2> arms_, legs_;
   std::vector<OnGround> ground_;
   std::vector<OnBody> on_body_;
-  std::vector<Standing> standing_;
   std::optional<Touch> hands_;  // each other
 };
+
+// The contacts of feet that stand by their stances. Heights are those above the actors' floors,
+// `heels` what the ankles' contacts are of.
+std::vector<KeptContact> kept_contacts(std::span<const Contact> contacts, const Actor& source,
+                                       const Actor& target, double scale, const Floor& source_floor,
+                                       const Floor& target_floor, double rate,
+                                       const StancesOfFeet& feet,
+                                       const std::array<std::optional<PointPair>, 2>& heels);
 
 }  // namespace krok::retarget

@@ -16,12 +16,12 @@ class Blocks {
       : source_(std::move(source)), size_(size), jobs_(jobs), change_(std::move(change)) {}
 
   Status read(int first, int count, std::span<Vec3f> positions, std::span<Quatf> orientations) {
-    const auto joints = static_cast<std::size_t>(source_.joint_count());
     for (int done = 0; done < count;) {
       const int number = (first + done) / size_.frames;
       const auto run = run_of(number);
       if (!run) return run.error();
       const FrameRun& block = **run;
+      const auto joints = static_cast<std::size_t>(block.clip.joint_count());
       const int begin = first + done - block.first;
       const int frames = std::min(block.kept_end - begin, count - done);
       const auto from = static_cast<std::size_t>(begin) * joints;
@@ -39,9 +39,18 @@ class Blocks {
  private:
   Result<std::shared_ptr<const FrameRun>> run_of(int number) {
     const std::lock_guard lock(mutex_);
+    for (; next_ < number; ++next_) {
+      if (Status status = make(next_); !status) return status.error();
+    }
     for (const Made& made : made_) {
       if (made.run && made.number == number) return made.run;
     }
+    if (Status status = make(number); !status) return status.error();
+    next_ = std::max(next_, number + 1);
+    return made_[0].run;
+  }
+
+  Status make(int number) {
     FrameRun run;
     const int begin = number * size_.frames;
     const int end = std::min(source_.frame_count - begin, size_.frames) + begin;
@@ -56,7 +65,7 @@ class Blocks {
     if (Status status = change_(run); !status) return status.error();
     std::swap(made_[0], made_[1]);
     made_[0] = {number, std::make_shared<const FrameRun>(std::move(run))};
-    return made_[0].run;
+    return {};
   }
 
   struct Made {
@@ -70,6 +79,7 @@ class Blocks {
   std::function<Status(FrameRun&)> change_;
   std::mutex mutex_;
   std::array<Made, 2> made_;  // the newest first
+  int next_ = 0;              // the first block that was never made
 };
 
 }  // namespace

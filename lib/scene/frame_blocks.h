@@ -32,8 +32,9 @@ struct BlockSize {
 };
 
 // The frames of `source` after `change`, which needs their neighbours: blocks are read with their
-// overlap on `jobs` threads, changed one at a time, and the last two kept, so frames are to be read
-// about in order: a block that is read again later is changed again.
+// overlap on `jobs` threads, changed one at a time and in order, and the last two kept, so frames
+// are to be read about in order: a block that is read again later is changed again. A `change` that
+// gives the frames another skeleton leaves it to the caller to give it to the result.
 FrameSource changed_in_blocks(const FrameSource& source, BlockSize size, int jobs,
                               std::function<Status(FrameRun& run)> change);
 

@@ -77,8 +77,10 @@ Status take_pose(const char* option, const MatchingPose& given, const Skeleton& 
 
 Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
                                      const RoleMap& source_roles, const RoleMap& target_roles,
-                                     const krok::retarget::Retargeted& retargeted,
+                                     const krok::retarget::RetargetedFrames& retargeted,
                                      ToolContext& context) {
+  const auto clip = load(retargeted.frames, context.jobs);
+  if (!clip) return clip.error();
   const auto ground = options.ground.open(context);
   if (!ground) return ground.error();
   const auto contacts = read_planting_contacts(options.contacts, options.input, source, context);
@@ -86,8 +88,8 @@ Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
   std::optional<std::span<const Contact>> given;
   if (*contacts) given = **contacts;
   const GroundBelow below = {gait::height_of(**ground), gait::up_of(**ground)};
-  auto followed = follow_feet(source, source_roles, retargeted.clip, target_roles,
-                              retargeted.report.scale, below, given);
+  auto followed = follow_feet(source, source_roles, *clip, target_roles, retargeted.report->scale,
+                              below, given);
   if (followed && followed->out_of_reach > 0) {
     context.warn("plant-reach", fmt::format("in {} of {} frames a leg is too short for its place",
                                             followed->out_of_reach, source.frame_count()));
@@ -110,18 +112,20 @@ std::string ground_line(const FollowedFeet& feet) {
 }
 
 // The motion and, on a ground, the contacts of its feet beside it.
-Status write_all(const Clip& clip, const FollowedFeet* followed, const anim::WriteOptions& writing,
+Status write_all(const FrameSource& frames, const std::function<Provenance()>& provenance,
+                 const FollowedFeet* followed, const anim::WriteOptions& writing,
                  const std::string& alignment_path, const Outcome& outcome, ToolContext& context) {
   OutputSet outputs(context);
-  Status status = outputs.add(context.output,
-                              [&](OutputFile& file) { return anim::write(clip, writing, file); });
+  Status status = outputs.add(context.output, [&](OutputFile& file) {
+    return anim::write(frames, provenance, writing, file);
+  });
   if (status && followed != nullptr) {
     MotionKeys keys;
     keys.contacts = followed->contacts;
     const auto path = place_for_keys(keys, context.output);
     if (!path) return path.error();
     status = outputs.add(*path, [&](OutputFile& file) {
-      return file.write(keys::write(keys, clip.skeleton, clip.duration()));
+      return file.write(keys::write(keys, frames.skeleton, frames.duration()));
     });
   }
   if (status && !alignment_path.empty()) {
@@ -160,10 +164,11 @@ Status check_outputs(const Options& options, const ToolContext& context) {
   return Error("usage", "--ground is for a motion that is written", "give its name with -o");
 }
 
-}  // namespace
+constexpr const char* kOrder = "IN is whose motion is wanted, --onto whose body";
 
-Result<int> run(const Options& options, ToolContext& context) {
-  if (Status status = check_outputs(options, context); !status) return status.error();
+// `whole` is the same as `source`, or null for a long take.
+Status retarget(const Options& options, const FrameSource& source, const Clip* whole,
+                const std::function<Provenance()>& provenance, ToolContext& context) {
   krok::retarget::Options how;
   how.feet = options.feet;
   how.touches = options.touches;
@@ -173,68 +178,69 @@ Result<int> run(const Options& options, ToolContext& context) {
     how.target_frame = options.onto_reference_pose.frame;
   how.jobs = context.jobs;
   how.progress = context.progress;
-  static constexpr const char* kOrder = "IN is whose motion is wanted, --onto whose body";
-  auto source = io::open_motion(options.input, context);
-  if (!source && source.error().code == "motion-missing") source.error().hint = kOrder;
-  if (!source) return source.error();
   const auto target = read_target(options.onto, context);
   if (!target) return target.error();
-  if (source->frame_count() < 2 && target->clip.frame_count() > 1) {
+  if (source.frame_count < 2 && target->clip.frame_count() > 1) {
     context.warn(
         "retarget-still",
         fmt::format("{} has no motion, --onto has {}: the result is a still",
                     base_name(options.input), counted(target->clip.frame_count(), "frame")),
         kOrder);
   }
-  const auto source_roles = roles_of(source->skeleton, options.map, context);
+  const auto source_roles = roles_of(source.skeleton, options.map, context);
   if (!source_roles) return source_roles.error();
   const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
   if (!target_roles) return target_roles.error();
   if (!options.ground.empty()) how.feet = krok::retarget::Feet::free;
   how.target_floor = floor_below(target->mesh, target->clip.skeleton, *target_roles);
-  Status posed = take_pose("--reference-pose", options.reference_pose, source->skeleton,
+  Status posed = take_pose("--reference-pose", options.reference_pose, source.skeleton,
                            how.source_pose, context);
   if (posed) {
     posed = take_pose("--onto-reference-pose", options.onto_reference_pose, target->clip.skeleton,
                       how.target_pose, context);
   }
   if (posed) {
-    posed =
-        take_alignment(options.alignment, source->skeleton, target->clip.skeleton, how, context);
+    posed = take_alignment(options.alignment, source.skeleton, target->clip.skeleton, how, context);
   }
-  if (!posed) return posed.error();
+  if (!posed) return posed;
   if (!options.takes.empty()) {
-    auto pose = pose_of_takes(options.takes, *source, *source_roles, context);
+    auto pose = pose_of_takes(options.takes, *whole, *source_roles, context);
     if (!pose) return pose.error();
     how.source_pose = *std::move(pose);
   }
 
-  auto result = krok::retarget::transfer(*source, *source_roles, target->clip, *target_roles, how);
+  auto result = krok::retarget::transfer(source, *source_roles, target->clip, *target_roles, how);
   if (!result) return std::move(result).error().in_file(options.input);
   std::optional<FollowedFeet> followed;
   if (!options.ground.empty()) {
     auto standing =
-        stand_on_ground(options, *source, *source_roles, *target_roles, *result, context);
+        stand_on_ground(options, *whole, *source_roles, *target_roles, *result, context);
     if (!standing) return std::move(standing).error().in_file(options.input);
     followed = *std::move(standing);
-    result->clip = std::move(followed->clip);
+    result->frames = frames_of(followed->clip);
+  } else if (context.output.empty()) {
+    if (Status status = read_through(result->frames, context.jobs); !status) return status;
   }
-  const Outcome outcome{source->skeleton, *source_roles, target->clip.skeleton, *target_roles,
-                        result->report};
+  const Outcome outcome{source.skeleton, *source_roles, target->clip.skeleton, *target_roles,
+                        *result->report};
   const bool pose_is_given = how.source_frame || !how.source_pose.empty();
   for (Diagnostic& choice : choices_of(outcome, pose_is_given)) context.diagnose(std::move(choice));
 
-  Clip& clip = result->clip;
-  clip.provenance = context.provenance();
-  clip.provenance.conversions = source->provenance.conversions;
-  clip.provenance.conversions.push_back("retargeted: " + summary(outcome));
+  const auto made_by = [&] {
+    std::vector<std::string> conversions = provenance().conversions;
+    Provenance made = context.provenance();
+    made.conversions = std::move(conversions);
+    made.conversions.push_back("retargeted: " + summary(outcome));
+    return made;
+  };
   anim::WriteOptions writing;
   writing.orientation = options.orientation;
   writing.jobs = context.jobs;
   const FollowedFeet* feet = followed ? &*followed : nullptr;
-  if (Status status = write_all(clip, feet, writing, options.save_alignment, outcome, context);
+  if (Status status = write_all(result->frames, made_by, feet, writing, options.save_alignment,
+                                outcome, context);
       !status)
-    return status.error();
+    return status;
 
   context.report.result = to_json(outcome);
   if (followed) context.report.result["ground"] = ground_json(*followed);
@@ -243,6 +249,36 @@ Result<int> run(const Options& options, ToolContext& context) {
                           summary(outcome)));
   if (followed) context.log("  " + ground_line(*followed));
   if (context.verbose) context.log(table(outcome));
+  return {};
+}
+
+}  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  constexpr std::size_t kLongBytes = std::size_t{16} << 20;
+  if (Status status = check_outputs(options, context); !status) return status.error();
+  const auto input = context.open_long_input(options.input);
+  if (!input) return input.error();
+  if (input->bytes().size() < kLongBytes || !options.takes.empty() || !options.ground.empty()) {
+    context.note_checksum(*input);
+    auto clip = io::open_motion(*input, context);
+    if (!clip && clip.error().code == "motion-missing") clip.error().hint = kOrder;
+    if (!clip) return clip.error();
+    const auto provenance = [&] { return clip->provenance; };
+    Status status = retarget(options, frames_of(*clip), &*clip, provenance, context);
+    return status ? Result<int>(kExitDone) : status.error();
+  }
+  const io::ChecksumAtEnd checksum(*input, context);
+  std::function<Provenance()> of_input;
+  const auto provenance = [&] {
+    context.note_checksum(*input);
+    return of_input();
+  };
+  const auto use = [&](const FrameSource& frames) {
+    return retarget(options, frames, nullptr, provenance, context);
+  };
+  const auto read = io::stream_motion(*input, context, use, {.provenance = &of_input});
+  if (!read) return read.error();
   return kExitDone;
 }
 
