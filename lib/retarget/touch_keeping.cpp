@@ -50,15 +50,17 @@ std::vector<double> speeds_of(std::span<const Vec3> places, double rate) {
   return speeds;
 }
 
+Vec3 place_of(const BodyPoint& point, const Clip& clip, int frame) {
+  const Transform joint{clip.frame_positions(frame)[at(point.joint)].cast<double>(),
+                        clip.frame_orientations(frame)[at(point.joint)].cast<double>()};
+  return joint * point.offset;
+}
+
 // In the frames of `stay`.
 std::vector<Vec3> track_of(const Clip& clip, const BodyPoint& point, const Stay& stay) {
   std::vector<Vec3> places;
   places.reserve(at(stay.last - stay.first + 1));
-  for (int f = stay.first; f <= stay.last; ++f) {
-    const Transform joint{clip.frame_positions(f)[at(point.joint)].cast<double>(),
-                          clip.frame_orientations(f)[at(point.joint)].cast<double>()};
-    places.push_back(joint * point.offset);
-  }
+  for (int f = stay.first; f <= stay.last; ++f) places.push_back(place_of(point, clip, f));
   return places;
 }
 
@@ -470,94 +472,80 @@ std::vector<ContactReport> TouchKeeping::report(const FrameRun& run,
                                                 const Clip& result) const {
   const Clip& source = run.clip;
   std::vector<ContactReport> reports;
-  const auto entry_of = [&](const Stay& stay, const char* part, const char* on) {
-    ContactReport report;
-    report.part = part;
-    report.on = on;
-    report.start = (run.first + stay.first) / source.rate;
-    report.end = (run.first + stay.last) / source.rate;
-    return report;
-  };
-  // With one frame before the kept ones, as speeds are of two.
-  const auto in_run = [&](Stay stay) {
-    stay.first = std::max(stay.first, std::max(run.kept_begin - 1, 0));
-    stay.last = std::min(stay.last, run.kept_end - 1);
-    return stay;
-  };
-  // In the frames of `stay`; `wanted` is the source's point, scaled.
-  const auto report_ground = [&](const char* part, const Stay& stay, std::span<const Vec3> places,
-                                 std::span<const Vec3> wanted, double rise) {
-    ContactReport report = entry_of(stay, part, "ground");
-    double way = 0, source_way = 0;
-    for (int f = 0; f <= stay.last - stay.first; ++f) {
-      const double off = places[at(f)].y() - wanted[at(f)].y() - rise;
-      report.height = std::max(report.height, std::abs(off));
-      if (f == 0) continue;
-      way += flat(places[at(f)] - places[at(f - 1)]).norm();
-      source_way += flat(wanted[at(f)] - wanted[at(f - 1)]).norm() / scale_;
+  const auto add = [&](const char* part, const char* on, std::span<const Stay> stays,
+                       const auto& measure) {
+    for (Stay stay : stays) {
+      // With one frame before the kept ones, as speeds are of two.
+      stay.first = std::max(stay.first, std::max(run.kept_begin - 1, 0));
+      stay.last = std::min(stay.last, run.kept_end - 1);
+      if (stay.last < stay.first) continue;
+      ContactReport report;
+      report.part = part;
+      report.on = on;
+      report.start = (run.first + stay.first) / source.rate;
+      report.end = (run.first + stay.last) / source.rate;
+      measure(stay, report);
+      reports.push_back(std::move(report));
     }
-    const double seconds = report.end - report.start;
-    if (seconds > 0) report.slide = way / seconds, report.source_slide = source_way / seconds;
-    reports.push_back(report);
+  };
+  const auto add_ground = [&](const char* part, std::span<const Stay> stays, const PointPair& point,
+                              double rise) {
+    add(part, "ground", stays, [&](const Stay& stay, ContactReport& report) {
+      const std::vector<Vec3> places = track_of(result, point.target, stay);
+      std::vector<Vec3> wanted = track_of(source, point.source, stay);
+      for (Vec3& place : wanted) place *= scale_;
+      double way = 0, source_way = 0;
+      for (std::size_t f = 0; f < places.size(); ++f) {
+        const double off = places[f].y() - wanted[f].y() - rise;
+        report.height = std::max(report.height, std::abs(off));
+        if (f == 0) continue;
+        way += flat(places[f] - places[f - 1]).norm();
+        source_way += flat(wanted[f] - wanted[f - 1]).norm() / scale_;
+      }
+      const double seconds = report.end - report.start;
+      if (seconds > 0) report.slide = way / seconds, report.source_slide = source_way / seconds;
+    });
   };
   for (const OnGround& entry : ground_) {
-    for (const Stay& whole : entry.touch.stays) {
-      const Stay stay = in_run(whole);
-      if (stay.last < stay.first) continue;
-      const auto wanted = std::span(entry.place).subspan(at(stay.first));
-      report_ground(name_of(entry.part), stay, track_of(result, entry.point.target, stay), wanted,
-                    0);
-    }
+    add_ground(name_of(entry.part), entry.touch.stays, entry.point, 0);
   }
   for (const KeptContact& entry : kept) {
-    Stay stay = in_run({entry.stay.first - run.first, entry.stay.last - run.first});
-    if (stay.last <= stay.first) continue;
+    Stay stay{entry.stay.first - run.first, entry.stay.last - run.first};
     const Stay first{0, std::min(3, source.frame_count() - 1)};
-    const bool jumps = run.first + stay.first == 0 &&
+    const bool jumps = run.first == 0 && stay.first == 0 &&
                        jumps_at_start(track_of(source, entry.point.source, first), leg_);
     if (jumps && ++stay.first >= stay.last) continue;
-    auto wanted = track_of(source, entry.point.source, stay);
-    for (Vec3& place : wanted) place *= scale_;
-    report_ground(entry.part.c_str(), stay, track_of(result, entry.point.target, stay), wanted,
-                  entry.rise);
+    add_ground(entry.part.c_str(), {&stay, 1}, entry.point, entry.rise);
   }
-  std::array<std::vector<Vec3>, 2> from, to;
-  for (std::size_t side = 0; side < 2 && (hands_ || !on_body_.empty()); ++side) {
-    from[side] = track_of(source, points_[side].source);
-    to[side] = track_of(result, points_[side].target);
-  }
-  if (hands_) {
-    for (const Stay& whole : hands_->stays) {
-      const Stay stay = in_run(whole);
-      if (stay.last < stay.first) continue;
-      ContactReport report = entry_of(stay, name_of(BodyPart::left_hand), "right hand");
+  // The largest difference of distances, which are distance(clip, frame, whether it is the source).
+  const auto add_apart = [&](const char* part, const char* on, std::span<const Stay> stays,
+                             const auto& distance) {
+    add(part, on, stays, [&](const Stay& stay, ContactReport& report) {
       for (int f = stay.first; f <= stay.last; ++f) {
-        report.apart =
-            std::max(report.apart, std::abs((to[1][at(f)] - to[0][at(f)]).norm() -
-                                            scale_ * (from[1][at(f)] - from[0][at(f)]).norm()));
+        const double off = distance(result, f, false) - scale_ * distance(source, f, true);
+        report.apart = std::max(report.apart, std::abs(off));
       }
-      reports.push_back(report);
-    }
+    });
+  };
+  const auto palm = [&](std::size_t side, const Clip& clip, int frame, bool of_source) {
+    const PointPair& point = points_[side];
+    return place_of(of_source ? point.source : point.target, clip, frame);
+  };
+  if (hands_) {
+    add_apart(name_of(BodyPart::left_hand), "right hand", hands_->stays,
+              [&](const auto&... frame) { return (palm(1, frame...) - palm(0, frame...)).norm(); });
   }
   for (const OnBody& entry : on_body_) {
-    const auto source_from = track_of(source, {entry.bone.from, Vec3::Zero()});
-    const auto source_to = track_of(source, {entry.bone.to, Vec3::Zero()});
-    const auto onto_from = track_of(result, {entry.bone.onto_from, Vec3::Zero()});
-    const auto onto_to = track_of(result, {entry.bone.onto_to, Vec3::Zero()});
-    for (const Stay& whole : entry.touch.stays) {
-      const Stay stay = in_run(whole);
-      if (stay.last < stay.first) continue;
-      ContactReport report =
-          entry_of(stay, name_of(other_side(BodyPart::left_hand, entry.side)), entry.bone.name);
-      for (int f = stay.first; f <= stay.last; ++f) {
-        const double was =
-            beside_line(from[entry.side][at(f)], source_from[at(f)], source_to[at(f)]).off.norm();
-        const double is =
-            beside_line(to[entry.side][at(f)], onto_from[at(f)], onto_to[at(f)]).off.norm();
-        report.apart = std::max(report.apart, std::abs(is - scale_ * was));
-      }
-      reports.push_back(report);
-    }
+    const BodyBone& bone = entry.bone;
+    add_apart(name_of(other_side(BodyPart::left_hand, entry.side)), bone.name, entry.touch.stays,
+              [&](const Clip& clip, int frame, bool of_source) {
+                const auto end = [&](int from, int onto) {
+                  return place_of(at_joint(of_source ? from : onto), clip, frame);
+                };
+                return beside_line(palm(entry.side, clip, frame, of_source),
+                                   end(bone.from, bone.onto_from), end(bone.to, bone.onto_to))
+                    .off.norm();
+              });
   }
   std::ranges::stable_sort(reports, {}, &ContactReport::start);
   return reports;
