@@ -318,7 +318,7 @@ class Transfer {
     for (const PlacedLeg& leg : plan_.legs) {
       tracks.push_back(leg.placement.begin_track(contacts, source_.frame_count, source_.rate));
     }
-    const auto look = [&](FrameRun& frames) {
+    const auto look = [&](const FrameRun& frames) {
       for (std::size_t i = 0; i < tracks.size(); ++i) {
         plan_.legs[i].placement.add(frames.clip, frames.kept_begin, frames.kept_end, tracks[i]);
       }
@@ -328,9 +328,7 @@ class Transfer {
       advance(frames);
       return Status();
     };
-    Status status =
-        read_through(changed_in_blocks(source_, size_, options_.jobs, look), options_.jobs);
-    if (!status) return status;
+    if (Status status = for_each_run(source_, size_, options_.jobs, look); !status) return status;
     std::array<std::optional<PointPair>, 2> heels;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       PlacedLeg& leg = plan_.legs[i];

@@ -10,6 +10,21 @@ namespace krok {
 
 namespace {
 
+Result<FrameRun> load_run(const FrameSource& source, BlockSize size, int jobs, int number) {
+  FrameRun run;
+  const int begin = number * size.frames;
+  const int end = std::min(source.frame_count - begin, size.frames) + begin;
+  run.first = std::max(begin - size.overlap, 0);
+  const int last = std::min(source.frame_count - end, size.overlap) + end;
+  run.kept_begin = begin - run.first;
+  run.kept_end = end - run.first;
+  auto clip = load(part_of(source, run.first, last - run.first), jobs);
+  if (!clip) return clip.error();
+  if (source.release) source.release(std::max(end - size.overlap, 0));
+  run.clip = *std::move(clip);
+  return run;
+}
+
 class Blocks {
  public:
   Blocks(FrameSource source, BlockSize size, int jobs, std::function<Status(FrameRun&)> change)
@@ -51,20 +66,11 @@ class Blocks {
   }
 
   Status make(int number) {
-    FrameRun run;
-    const int begin = number * size_.frames;
-    const int end = std::min(source_.frame_count - begin, size_.frames) + begin;
-    run.first = std::max(begin - size_.overlap, 0);
-    const int last = std::min(source_.frame_count - end, size_.overlap) + end;
-    run.kept_begin = begin - run.first;
-    run.kept_end = end - run.first;
-    auto clip = load(part_of(source_, run.first, last - run.first), jobs_);
-    if (!clip) return clip.error();
-    if (source_.release) source_.release(std::max(end - size_.overlap, 0));
-    run.clip = *std::move(clip);
-    if (Status status = change_(run); !status) return status.error();
+    auto run = load_run(source_, size_, jobs_, number);
+    if (!run) return run.error();
+    if (Status status = change_(*run); !status) return status.error();
     std::swap(made_[0], made_[1]);
-    made_[0] = {number, std::make_shared<const FrameRun>(std::move(run))};
+    made_[0] = {number, std::make_shared<const FrameRun>(*std::move(run))};
     return {};
   }
 
@@ -107,6 +113,16 @@ FrameSource changed(const FrameSource& source, std::function<Status(Clip& frames
     return {};
   };
   return result;
+}
+
+Status for_each_run(const FrameSource& source, BlockSize size, int jobs,
+                    const std::function<Status(const FrameRun&)>& use) {
+  for (int number = 0; number * size.frames < source.frame_count; ++number) {
+    const auto run = load_run(source, size, jobs, number);
+    if (!run) return run.error();
+    if (Status status = use(*run); !status) return status;
+  }
+  return {};
 }
 
 FrameSource changed_in_blocks(const FrameSource& source, BlockSize size, int jobs,

@@ -31,6 +31,10 @@ struct BlockSize {
   int overlap = 0;     // frames before and after each block, fewer at the ends of the take
 };
 
+// Passes blocks with their overlap, read on `jobs` threads, to `use` in order.
+Status for_each_run(const FrameSource& source, BlockSize size, int jobs,
+                    const std::function<Status(const FrameRun& run)>& use);
+
 // The frames of `source` after `change`, which needs their neighbours: blocks are read with their
 // overlap on `jobs` threads, changed one at a time and in order, and the last two kept, so frames
 // are to be read about in order: a block that is read again later is changed again. A `change` that

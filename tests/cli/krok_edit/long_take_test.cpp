@@ -42,11 +42,13 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
        {"--mirror", "--scale", "2", "--turn", "90deg", "--on-ground", "-o", "out.anim"}},
       {"krok-edit", {"--filter", "butterworth", "-o", "out.anim"}},
       {"krok-edit", {"--spikes", "-o", "out.anim"}},
-      {"krok-edit", {"--filter", "auto", "-o", "out.anim"}}};
+      {"krok-edit", {"--filter", "auto", "-o", "out.anim"}},
+      {"krok-retarget", {"--onto", "short.bvh", "--scale", "2", "-o", "out.anim"}}};
   for (const auto& [tool, options] : rows) {
     const double few = peak(tool, "short.bvh", options), many = peak(tool, "long.bvh", options);
     EXPECT_LT(many, few + 32) << tool << " " << options[0];
-    EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], 700000);
+    if (tool != "krok-retarget")
+      EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], 700000);
   }
 }
 
