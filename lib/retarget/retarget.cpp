@@ -127,7 +127,7 @@ class Transfer {
 
   // The frames keep `self`, which is this.
   Result<RetargetedFrames> run(const std::shared_ptr<Transfer>& self) {
-    if (options_.progress != nullptr) {
+    if (options_.progress != nullptr && source_.frame_count > 0) {
       options_.progress->begin("retargeting", 2 * at(source_.frame_count));
     }
     const bool by_roles = source_roles_.humanoid && target_roles_.humanoid;
