@@ -277,7 +277,7 @@ void Document::add_channel(tinygltf::Animation& animation, int node, const char*
 int Document::add_skeleton(const Skeleton& skeleton, std::span<const NamedTracks> clips,
                            const std::string& name, const Mat4& stored_to_model) {
   const int first = static_cast<int>(gltf.nodes.size());
-  const JointTracks rest = rest_tracks(skeleton);
+  const JointTracks rest = clips.empty() ? rest_tracks(skeleton) : *clips.front().tracks;
   const auto is_sheared = [&](int j) {
     return std::ranges::any_of(clips, [&](const NamedTracks& clip) {
       return !clip.tracks->joints[j].inner_rotations.empty();

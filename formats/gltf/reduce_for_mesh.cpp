@@ -156,7 +156,56 @@ std::size_t key_count(const JointTracks& tracks) {
   return count;
 }
 
+Vec3f mean_of(std::span<const Vec3f> keys) {
+  Vec3f sum = Vec3f::Zero();
+  for (const Vec3f& key : keys) sum += key;
+  return sum / static_cast<float>(keys.size());
+}
+Quatf mean_of(std::span<const Quatf> keys) {
+  Eigen::Vector4f sum = Eigen::Vector4f::Zero();
+  for (const Quatf& key : keys) sum += key.dot(keys[0]) < 0 ? -key.coeffs() : key.coeffs();
+  return Quatf(sum).normalized();
+}
+
+// Of a joint, `away(a, b)` metres on the mesh.
+template <typename Value, typename Away>
+void choose_rest(std::span<JointTracks> clips, std::size_t joint, Value JointTrack::*rest,
+                 std::vector<Value> JointTrack::*keys, double near, const Away& away) {
+  Value best = clips.front().joints[joint].*rest;
+  std::vector<Value> candidates = {best};
+  for (JointTracks& clip : clips) {
+    JointTrack& track = clip.joints[joint];
+    if ((track.*keys).empty()) (track.*keys).assign(clip.times.size(), track.*rest);
+    if (!(track.*keys).empty()) candidates.push_back(mean_of(std::span<const Value>(track.*keys)));
+  }
+  std::ptrdiff_t most = -1;
+  for (const Value& value : candidates) {
+    const auto count = std::ranges::count_if(clips, [&](const JointTracks& clip) {
+      return std::ranges::all_of(clip.joints[joint].*keys,
+                                 [&](const Value& key) { return away(value, key) < near; });
+    });
+    if (count > most) best = value;
+    most = std::max(most, count);
+  }
+  for (JointTracks& clip : clips) clip.joints[joint].*rest = best;
+}
+
 }  // namespace
+
+void choose_rest(const Model& model, double tolerance, std::span<JointTracks> clips) {
+  constexpr double kNear = 0.3;  // of the tolerance
+  if (clips.empty() || std::ranges::any_of(clips, &JointTracks::are_stretched)) return;
+  const std::vector<double> reaches = reaches_of(model);
+  for (std::size_t j = 0; j < clips.front().joints.size(); ++j) {
+    choose_rest(clips, j, &JointTrack::rest_translation, &JointTrack::translations,
+                kNear * tolerance,
+                [](const Vec3f& a, const Vec3f& b) { return static_cast<double>((a - b).norm()); });
+    choose_rest(clips, j, &JointTrack::rest_rotation, &JointTrack::rotations, kNear * tolerance,
+                [&](const Quatf& a, const Quatf& b) {
+                  return 2 * reaches[j] * static_cast<double>((a.conjugate() * b).vec().norm());
+                });
+  }
+}
 
 MeshError mesh_error(const TrackedMesh& a, const JointTracks& a_tracks, const TrackedMesh& b,
                      const JointTracks& b_tracks, int jobs) {

@@ -28,6 +28,11 @@ struct MeshReduceOptions {
   bool filtered = false;    // see rounded()
 };
 
+// Gives joints the rest values that they keep, nearly, in the largest number of clips of one
+// skeleton, for the fewest tracks; all get tracks of all frames. `tolerance` in metres, on the
+// mesh. Nothing if a joint changes scale.
+void choose_rest(const Model& model, double tolerance, std::span<JointTracks> clips);
+
 // Removes keys of tracks of all frames, and bits of those that stay, while no vertex of `kept`,
 // what is left of `model`, is further than the tolerance from that of `model` with all keys.
 // Joints without vertices keep their place and rotation within a few times the tolerance (about

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "math/quaternion.h"
 #include "tracks/key_reducer_internal.h"
@@ -18,6 +19,9 @@ constexpr std::array<double, 5> kParts = {0.125, 0.25, 0.5, 0.75, 1.0};
 // Then pairs of keys are merged into one where possible, which removes up to a tenth. A top-down
 // search that inserts keys where the error is largest finds about as few in thirty times the time.
 constexpr int kMergePasses = 2;
+
+// Of the tolerance, what tracks without keys may take: in a file each has about 180 bytes of JSON.
+constexpr double kRestPart = 0.6;
 
 class Reducer {
  public:
@@ -61,9 +65,34 @@ class Reducer {
     for (int pass = 0; pass < kMergePasses; ++pass) merge_keys();
   }
 
+  // The tracks that need keys, but can do without: at rest, together, within a part of the
+  // tolerance. Those whose loss is seen least go first.
+  std::vector<std::size_t> tracks_to_rest() {
+    std::vector<std::pair<double, std::size_t>> candidates;
+    tolerance_ = kRestPart * task_.options.tolerance;
+    for (std::size_t track = 0; track < tracks_; ++track) {
+      if (task_.keep[track] != Keep::needed) continue;
+      const double worst = put_to_rest(track);
+      if (worst <= tolerance_) candidates.emplace_back(worst, track);
+      put_back(track);
+    }
+    std::ranges::sort(candidates);
+    std::vector<std::size_t> rested;
+    for (const auto& [worst, track] : candidates) {
+      if (put_to_rest(track) <= tolerance_) {
+        rested.push_back(track);
+      } else {
+        put_back(track);
+      }
+    }
+    return rested;
+  }
+
   StretchResult result() const;
 
  private:
+  double put_to_rest(std::size_t track);
+  void put_back(std::size_t track);
   const Transform& original(std::size_t f, std::size_t joint) const {
     return task_.local[(begin_ + f) * joints_ + joint];
   }
@@ -96,6 +125,35 @@ class Reducer {
   std::vector<std::uint8_t> is_key_;                // [tracks x frames]
   double tolerance_ = 0;
 };
+
+// Without keys in all frames, or up to the first that is beyond the tolerance; the largest error.
+double Reducer::put_to_rest(std::size_t track) {
+  const std::size_t joint = track / kTracksPerJoint;
+  const Transform& rest = task_.options.rest[joint];
+  double worst = 0;
+  for (std::size_t f = 0; f < frames_ && worst <= tolerance_; ++f) {
+    Transform& out = reduced_[f * joints_ + joint];
+    if (track % kTracksPerJoint == 0) {
+      out.position = rest.position;
+    } else {
+      out.orientation = rest.orientation;
+    }
+    for (const int below : task_.below[joint]) {
+      place(f, static_cast<std::size_t>(below));
+      worst = std::max(worst, error(f, static_cast<std::size_t>(below)));
+    }
+  }
+  return worst;
+}
+
+void Reducer::put_back(std::size_t track) {
+  for (std::size_t f = 0; f < frames_; ++f) {
+    set_original(track, f);
+    for (const int below : task_.below[track / kTracksPerJoint]) {
+      place(f, static_cast<std::size_t>(below));
+    }
+  }
+}
 
 // The next key after or before a frame; it must exist.
 std::size_t Reducer::neighbour(std::size_t track, std::size_t f, int step) const {
@@ -279,6 +337,12 @@ double rotation_error(const Quat& original, const Quat& reduced, double reach) {
 double shell_error(const Transform& original, const Transform& reduced, double shell_distance) {
   return (original.position - reduced.position).norm() +
          rotation_error(original.orientation, reduced.orientation, shell_distance);
+}
+
+void put_to_rest(ReductionTask& task) {
+  for (const std::size_t track : Reducer(task, 0, task.times.size()).tracks_to_rest()) {
+    task.keep[track] = Keep::rest;
+  }
 }
 
 StretchResult reduce_stretch(const ReductionTask& task, std::size_t begin, std::size_t end) {

@@ -48,6 +48,10 @@ struct StretchResult {
   int worst_joint = 0, worst_frame = 0;
 };
 
+// Takes all keys from the tracks whose motion is hardly seen, as far as the tolerance allows. For
+// one chunk of frames: it holds all of them several times.
+void put_to_rest(ReductionTask& task);
+
 // The keys of frames [begin, end), two or more or the only one; tracks that move get keys at both
 // ends.
 StretchResult reduce_stretch(const ReductionTask& task, std::size_t begin, std::size_t end);

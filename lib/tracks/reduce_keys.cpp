@@ -198,6 +198,9 @@ Result<Reduction> choose_keys(std::span<const int> parents, std::span<const doub
   auto below = joints_below(task);
   if (!below) return below.error();
   task.below = *std::move(below);
+  if (!options.rest.empty() && options.most_kept > 0 && frames <= kStretch) {
+    tracks_detail::put_to_rest(task);
+  }
   Reduction reduction = reduce_all(task, jobs);
   // Tracks that get all their keys back leave more tolerance to the others, and remove errors that
   // others compensated for. So everything is reduced again, and the result of the last round is

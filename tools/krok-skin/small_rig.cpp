@@ -316,6 +316,9 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
   if (options.quantize || options.compress || options.minify) {
     drop_unused_sets(options.minify, subject.materials, rig.model, context);
   }
+  if (options.minify && options.reduce) {
+    gltf::choose_rest(rig.model, *options.reduce, rig.clips.tracks);
+  }
   if (options.reduce || options.quantize) {
     if (Status status = lose_bits(options, rig, context.jobs); !status) return status.error();
   }
