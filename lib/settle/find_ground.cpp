@@ -16,7 +16,8 @@ namespace {
 
 // Of a person of 1.75 m. Metres per second, seconds.
 constexpr double kRising = 0.3, kShortest = 0.06;
-constexpr double kSoft = 0.06, kFade = 0.2;  // seconds
+constexpr double kSoft = 0.06, kFade = 0.2, kTread = 0.12;  // seconds
+constexpr double kSole = 0.04;                              // metres above the floor
 // A motion follows the ground that touches it about as long and as closely as a level floor.
 constexpr double kLittle = 0.003, kAlike = 0.9, kClearly = 0.2;
 
@@ -103,7 +104,6 @@ GroundFit Settler::fit(const Heights& on_ground, const Heights& over_rest,
     for (const retarget::Stay& stay : touches[b].stays) {
       for (int f = stay.first; f <= stay.last; ++f) {
         const double height = over_rest.of_bodies[b * count + at(f)];
-        if (!hangs_.empty() && hangs_[b * count + at(f)] > 0) continue;
         if (std::isfinite(height)) fit.hover = std::max(fit.hover, height);
       }
     }
@@ -113,43 +113,84 @@ GroundFit Settler::fit(const Heights& on_ground, const Heights& over_rest,
 
 void Settler::find_steps() {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (int f = 0; f < frames(); ++f) {
-    const std::vector<Transform> pose = pose_of(source_, f);
-    lies_.push_back(1 - upright(pose));
-    for (const ragdoll::Body& body : bodies_) {
-      const Vec3& place = pose[at(body.joint)].position;
+  const auto count = at(frames());
+  stands_.assign(bodies_.size() * count, 0);
+  for (std::size_t f = 0; f < count; ++f) {
+    const std::vector<Transform> pose = pose_of(source_, static_cast<int>(f));
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const int joint = bodies_[b].joint, parent = parents_[at(joint)];
+      const Vec3& place = pose[at(joint)].position;
       low = low.cwiseMin(Vec2(place.x(), place.z()));
       high = high.cwiseMax(Vec2(place.x(), place.z()));
+      const Role role = roles_.roles[at(joint)];
+      if (parent < 0 || (role != Role::left_foot && role != Role::right_foot)) continue;
+      const Vec3 shank = (pose[at(parent)].position - place).normalized();
+      stands_[b * count + f] = upright(pose) * smoother_step((shank.y() - 0.3) / 0.4);
     }
   }
   rolled_ = std::make_unique<RolledGround>(ground_, low, high);
   if (!rolled_->has_steps()) rolled_.reset();
 }
 
-double Settler::on_ramp(const SupportPoint& point, int frame) const {
-  if (!rolled_) return 0;
-  const Role role = roles_.roles[at(bodies_[at(point.body)].joint)];
-  return role == Role::left_foot || role == Role::right_foot ? lies_[at(frame)] : 1;
+// A foot that stands keeps to the highest tread that its sole is over in its stay, and swings over
+// the edges from there to the next.
+void Settler::find_treads() {
+  if (!rolled_) return;
+  const auto count = at(frames());
+  const int fade = std::max(1, static_cast<int>(std::lround(kTread * rooted_.rate)));
+  treads_.assign(stands_.size(), 0);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto stands = std::span(stands_).subspan(b * count, count);
+    std::vector<double> near(count, 0);
+    std::vector<retarget::Stay> stays;
+    for (const retarget::Stay& stay : over_source_.touches[b].stays) {
+      const bool goes_on = !stays.empty() && stay.first - stays.back().last <= 2 * fade;
+      if (goes_on) {
+        stays.back().last = stay.last;
+      } else {
+        stays.push_back(stay);
+      }
+    }
+    for (const retarget::Stay& stay : stays) {
+      double tread = -std::numeric_limits<double>::infinity();
+      for (int f = stay.first; f <= stay.last; ++f) {
+        if (stands[at(f)] < 0.5) continue;
+        const std::vector<Transform> pose = pose_of(source_, f);
+        for (std::size_t p = points_of_[b].first; p < points_of_[b].second; ++p) {
+          const Vec3 place = pose[at(bodies_[b].joint)] * points_[p].centre;
+          const auto under = surface_at(ground_, place);
+          if (under && place.y() - floor_ < kSole * scale_) tread = std::max(tread, under->height);
+        }
+      }
+      if (!std::isfinite(tread)) continue;
+      for (int f = std::max(0, stay.first - fade); f <= std::min(frames() - 1, stay.last + fade);
+           ++f) {
+        const int away = std::abs(f - std::clamp(f, stay.first, stay.last));
+        near[at(f)] = 1 - smoother_step(static_cast<double>(away) / fade);
+        treads_[b * count + at(f)] = tread;
+      }
+    }
+    for (std::size_t f = 0; f < count; ++f) stands[f] *= near[f];
+  }
 }
 
 double Settler::over_rest(const SupportPoint& point, const Vec3& place, int frame) const {
-  const double ramp = on_ramp(point, frame);
-  double height = ramp < 1 ? (1 - ramp) * clearance(ground_, place, point.radius) : 0;
-  if (ramp > 0) height += ramp * clearance(*rolled_, place, point.radius);
+  if (!rolled_) return clearance(ground_, place, point.radius);
+  const std::size_t i = at(point.body) * at(frames()) + at(frame);
+  double height = 0;
+  if (stands_[i] > 0) {
+    height += stands_[i] * (treads_.empty() ? clearance(ground_, place, point.radius)
+                                            : place.y() - point.radius - treads_[i]);
+  }
+  if (stands_[i] < 1) height += (1 - stands_[i]) * clearance(*rolled_, place, point.radius);
   return height;
 }
 
 Vec3 Settler::slope_under(const SupportPoint& point, const Vec3& place, int frame) const {
-  const double ramp = on_ramp(point, frame);
-  const auto slope = [&](const Terrain& ground) {
-    const auto under = surface_at(ground, place);
-    const Vec3 up = under ? under->normal : Vec3(Vec3::UnitY());
-    return Vec3(-up.x() / up.y(), 0, -up.z() / up.y());
-  };
-  Vec3 sum = Vec3::Zero();
-  if (ramp < 1) sum += (1 - ramp) * slope(ground_);
-  if (ramp > 0) sum += ramp * slope(*rolled_);
-  return sum;
+  const auto under = surface_at(rolled_ ? static_cast<const Terrain&>(*rolled_) : ground_, place);
+  if (!under) return Vec3::Zero();
+  const double stands = rolled_ ? stands_[at(point.body) * at(frames()) + at(frame)] : 0;
+  return (stands - 1) / under->normal.y() * Vec3(under->normal.x(), 0, under->normal.z());
 }
 
 Status Settler::find_ground() {
@@ -184,6 +225,7 @@ Status Settler::find_ground() {
   lies_already_ = follows_ground_ && fit_.depth <= kNear * scale_;
   if (!follows_ground_) fit_ = fit(on_ground, on_ground, over_floor.touches);
   set_goals(std::move(follows_ground_ ? on_ground : over_floor));
+  if (!follows_ground_) find_treads();
   // What is under the hips, carried over gaps.
   ground_below_.assign(at(frames()), std::numeric_limits<double>::quiet_NaN());
   for (int f = 0; f < frames(); ++f) {

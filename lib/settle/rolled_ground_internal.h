@@ -1,13 +1,14 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "terrain/terrain.h"
 
 namespace krok::settling {
 
-// The ground as a ball of 1.5 m radius rolls over it: what lies across stairs rests on a ramp over
-// the edges of the steps (morphological closing). Nowhere below the ground.
+// The ground as a ball (a paraboloid) of 1.5 m radius rolls over it: what lies across stairs rests
+// on a ramp over the edges of the steps (morphological closing). Nowhere below the ground.
 class RolledGround final : public Terrain {
  public:
   // Over a rectangle on the ground (x, z); beyond it the ground is as it is. `ground` must outlive
@@ -21,16 +22,18 @@ class RolledGround final : public Terrain {
   std::optional<GroundPoint> at(double x, double z, double below) const override;
 
  private:
-  double& cell(std::vector<double>& cells, int column, int row) const {
-    return cells[static_cast<std::size_t>(row * columns_ + column)];
+  void find_heights(const Vec2& extent, double size);
+  void spread(std::span<const float> below, float sign);
+  float cell(int column, int row) const {
+    return heights_[static_cast<std::size_t>(row * columns_ + column)];
   }
   double height(double column, double row) const;  // NaN where there is none
 
   const Terrain& ground_;
   Vec2 low_;
-  double size_ = 0.04;  // of a cell, metres
+  double size_ = 0;  // of a cell, metres
   int columns_ = 0, rows_ = 0;
-  std::vector<double> heights_;  // [rows x columns], NaN where there is no ground
+  std::vector<float> heights_;  // [rows x columns], NaN where there is no ground
   bool has_steps_ = false;
 };
 

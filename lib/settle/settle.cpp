@@ -127,7 +127,6 @@ Settled Settler::finish() {
         const double height = over_rest.of_bodies[b * count + at(f)];
         if (!std::isfinite(height)) continue;
         touch.depth = std::max(touch.depth, -on_ground.of_bodies[b * count + at(f)]);
-        if (!hangs_.empty() && hangs_[b * count + at(f)] > 0) continue;
         touch.hover = std::max(touch.hover, height);
         if (height > highest.first) highest = {height, b * count + at(f)};
       }

@@ -26,7 +26,6 @@ namespace krok::settling {
 inline constexpr double kTolerated = 0.005;  // metres
 // Of a person of 1.75 m, metres: parts touch below the one, and are free above the other.
 inline constexpr double kNear = 0.01, kFar = 0.3;
-inline constexpr double kStep = 0.02;  // what counts as a step
 
 // The places of points of each frame over a ground, and which parts touch it.
 struct Heights {
@@ -38,9 +37,11 @@ struct Heights {
 // What a point is to do in a frame.
 struct Target {
   double weight = 0;
-  double rise = 0;            // metres, from where it is in the source
-  Vec3 place = Vec3::Zero();  // in the source, world
-  Vec3 slope = Vec3::Zero();  // of the ground there: rise over way along x and z
+  double rise = 0;                // metres, from where it is in the source
+  double push = 0;                // metres, what it lacked so far
+  std::optional<double> pressed;  // the rise that brings it on the ground, and beyond by `push`
+  Vec3 place = Vec3::Zero();      // in the source, world
+  Vec3 slope = Vec3::Zero();      // of the ground there: rise over way along x and z
 };
 
 // A joint that may turn.
@@ -83,8 +84,8 @@ class Settler {
   // Over what a part rests on: steps are a ramp, but for the feet of who is upright.
   double over_rest(const SupportPoint& point, const Vec3& place, int frame) const;
   Vec3 slope_under(const SupportPoint& point, const Vec3& place, int frame) const;
-  double on_ramp(const SupportPoint& point, int frame) const;  // 0 to 1
   void find_steps();
+  void find_treads();
   std::vector<double> common_lift(const Heights& source) const;
   void set_goals(Heights source);
   std::vector<Transform> pose_of(const LocalMotion& motion, int frame) const;
@@ -104,7 +105,7 @@ class Settler {
   double add_frames(int first, int last, const Eigen::VectorXd& bend, SmoothSystem& system) const;
   double bend_of(const Freedom& freedom, std::span<const Transform> pose) const;
   void solve_stretch(int first, int last);
-  void correct_targets(int first, int last);
+  double correct_targets(int first, int last);
   double jerk_of(const LocalMotion& motion) const;
 
   const Clip& clip_;
@@ -121,7 +122,8 @@ class Settler {
   double scale_ = 1;  // of a person of 1.75 m
 
   std::unique_ptr<RolledGround> rolled_;  // where there are steps
-  std::vector<double> lies_;              // [frames], 1: the trunk lies, 0: it is upright
+  std::vector<double> stands_;  // [bodies x frames], 1: on a tread, 0: on the ramp over steps
+  std::vector<double> treads_;  // [bodies x frames], heights; empty: what is under each point
   double floor_ = 0;
   bool follows_ground_ = false, lies_already_ = false;
   int without_ground_ = 0;            // frames
@@ -129,13 +131,13 @@ class Settler {
   std::vector<double> ground_below_;  // [frames], above the floor, and the lift: of the hips
   Heights over_source_;
   std::vector<double> goals_, weights_;  // [frames x points]
-  std::vector<double> hangs_;            // [bodies x frames], metres below what is beside it
   std::vector<Target> targets_;          // [frames x points]
   GroundFit fit_;                        // of the source on the ground
 
   std::vector<Freedom> freedoms_;
   std::vector<std::vector<std::size_t>> chains_;  // [bodies], of freedoms
   Values values_;
+  Values near_;  // as the pass before has left them; empty before the first
 };
 
 }  // namespace krok::settling

@@ -23,12 +23,13 @@ constexpr double kShiftAside = one_at(0.05), kShiftUp = one_at(1.0);            
 constexpr double kYaw = one_at(0.05), kTilt = one_at(0.3), kUpright = 60;        // radians
 constexpr double kTrunk = one_at(0.2), kLimb = one_at(0.3), kEnd = one_at(0.5);  // radians
 constexpr double kHinge = one_at(0.5), kAcross = 30;
-constexpr double kShiftBend = one_at(10), kTurnBend = one_at(40);  // metres, radians per second^2
+constexpr double kShiftBend = one_at(10), kTurnBend = one_at(10);  // metres, radians per second^2
 constexpr double kStraight = 0.02;  // radians that knees stay bent, as far as they are
-constexpr double kMaxDepth = 0.03;  // metres: deeper is beside a step
-constexpr double kBeyond = 1.3;     // a correction is partly lost to what it disagrees with
-constexpr double kInGround = 8;     // weight of a point that came into the ground
-constexpr int kPasses = 8, kRounds = 16;
+constexpr double kMaxTurn = 0.8, kBeyond = one_at(0.01);  // radians, of a joint
+constexpr double kMaxLack = 0.03, kMaxPush = 0.1;         // metres, of a pass and of all
+constexpr double kKept = 0.1;    // weight of a part's heights after the first pass
+constexpr double kNearby = 200;  // of staying where the pass before ended: metres, radians
+constexpr int kPasses = 12, kRounds = 16;
 constexpr double kGain = 1e-4;                // share of the errors that a round must take away
 constexpr double kDone = 2e-4;                // metres or radians
 constexpr int kStretch = 480, kOverlap = 60;  // frames
@@ -152,6 +153,12 @@ double Settler::add_damping(int frame, std::span<const Transform> pose, Eigen::M
   matrix.diagonal().head<6>() += own;
   right.head<6>() -= own.cwiseProduct(off.head<6>());
   double errors = 0.5 * off.head<6>().dot(own.cwiseProduct(off.head<6>()));
+  if (!near_.empty()) {
+    const Eigen::VectorXd away = values - near_[at(frame)];
+    matrix.diagonal().array() += kNearby;
+    right -= kNearby * away;
+    errors += 0.5 * kNearby * away.squaredNorm();
+  }
   for (std::size_t i = 1; i < freedoms_.size(); ++i) {
     const Freedom& freedom = freedoms_[i];
     const auto row = static_cast<Eigen::Index>(3 + 3 * i);
@@ -159,6 +166,12 @@ double Settler::add_damping(int frame, std::span<const Transform> pose, Eigen::M
     const Vec3 pull = freedom.damping * off.segment<3>(row);
     right.segment<3>(row) -= pull;
     errors += 0.5 * pull.dot(off.segment<3>(row));
+    if (const double turn = off.segment<3>(row).norm(); turn > kMaxTurn) {
+      const Vec3 axis = off.segment<3>(row) / turn;
+      matrix.block<3, 3>(row, row) += kBeyond * axis * axis.transpose();
+      right.segment<3>(row) -= kBeyond * (turn - kMaxTurn) * axis;
+      errors += 0.5 * kBeyond * (turn - kMaxTurn) * (turn - kMaxTurn);
+    }
     if (!freedom.hinge) continue;
     const double lack = std::min(kStraight, bend_of(freedom, source)) - bend_of(freedom, pose);
     if (!(lack > 0)) continue;
@@ -197,13 +210,15 @@ double Settler::add_goals(int frame, std::span<const Transform> pose, Eigen::Mat
         }
       }
     };
+    const double kept = near_.empty() ? 1 : std::min(1.0, kKept / static_cast<double>(end - begin));
     for (std::size_t p = begin; p < end; ++p) {
       const Target& target = targets_[at(frame) * points_.size() + p];
       const Vec3 place = pose[at(bodies_[b].joint)] * points_[p].centre;
       const Vec3 moved = place - target.place;
-      if (target.weight > 1e-6) {
-        add_row(place, Vec3::UnitY() - target.slope, kOnGround * target.weight,
-                target.rise + target.slope.dot(moved) - moved.y());
+      const double weight = target.pressed ? 1 : kept * target.weight;
+      if (weight > 1e-6) {
+        add_row(place, Vec3::UnitY() - target.slope, kOnGround * weight,
+                target.pressed.value_or(target.rise) + target.slope.dot(moved) - moved.y());
         const double aside = kAside / static_cast<double>(end - begin) * target.weight;
         add_row(place, Vec3::UnitX(), aside, -moved.x());
         add_row(place, Vec3::UnitZ(), aside, -moved.z());
@@ -236,14 +251,18 @@ double Settler::add_frames(int first, int last, const Eigen::VectorXd& bend,
   return sum;
 }
 
-// Levenberg and Marquardt's method.
+// Levenberg and Marquardt's method. The first pass lays the body on the ground as a whole; those
+// after it, each near the one before, press single points on it, and the closest is kept.
 void Settler::solve_stretch(int first, int last) {
+  near_.clear();
   const int before = std::min(first, 2), count = last - first + 1;
   Eigen::VectorXd bend = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(size()), kTurnBend);
   bend.head<3>().setConstant(kShiftBend);
   bend *= std::pow(rooted_.rate, 4);
   SmoothSystem system(count, bend);
   const auto stretch = std::span(values_).subspan(at(first - before), at(count + before));
+  Values closest;
+  double closest_off = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < kPasses; ++pass) {
     Values best(stretch.begin(), stretch.end());
     double least = std::numeric_limits<double>::infinity(), careful = 1e-2;
@@ -270,13 +289,22 @@ void Settler::solve_stretch(int first, int last) {
       if (largest < kDone) break;
     }
     if (add_frames(first, last, bend, system) > least) std::ranges::copy(best, stretch.begin());
-    correct_targets(first, last);
+    const double off = correct_targets(first, last);
+    near_.resize(values_.size());
+    std::ranges::copy(stretch, near_.begin() + first - before);
+    if (off < closest_off) closest.assign(stretch.begin(), stretch.end());
+    closest_off = std::min(off, closest_off);
+    if (off < kTolerated / 2) break;
   }
+  std::ranges::copy(closest, stretch.begin());
 }
 
-// Points that came into the ground are to be on it, and parts that touch and still hover lower.
-void Settler::correct_targets(int first, int last) {
-  parallel_for(at(last - first + 1), 4, options_.jobs, [&](std::size_t begin, std::size_t end) {
+// Points that came into the ground are to be on it, and parts that touch and still hover lower. By
+// the method of multipliers: what they lack is added to what they lacked before. Returns the max
+// height or depth of what should be on the ground.
+double Settler::correct_targets(int first, int last) {
+  std::vector<double> off(at(last - first + 1), 0);
+  parallel_for(off.size(), 4, options_.jobs, [&](std::size_t begin, std::size_t end) {
     std::vector<double> heights(points_.size());
     for (std::size_t f = at(first) + begin; f < at(first) + end; ++f) {
       const std::vector<Transform> pose = moved_pose(static_cast<int>(f));
@@ -288,22 +316,31 @@ void Settler::correct_targets(int first, int last) {
           heights[p] = over_rest(points_[p], place, static_cast<int>(f));
           lowest = std::min(lowest, heights[p]);
         }
+        if (!std::isfinite(lowest)) continue;
+        const bool rests = touches(b, f);
+        off[f - at(first)] = std::max({off[f - at(first)], -lowest, rests ? lowest : 0});
         for (std::size_t p = from; p < to; ++p) {
-          double lower =
-              touches(b, f) && !(hangs_[b * at(frames()) + f] > 0) ? std::max(0.0, lowest) : 0;
-          if (heights[p] < 0) {
-            lower = std::max(heights[p], -kMaxDepth);
-          } else if (lower == 0 || heights[p] > lowest + kTolerated) {
-            continue;
-          }
           Target& target = targets_[f * points_.size() + p];
-          const Vec3 moved = pose[at(bodies_[b].joint)] * points_[p].centre - target.place;
-          target.rise = moved.y() - target.slope.dot(moved) - kBeyond * lower;
-          target.weight = std::max(target.weight, kInGround);
+          const double height = std::max(heights[p], -kMaxLack), above = std::max(lowest, 0.0);
+          const bool lacks = height < 0 || (rests && height <= lowest + kTolerated);
+          double& push = target.push;
+          if (lacks) {
+            push -= std::min(height, above);
+          } else {
+            push = push > 0 ? std::max(0.0, push - height) : std::min(0.0, push + height - above);
+          }
+          push = std::clamp(push, -kMaxPush, kMaxPush);
+          target.pressed.reset();
+          if (!lacks && push == 0) continue;
+          const Vec3 place = pose[at(bodies_[b].joint)] * points_[p].centre;
+          const Vec3 moved = place - target.place;
+          target.slope = slope_under(points_[p], place, static_cast<int>(f));
+          target.pressed = moved.y() - target.slope.dot(moved) - heights[p] + push;
         }
       }
     }
   });
+  return *std::ranges::max_element(off);
 }
 
 void Settler::solve() {
