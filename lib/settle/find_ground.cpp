@@ -16,9 +16,9 @@ namespace {
 
 // Of a person of 1.75 m. Metres per second, seconds.
 constexpr double kRising = 0.3, kShortest = 0.06;
-constexpr double kSoft = 0.06, kFade = 0.2, kTread = 0.12;  // seconds
-constexpr double kSole = 0.04;                              // metres above the floor
+constexpr double kSoft = 0.06, kFade = 0.2, kTread = 0.04;  // seconds
 // A motion follows the ground that touches it about as long and as closely as a level floor.
+constexpr double kStep = 0.02;  // metres
 constexpr double kLittle = 0.003, kAlike = 0.9, kClearly = 0.2;
 
 }  // namespace
@@ -132,45 +132,31 @@ void Settler::find_steps() {
   if (!rolled_->has_steps()) rolled_.reset();
 }
 
-// A foot that stands keeps to the highest tread that its sole is over in its stay, and swings over
-// the edges from there to the next.
+// A foot that stands is on the highest tread that it is over. In the air, and from one tread to
+// another, it is over the ramp, so that nothing jumps.
 void Settler::find_treads() {
   if (!rolled_) return;
   const auto count = at(frames());
-  const int fade = std::max(1, static_cast<int>(std::lround(kTread * rooted_.rate)));
-  treads_.assign(stands_.size(), 0);
+  const int reach = std::max(1, static_cast<int>(std::lround(kTread * rooted_.rate)));
+  const auto softened = [&](std::span<const double> values) {
+    return mean_within(mean_within(max_within(values, 2 * reach), reach), reach);
+  };
+  treads_.assign(stands_.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const auto stands = std::span(stands_).subspan(b * count, count);
-    std::vector<double> near(count, 0);
-    std::vector<retarget::Stay> stays;
-    for (const retarget::Stay& stay : over_source_.touches[b].stays) {
-      const bool goes_on = !stays.empty() && stay.first - stays.back().last <= 2 * fade;
-      if (goes_on) {
-        stays.back().last = stay.last;
-      } else {
-        stays.push_back(stay);
+    const auto treads = std::span(treads_).subspan(b * count, count);
+    std::vector<double> touched(count, 0), changes(count, 0);
+    for (std::size_t f = 0; f < count; ++f) {
+      if (stands_[b * count + f] == 0) continue;
+      const std::vector<Transform> pose = pose_of(source_, static_cast<int>(f));
+      for (std::size_t p = points_of_[b].first; p < points_of_[b].second; ++p) {
+        const auto under = surface_at(ground_, pose[at(bodies_[b].joint)] * points_[p].centre);
+        if (under) treads[f] = std::max(treads[f], under->height);
       }
+      touched[f] = touches(b, f) ? 1 : 0;
+      if (f > 0 && !(std::abs(treads[f] - treads[f - 1]) < kStep)) changes[f - 1] = changes[f] = 1;
     }
-    for (const retarget::Stay& stay : stays) {
-      double tread = -std::numeric_limits<double>::infinity();
-      for (int f = stay.first; f <= stay.last; ++f) {
-        if (stands[at(f)] < 0.5) continue;
-        const std::vector<Transform> pose = pose_of(source_, f);
-        for (std::size_t p = points_of_[b].first; p < points_of_[b].second; ++p) {
-          const Vec3 place = pose[at(bodies_[b].joint)] * points_[p].centre;
-          const auto under = surface_at(ground_, place);
-          if (under && place.y() - floor_ < kSole * scale_) tread = std::max(tread, under->height);
-        }
-      }
-      if (!std::isfinite(tread)) continue;
-      for (int f = std::max(0, stay.first - fade); f <= std::min(frames() - 1, stay.last + fade);
-           ++f) {
-        const int away = std::abs(f - std::clamp(f, stay.first, stay.last));
-        near[at(f)] = 1 - smoother_step(static_cast<double>(away) / fade);
-        treads_[b * count + at(f)] = tread;
-      }
-    }
-    for (std::size_t f = 0; f < count; ++f) stands[f] *= near[f];
+    const std::vector<double> near = softened(touched), moves = softened(changes);
+    for (std::size_t f = 0; f < count; ++f) stands_[b * count + f] *= near[f] * (1 - moves[f]);
   }
 }
 
@@ -183,7 +169,7 @@ double Settler::over_rest(const SupportPoint& point, const Vec3& place, int fram
                                             : place.y() - point.radius - treads_[i]);
   }
   if (stands_[i] < 1) height += (1 - stands_[i]) * clearance(*rolled_, place, point.radius);
-  return height;
+  return stands_[i] > 0 ? std::min(height, clearance(ground_, place, point.radius)) : height;
 }
 
 Vec3 Settler::slope_under(const SupportPoint& point, const Vec3& place, int frame) const {

@@ -35,8 +35,7 @@ struct SettledTouch {
 // How a motion lies on a ground. Metres.
 struct GroundFit {
   double depth = 0;  // max depth of any part in the ground, in any frame
-  double hover =
-      0;  // max height above it of a part that touches, but where the part is over a step
+  double hover = 0;  // max height of a part that touches above what it rests on
 };
 
 struct Settled {
@@ -61,8 +60,8 @@ struct Settled {
 // usual axes, and do not bend backwards. Bones keep their lengths.
 //
 // Where the ground has steps, what lies rests on a ramp over their edges, as a ball rolls over
-// them; the feet of an upright body stand on the treads, and may stand out over an edge. On stairs
-// as steep as in houses some parts stay off by centimetres: the warnings give depth and hover.
+// them; the feet of an upright body stand on the treads, may stand out over an edge, and from one
+// tread to another pass over the ramp. Where a part cannot do both, it rather hovers than sinks in.
 // Points over no ground are free; if there is no ground under the hips in any frame the result is
 // an error.
 //

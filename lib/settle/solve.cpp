@@ -23,13 +23,13 @@ constexpr double kShiftAside = one_at(0.05), kShiftUp = one_at(1.0);            
 constexpr double kYaw = one_at(0.05), kTilt = one_at(0.3), kUpright = 60;        // radians
 constexpr double kTrunk = one_at(0.2), kLimb = one_at(0.3), kEnd = one_at(0.5);  // radians
 constexpr double kHinge = one_at(0.5), kAcross = 30;
-constexpr double kShiftBend = one_at(10), kTurnBend = one_at(10);  // metres, radians per second^2
+constexpr double kShiftBend = one_at(10), kTurnBend = one_at(13);  // metres, radians per second^2
 constexpr double kStraight = 0.02;  // radians that knees stay bent, as far as they are
 constexpr double kMaxTurn = 0.8, kBeyond = one_at(0.01);  // radians, of a joint
 constexpr double kMaxLack = 0.03, kMaxPush = 0.1;         // metres, of a pass and of all
 constexpr double kKept = 0.1;    // weight of a part's heights after the first pass
 constexpr double kNearby = 200;  // of staying where the pass before ended: metres, radians
-constexpr int kPasses = 12, kRounds = 16;
+constexpr int kPasses = 24, kRounds = 4;
 constexpr double kGain = 1e-4;                // share of the errors that a round must take away
 constexpr double kDone = 2e-4;                // metres or radians
 constexpr int kStretch = 480, kOverlap = 60;  // frames
