@@ -17,8 +17,8 @@ namespace {
 // Of a person of 1.75 m. Metres per second, seconds.
 constexpr double kRising = 0.3, kShortest = 0.06;
 constexpr double kSoft = 0.06, kFade = 0.2, kTread = 0.04;  // seconds
+constexpr double kStep = 0.02;                              // metres, from one tread to another
 // A motion follows the ground that touches it about as long and as closely as a level floor.
-constexpr double kStep = 0.02;  // metres
 constexpr double kLittle = 0.003, kAlike = 0.9, kClearly = 0.2;
 
 }  // namespace
@@ -114,7 +114,7 @@ GroundFit Settler::fit(const Heights& on_ground, const Heights& over_rest,
 void Settler::find_steps() {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
   const auto count = at(frames());
-  stands_.assign(bodies_.size() * count, 0);
+  on_tread_.assign(bodies_.size() * count, 0);
   for (std::size_t f = 0; f < count; ++f) {
     const std::vector<Transform> pose = pose_of(source_, static_cast<int>(f));
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -125,15 +125,15 @@ void Settler::find_steps() {
       const Role role = roles_.roles[at(joint)];
       if (parent < 0 || (role != Role::left_foot && role != Role::right_foot)) continue;
       const Vec3 shank = (pose[at(parent)].position - place).normalized();
-      stands_[b * count + f] = upright(pose) * smoother_step((shank.y() - 0.3) / 0.4);
+      on_tread_[b * count + f] = upright(pose) * smoother_step((shank.y() - 0.3) / 0.4);
     }
   }
-  rolled_ = std::make_unique<RolledGround>(ground_, low, high);
+  rolled_ = std::make_unique<RolledGround>(ground_, low, high, options_.jobs);
   if (!rolled_->has_steps()) rolled_.reset();
 }
 
-// A foot that stands is on the highest tread that it is over. In the air, and from one tread to
-// another, it is over the ramp, so that nothing jumps.
+// A foot of an upright body rests on the highest tread that it is over. In the air, and from one
+// tread to another, it is over the ramp, so that nothing jumps.
 void Settler::find_treads() {
   if (!rolled_) return;
   const auto count = at(frames());
@@ -141,12 +141,12 @@ void Settler::find_treads() {
   const auto softened = [&](std::span<const double> values) {
     return mean_within(mean_within(max_within(values, 2 * reach), reach), reach);
   };
-  treads_.assign(stands_.size(), -std::numeric_limits<double>::infinity());
+  treads_.assign(on_tread_.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto treads = std::span(treads_).subspan(b * count, count);
     std::vector<double> touched(count, 0), changes(count, 0);
     for (std::size_t f = 0; f < count; ++f) {
-      if (stands_[b * count + f] == 0) continue;
+      if (on_tread_[b * count + f] == 0) continue;
       const std::vector<Transform> pose = pose_of(source_, static_cast<int>(f));
       for (std::size_t p = points_of_[b].first; p < points_of_[b].second; ++p) {
         const auto under = surface_at(ground_, pose[at(bodies_[b].joint)] * points_[p].centre);
@@ -156,7 +156,7 @@ void Settler::find_treads() {
       if (f > 0 && !(std::abs(treads[f] - treads[f - 1]) < kStep)) changes[f - 1] = changes[f] = 1;
     }
     const std::vector<double> near = softened(touched), moves = softened(changes);
-    for (std::size_t f = 0; f < count; ++f) stands_[b * count + f] *= near[f] * (1 - moves[f]);
+    for (std::size_t f = 0; f < count; ++f) on_tread_[b * count + f] *= near[f] * (1 - moves[f]);
   }
 }
 
@@ -164,19 +164,19 @@ double Settler::over_rest(const SupportPoint& point, const Vec3& place, int fram
   if (!rolled_) return clearance(ground_, place, point.radius);
   const std::size_t i = at(point.body) * at(frames()) + at(frame);
   double height = 0;
-  if (stands_[i] > 0) {
-    height += stands_[i] * (treads_.empty() ? clearance(ground_, place, point.radius)
-                                            : place.y() - point.radius - treads_[i]);
+  if (on_tread_[i] > 0) {
+    height += on_tread_[i] * (treads_.empty() ? clearance(ground_, place, point.radius)
+                                              : place.y() - point.radius - treads_[i]);
   }
-  if (stands_[i] < 1) height += (1 - stands_[i]) * clearance(*rolled_, place, point.radius);
-  return stands_[i] > 0 ? std::min(height, clearance(ground_, place, point.radius)) : height;
+  if (on_tread_[i] < 1) height += (1 - on_tread_[i]) * clearance(*rolled_, place, point.radius);
+  return on_tread_[i] > 0 ? std::min(height, clearance(ground_, place, point.radius)) : height;
 }
 
 Vec3 Settler::slope_under(const SupportPoint& point, const Vec3& place, int frame) const {
   const auto under = surface_at(rolled_ ? static_cast<const Terrain&>(*rolled_) : ground_, place);
   if (!under) return Vec3::Zero();
-  const double stands = rolled_ ? stands_[at(point.body) * at(frames()) + at(frame)] : 0;
-  return (stands - 1) / under->normal.y() * Vec3(under->normal.x(), 0, under->normal.z());
+  const double level = rolled_ ? on_tread_[at(point.body) * at(frames()) + at(frame)] : 0;
+  return (level - 1) / under->normal.y() * Vec3(under->normal.x(), 0, under->normal.z());
 }
 
 Status Settler::find_ground() {

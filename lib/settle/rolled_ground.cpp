@@ -17,8 +17,8 @@ constexpr double kCells = 1e6;                // at most, or larger ones
 
 }  // namespace
 
-RolledGround::RolledGround(const Terrain& ground, const Vec2& low, const Vec2& high)
-    : ground_(ground), low_(low - Vec2::Constant(kReach)) {
+RolledGround::RolledGround(const Terrain& ground, const Vec2& low, const Vec2& high, int jobs)
+    : ground_(ground), jobs_(jobs), low_(low - Vec2::Constant(kReach)) {
   const Vec2 extent = high - low_ + Vec2::Constant(kReach);
   const double size = std::sqrt(extent.prod() / kCells);
   find_heights(extent, std::max(kWide, size));
@@ -67,17 +67,17 @@ void RolledGround::spread(std::span<const float> below, float sign) {
   const int reach = static_cast<int>(below.size() / 2);
   for (const bool along : {true, false}) {
     std::vector<float> to(heights_.size(), -sign * std::numeric_limits<float>::infinity());
-    parallel_for(krok::at(rows_), 16, 0, [&](std::size_t begin, std::size_t end) {
+    parallel_for(krok::at(rows_), 16, jobs_, [&](std::size_t begin, std::size_t end) {
       for (int r = static_cast<int>(begin); r < static_cast<int>(end); ++r) {
         for (int i = -reach; i <= reach; ++i) {
           if (!along && (r + i < 0 || r + i >= rows_)) continue;
           const int first = along ? std::max(0, -i) : 0;
           const int last = along ? std::min(columns_, columns_ - i) : columns_;
-          const float* from = &heights_[krok::at((along ? r : r + i) * columns_)] + (along ? i : 0);
+          const int from = (along ? r : r + i) * columns_ + (along ? i : 0);
           float* own = &to[krok::at(r * columns_)];
           const float lower = sign * below[krok::at(i + reach)];
           for (int c = first; c < last; ++c) {
-            const float value = from[c] - lower;
+            const float value = heights_[krok::at(from + c)] - lower;
             if (sign * value > sign * own[c]) own[c] = value;
           }
         }

@@ -13,7 +13,7 @@ class RolledGround final : public Terrain {
  public:
   // Over a rectangle on the ground (x, z); beyond it the ground is as it is. `ground` must outlive
   // this.
-  RolledGround(const Terrain& ground, const Vec2& low, const Vec2& high);
+  RolledGround(const Terrain& ground, const Vec2& low, const Vec2& high, int jobs = 0);
 
   // Whether there are steps: heights that differ by more than 1.25 of the way from one place to the
   // next (51 degrees).
@@ -30,6 +30,7 @@ class RolledGround final : public Terrain {
   double height(double column, double row) const;  // NaN where there is none
 
   const Terrain& ground_;
+  int jobs_;
   Vec2 low_;
   double size_ = 0;  // of a cell, metres
   int columns_ = 0, rows_ = 0;

@@ -60,8 +60,8 @@ struct Settled {
 // usual axes, and do not bend backwards. Bones keep their lengths.
 //
 // Where the ground has steps, what lies rests on a ramp over their edges, as a ball rolls over
-// them; the feet of an upright body stand on the treads, may stand out over an edge, and from one
-// tread to another pass over the ramp. Where a part cannot do both, it rather hovers than sinks in.
+// them; the feet of an upright body rest on the treads, may reach over an edge, and from one tread
+// to another pass over the ramp. Where a part cannot do both, it rather hovers than sinks in.
 // Points over no ground are free; if there is no ground under the hips in any frame the result is
 // an error.
 //

@@ -122,8 +122,8 @@ class Settler {
   double scale_ = 1;  // of a person of 1.75 m
 
   std::unique_ptr<RolledGround> rolled_;  // where there are steps
-  std::vector<double> stands_;  // [bodies x frames], 1: on a tread, 0: on the ramp over steps
-  std::vector<double> treads_;  // [bodies x frames], heights; empty: what is under each point
+  std::vector<double> on_tread_;  // [bodies x frames], 1: on a tread, 0: on the ramp over steps
+  std::vector<double> treads_;    // [bodies x frames], heights; empty: what is under each point
   double floor_ = 0;
   bool follows_ground_ = false, lies_already_ = false;
   int without_ground_ = 0;            // frames

@@ -107,9 +107,9 @@ double clearance(const Terrain& ground, const Vec3& centre, double radius) {
     return found->height + (below_centre ? radius / found->normal.y() : 0);
   };
   double highest = height(centre.x(), centre.z(), true);
-  if (radius > 0) {
-    constexpr double kAside = 0.7;
-    const double aside = kAside * radius, below = radius * std::sqrt(1 - kAside * kAside);
+  for (const double share : {0.7, 1.0}) {
+    if (radius == 0 || (share < 1 && radius < kSpacing / 4)) continue;
+    const double aside = share * radius, below = radius * std::sqrt(1 - share * share);
     for (const auto& [dx, dz] : {std::pair(aside, 0.0), std::pair(-aside, 0.0),
                                  std::pair(0.0, aside), std::pair(0.0, -aside)}) {
       highest = std::max(highest, height(centre.x() + dx, centre.z() + dz, false) + below);

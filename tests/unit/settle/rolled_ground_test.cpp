@@ -23,7 +23,8 @@ TEST(RolledGround, IsARampOverStairsAndNowhereBelowThem) {
     EXPECT_GE(height, stairs->at(0.1, z, kAnyHeight)->height) << z;
     // The line through the edges: a rise before each run.
     const double edges = 0.17 * ((z + 4) / 0.29 + 1);
-    EXPECT_NEAR(height, edges, 0.05) << z;
+    EXPECT_GT(height, edges - 0.009) << z;  // it sags between them
+    EXPECT_LT(height, edges + 0.004) << z;
     if (i > 0) {
       EXPECT_LT(std::abs(height - before), 0.03) << z;
     }
