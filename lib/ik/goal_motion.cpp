@@ -526,22 +526,31 @@ std::vector<Stretch> stretches_of(const Clip& clip, std::span<const KeyedGoal> g
   return stretches;
 }
 
-void measure_turns(const Clip& clip, GoalMotion& made) {
-  const auto& parents = clip.skeleton.parents;
+// `given` are the frames of the stretches as they were.
+void measure_turns(const Clip& given, std::span<const Stretch> stretches, GoalMotion& made) {
+  const auto& parents = made.clip.skeleton.parents;
+  const int frames = made.clip.frame_count();
+  std::vector<int> kept(at(frames), -1);  // the frame of `given`, of those in a stretch
+  for (int next = 0; const Stretch& stretch : stretches) {
+    for (int f = stretch.first; f <= stretch.last; ++f) kept[at(f)] = next++;
+  }
   const auto relative = [&](const Clip& of, int f, std::size_t j) -> Quat {
     const Quat own = of.frame_orientations(f)[j].cast<double>();
     return parents[j] < 0
                ? own
                : Quat(of.frame_orientations(f)[at(parents[j])].cast<double>().conjugate() * own);
   };
+  const auto relative_before = [&](int f, std::size_t j) {
+    return kept[at(f)] < 0 ? relative(made.clip, f, j) : relative(given, kept[at(f)], j);
+  };
   for (std::size_t j = 0; j < parents.size(); ++j) {
     double most = 0, before = 0;
     int frame = -1;
     bool changed = false;
-    for (int f = 1; f < clip.frame_count(); ++f) {
-      const Quat now = relative(made.clip, f, j), given = relative(clip, f, j);
-      changed = changed || angle_between(now, given) > 1e-6;
-      before = std::max(before, angle_between(relative(clip, f - 1, j), given));
+    for (int f = 1; f < frames; ++f) {
+      const Quat now = relative(made.clip, f, j), was = relative_before(f, j);
+      changed = changed || angle_between(now, was) > 1e-6;
+      before = std::max(before, angle_between(relative_before(f - 1, j), was));
       const double turn = angle_between(relative(made.clip, f - 1, j), now);
       if (turn > most) most = turn, frame = f;
     }
@@ -556,8 +565,11 @@ void measure_turns(const Clip& clip, GoalMotion& made) {
 
 }  // namespace
 
-Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
-                               const Limits& limits, const GoalMotionOptions& options) {
+Result<GoalMotion> apply_goals(Clip motion, std::span<const KeyedGoal> goals, const Limits& limits,
+                               const GoalMotionOptions& options) {
+  GoalMotion result;
+  result.clip = std::move(motion);
+  const Clip& clip = result.clip;
   for (const KeyedGoal& goal : goals) {
     if (Status status = check_goal(goal, clip.skeleton); !status) return status.error();
   }
@@ -565,11 +577,17 @@ Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goal
   if (auto solver = Solver::create(clip.skeleton.parents, limits, options.solver); !solver) {
     return solver.error();
   }
-  GoalMotion result;
-  result.clip = clip;
   const std::size_t frames = at(clip.frame_count());
   std::vector<GoalFrame> report(frames * goals.size());
   const std::vector<Stretch> stretches = stretches_of(clip, goals);
+  Clip given;  // what frames are solved from: each is read before it is written
+  given.skeleton = clip.skeleton;
+  for (const Stretch& stretch : stretches) {
+    const auto begin = stretch.first * std::ptrdiff_t{clip.joint_count()};
+    const auto end = (stretch.last + 1) * std::ptrdiff_t{clip.joint_count()};
+    given.orientations.insert(given.orientations.end(), clip.orientations.begin() + begin,
+                              clip.orientations.begin() + end);
+  }
   std::vector<Status> failed(stretches.size());
   std::vector<double> excesses(stretches.size(), 0.0);
   parallel_for(stretches.size(), 1, options.jobs, [&](std::size_t begin, std::size_t end) {
@@ -602,7 +620,7 @@ Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goal
     }
     result.changed_frames += changed ? 1 : 0;
   }
-  measure_turns(clip, result);
+  measure_turns(given, stretches, result);
   return result;
 }
 

@@ -89,8 +89,8 @@ struct GoalMotionOptions {
 //
 // Codes: ik-goal for a goal that Solver refuses, keys whose times do not increase, no keys; those
 // of Solver::create.
-Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
-                               const Limits& limits, const GoalMotionOptions& options = {});
+Result<GoalMotion> apply_goals(Clip clip, std::span<const KeyedGoal> goals, const Limits& limits,
+                               const GoalMotionOptions& options = {});
 
 // A goal as it stands in a frame of a motion, whatever its strength: target and orientation in the
 // world, the support where its joints stand. The goal is one that apply_goals() takes.

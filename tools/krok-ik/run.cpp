@@ -206,6 +206,7 @@ class Run {
   Status plant_first();
   bool is_gaze(const PointGoal& point) const;
   Status turn_eyes(Clip& clip);
+  Clip take_motion();
   Result<int> finish_without_goals();
   void note_provenance(Clip& clip, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
@@ -462,10 +463,19 @@ Status Run::plant_first() {
   return {};
 }
 
+// The motion to be changed. Frames that nothing shows later are not kept, skeleton and rate are.
+Clip Run::take_motion() {
+  Clip taken = options_.plot.empty() ? std::move(clip_) : clip_;
+  clip_.skeleton = taken.skeleton;
+  clip_.rate = taken.rate;
+  return taken;
+}
+
 // What was done to the motion, after what it says of itself.
 void Run::note_provenance(Clip& clip, const std::string& line) const {
+  std::vector<std::string> conversions = std::move(clip.provenance.conversions);
   clip.provenance = context_.provenance();
-  clip.provenance.conversions = clip_.provenance.conversions;
+  clip.provenance.conversions = std::move(conversions);
   for (const std::string& done : {planting_line_, line}) {
     if (!done.empty()) clip.provenance.conversions.push_back(done);
   }
@@ -478,7 +488,7 @@ Result<int> Run::finish_without_goals() {
     context_.log(fmt::format("{}: {}", options_.write_limits, limits_summary(limits_)));
     return kExitDone;
   }
-  Clip planted = clip_;
+  Clip planted = take_motion();
   if (Status status = turn_eyes(planted); !status) return status.error();
   note_provenance(planted, gaze_.empty() ? "" : kTurnedEyes);
   if (Status status = write(&planted); !status) return status.error();
@@ -552,12 +562,12 @@ Result<int> Run::run() {
   how.solver = solver_;
   how.jobs = context_.jobs;
   if (roles_.humanoid) how.upright = roles_.joints(Role::head);
-  auto made = krok::ik::apply_goals(clip_, goals_, limits_, how);
+  auto made = krok::ik::apply_goals(take_motion(), goals_, limits_, how);
   if (!made) {
     return std::move(made).error().in_file(options_.goals.empty() ? options_.input
                                                                   : options_.goals);
   }
-  const Outcome outcome{clip_, goals_, limits_, *made};
+  const Outcome outcome{options_.plot.empty() ? made->clip : clip_, goals_, limits_, *made};
   Diagnostics missed_ones = missed_goals(outcome);
   const bool all_reached = missed_ones.empty();
   for (Diagnostic& missed : missed_ones) {
@@ -565,24 +575,26 @@ Result<int> Run::run() {
     context_.diagnose(std::move(missed));
   }
   const std::string line = "inverse kinematics: " + summary(outcome);
-  Clip turned = made->clip;
-  if (Status status = turn_eyes(turned); !status) return status.error();
-  note_provenance(turned, line);
   std::string chart;
   if (!options_.plot.empty()) {
     auto svg = draw::to_svg(chart_of(outcome, name_of_input(options_.input)));
     if (!svg) return svg.error();
     chart = std::move(*svg);
   }
-  if (Status status = write(&turned, chart); !status) return status.error();
-  context_.report.result = to_json(outcome);
+  Json result = to_json(outcome);
+  const std::string joints = context_.verbose ? table(outcome) : std::string();
+  // Eyes may be added to the skeleton.
+  if (Status status = turn_eyes(made->clip); !status) return status.error();
+  note_provenance(made->clip, line);
+  if (Status status = write(&made->clip, chart); !status) return status.error();
+  context_.report.result = std::move(result);
   if (!gaze_.empty()) context_.report.result["gaze"] = std::move(gaze_);
   if (options_.plant) {
     context_.report.result["plant"] = std::move(planting_);
     context_.log(fmt::format("{}: {}", context_.output, planting_line_));
   }
   context_.log(fmt::format("{}: {}", context_.output, summary(outcome)));
-  if (context_.verbose) context_.log(table(outcome));
+  if (context_.verbose) context_.log(joints);
   return options_.strict && !all_reached ? kExitNo : kExitDone;
 }
 
