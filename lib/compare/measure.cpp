@@ -6,13 +6,12 @@
 namespace krok::compare {
 
 void Totals::merge(const Totals& later) {
-  if (later.largest > largest) {
-    largest = later.largest;
-    where = later.where;
-  }
-  square_sum += later.square_sum;
-  count += later.count;
-  over += later.over;
+  const double squares = square_sum + later.square_sum;
+  const std::int64_t values = count + later.count, beyond = over + later.over;
+  add(later.largest, later.where);
+  square_sum = squares;
+  count = values;
+  over = beyond;
 }
 
 double Totals::rms() const {

@@ -43,7 +43,8 @@ struct ValueLocation {
 };
 
 // Accumulates differences of one quantity. Adding in the same order is bit-reproducible; of equal
-// maxima, the first gives the location.
+// maxima, the first gives the location; of joints also if they are equal but for rounding: what
+// hangs on a joint that was turned is turned as far.
 struct Totals {
   double tolerance = 0;
   double largest = 0;
@@ -59,8 +60,11 @@ struct Totals {
   void add(double difference, const ValueLocation& place) {
     difference = finite_or_infinite(difference);
     if (difference > largest) {
+      constexpr double kRounding = 1e-4;
+      const bool hangs_on_it = largest > 0 && where.joint >= 0 && place.joint > where.joint &&
+                               difference <= (1 + kRounding) * largest;
       largest = difference;
-      where = place;
+      if (!hangs_on_it) where = place;
     }
     square_sum += difference * difference;
     over += difference > tolerance ? 1 : 0;

@@ -12,6 +12,7 @@ namespace krok {
 namespace {
 
 constexpr double kLongestStep = 3;  // seconds, from a place to the next
+constexpr double kAlike = 0.5;      // of the longer of two strides, and of the hips' way
 
 struct FootPlace {
   std::size_t side = 0;  // FootSide
@@ -58,16 +59,32 @@ StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
   if (ankles[0] < 0 || ankles[1] < 0 || clip.frame_count() == 0) return measures;
   const std::vector<FootPlace> places = places_of(clip, ankles, keytimes);
   std::vector<double> speeds, strides, widths;
+  int pairs = 0, alike = 0;
+  Vec3 before = Vec3::Zero();  // the stride of the step before
+  bool follows = false;
+  const int hips = roles.joint(Role::hips);
   std::array<std::vector<double>, 2> lengths;
   for (std::size_t i = 0; i + 2 < places.size(); ++i) {
     const FootPlace &first = places[i], &between = places[i + 1], &next = places[i + 2];
     if (first.side == between.side || first.side != next.side ||
         between.time - first.time > kLongestStep || next.time - between.time > kLongestStep) {
+      follows = false;
       continue;
     }
     const Vec3 stride(next.place.x() - first.place.x(), 0, next.place.z() - first.place.z());
     const double length = stride.norm();
     ++measures.steps;
+    if (follows) {
+      ++pairs;
+      const double longer = std::max(stride.squaredNorm(), before.squaredNorm());
+      const Vec3 carried = hips < 0 ? stride
+                                    : mean_position(clip, hips, next.time, next.time) -
+                                          mean_position(clip, hips, first.time, first.time);
+      const bool goes_on = stride.dot(before) > kAlike * longer;
+      alike += goes_on && stride.dot(carried) > kAlike * stride.squaredNorm() ? 1 : 0;
+    }
+    before = stride;
+    follows = true;
     strides.push_back(length);
     speeds.push_back(length / (next.time - first.time));
     if (!(length > 0)) continue;
@@ -80,6 +97,7 @@ StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
   measures.stride_length = median_if_any(strides);
   measures.step_length = {median_if_any(lengths[0]), median_if_any(lengths[1])};
   measures.step_width = median_if_any(widths);
+  if (pairs > 0) measures.steadiness = static_cast<double>(alike) / pairs;
   return measures;
 }
 

@@ -20,6 +20,16 @@ struct StepMeasures {
   std::optional<double> stride_length;  // between two places of one foot
   std::array<std::optional<double>, 2> step_length;  // left, right: ahead of the other foot
   std::optional<double> step_width;                  // negative if the feet cross the middle
+  // The share of strides that go on like the one before, of the other foot, and take the hips
+  // along: nearly all of a walk or run, few of a dance or a fight.
+  std::optional<double> steadiness;
+
+  // Steps that go to and fro are no gait. Of steps on the spot, or of one alone, it cannot be
+  // known.
+  bool are_steady() const {
+    constexpr double kOnTheSpot = 0.2, kMinSteadiness = 0.5;  // metres; share
+    return stride_length.value_or(0) < kOnTheSpot || steadiness.value_or(1) >= kMinSteadiness;
+  }
 };
 
 // A foot's place is the mean position of its ankle in the middle third of a stance, which is from a

@@ -55,7 +55,9 @@ std::string footer(const ToolSpec& spec) {
   if (!spec.exit_no.empty()) text += fmt::format("  1  {}\n", spec.exit_no);
   text += "  2  error: usage, input or output; no partial output is left\n";
   if (!spec.exit_partly.empty()) text += fmt::format("  3  {}\n", spec.exit_partly);
-  if (spec.batch) text += "  3  with --keep-going: some files failed, all others were processed\n";
+  if (spec.batch || spec.keeps_going) {
+    text += "  3  with --keep-going: some files failed, all others were processed\n";
+  }
   return text;
 }
 
@@ -218,7 +220,11 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
   }
   if (form == Form::single || form == Form::many) {
     shape_help(app_, spec);
-    if (spec.batch) declare_for_many();
+    if (spec.batch) {
+      declare_for_many();
+    } else if (spec.keeps_going) {
+      declare_keep_going("Leave out inputs that cannot be used");
+    }
     declare_common(spec);
   } else if (form == Form::one_file) {
     app_.add_option("-o,--output", output);
@@ -276,6 +282,10 @@ void CommandLine::declare_common(const ToolSpec& spec) {
       .group(kCommon);
 }
 
+void CommandLine::declare_keep_going(const char* help) {
+  app_.add_flag("--keep-going", keep_going, help)->group(kMany);
+}
+
 void CommandLine::declare_for_many() {
   app_.add_option("--out-dir", out_dir,
                   "Process many inputs (files, folders, patterns such as 'takes/**/*.bvh'); write "
@@ -295,9 +305,11 @@ void CommandLine::declare_for_many() {
   app_.add_option("--shard", shard, "Process only part I of N of the list")
       ->type_name("I/N")
       ->group(kMany);
-  app_.add_flag("--keep-going", keep_going,
-                "Continue after a file fails; by default, the first failure ends the run")
-      ->group(kMany);
+  declare_keep_going(keeps_going_
+                         ? "Continue after a file fails, also where all files make one output; by "
+                           "default, the first failure ends the run"
+                         : "Continue after a file fails; by default, the first failure ends the "
+                           "run");
   app_.add_flag("--force", force, "Rebuild outputs that are up to date (same input and options)")
       ->group(kMany);
 }

@@ -95,6 +95,7 @@ class CommandLine {
   void take_many_inputs();
   void declare_common(const ToolSpec& spec);
   void declare_for_many();
+  void declare_keep_going(const char* help);
   void note_given();
   Status open_folders();
   Status check_use_of_batch_options() const;

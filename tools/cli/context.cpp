@@ -49,6 +49,21 @@ void ToolContext::warn(std::string code, std::string message, std::string hint) 
   diagnose(make_warning(std::move(code), std::move(message), std::move(hint)));
 }
 
+Status ToolContext::leave_out(const std::string& path, Error error, std::size_t inputs) {
+  if (error.where.file.empty()) error.where.file = path;
+  if (inputs < 2) return error;
+  if (!keep_going) {
+    error.hint += fmt::format("{}--keep-going leaves it out", error.hint.empty() ? "" : "; ");
+    return error;
+  }
+  Diagnostic diagnostic = error;
+  diagnostic.severity = Severity::warning;
+  diagnostic.hint = "left out";
+  diagnose(std::move(diagnostic));
+  left_out.insert(path);
+  return {};
+}
+
 void ToolContext::log(const std::string& line) {
   if (quiet || report_on_standard_output || (!verbose && one_of_many != nullptr)) return;
   if (files_with_report.empty()) {

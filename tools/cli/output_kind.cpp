@@ -24,7 +24,8 @@ std::string maker_of(Kind kind, Kind from) {
     case Kind::character:
       return "krok-import --save-character writes one of a GLB or FBX file";
     case Kind::model:
-      return "krok-body creates a .model file for a .anim file";
+      return "krok-import --save-model writes one of a GLB or FBX file, krok-body makes one for a "
+             "motion";
     case Kind::anim:
       return "krok-import converts captures to .anim files";
     default:

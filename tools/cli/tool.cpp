@@ -168,12 +168,16 @@ int run_single(const ToolSpec& spec, const CommandLine& line) {
         return std::ranges::find(option.values, error.where.file) != option.values.end();
       });
       error.hint = of_option ? "give one of its files"
-                             : "to process a folder, use --out-dir DIR instead of -o";
+                   : !spec.folder_endings.empty()
+                       ? "a folder is given without NAME=, which names a single motion"
+                       : "to process a folder, use --out-dir DIR instead of -o";
     }
     return fail(context, report, error);
   }
   if (!standard_output_written()) return fail(context, report, standard_output_error());
-  return finish(context, report, *done);
+  const bool partly = *done == kExitDone && !context.left_out.empty();
+  if (partly) context.log(fmt::format("{} left out", counted(context.left_out.size(), "input")));
+  return finish(context, report, partly ? kExitPartly : *done);
 }
 
 // For a command line that cannot be parsed.

@@ -57,7 +57,8 @@ class ToolContext : public io::Inputs {
   // The files that this run writes: -o, --json=FILE and every option whose value is named OUT... in
   // the help. open_input rejects them.
   std::vector<std::string> destinations;
-  bool keep_going = false;  // of many inputs, those that cannot be used are left out
+  bool keep_going = false;              // see leave_out()
+  std::set<std::string> left_out = {};  // inputs
   // Report path: --json=FILE, "-", or empty.
   std::string report_path;
   // Outputs of a single run that wait for its report; all are put in place together.
@@ -77,6 +78,10 @@ class ToolContext : public io::Inputs {
   void diagnose(Diagnostic diagnostic) override;
   using io::Inputs::diagnose;
   void warn(std::string code, std::string message, std::string hint = {});
+
+  // For an input, one of `inputs` for one output, that cannot be used: fails with its error, or
+  // warns with --keep-going, for exit code 3. An output of nothing is for the caller to refuse.
+  Status leave_out(const std::string& path, Error error, std::size_t inputs);
 
   // Prints a status line on standard error; not with -q or with --json to standard output. In batch
   // mode only with -v. Lines that follow outputs are held back with those.

@@ -26,4 +26,9 @@ inline Error no_output_for(const std::string& input) {
                 : no_output();
 }
 
+// Of several inputs, with --keep-going.
+inline Error none_can_be_used() {
+  return {"inputs-none", "none of the inputs can be used"};
+}
+
 }  // namespace krok::cli

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "character/space.h"
 #include "core/file.h"
 #include "core/numbers.h"
@@ -244,10 +246,13 @@ Result<int> run(const Options& given, ToolContext& context) {
   Options options = given;
   if (context.output.empty() && options.model.empty() && options.cam.empty() &&
       options.character.empty() && options.morphs.empty() && options.weights.empty()) {
+    std::error_code unknown;
+    const bool is_folder = std::filesystem::is_directory(options.input, unknown);
     return Error("usage",
                  "nothing to write: none of -o, --save-model, --save-character, --save-cam, "
                  "--save-morphs is given",
-                 "write the motion with -o OUTPUT.anim");
+                 is_folder ? "write a motion for each file of the folder with --out-dir DIR"
+                           : "write the motion with -o OUTPUT.anim");
   }
   if (!options.model.empty() && options.model == context.output) {
     return Error("usage", "-o and --save-model name the same file");

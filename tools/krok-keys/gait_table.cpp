@@ -46,7 +46,7 @@ std::string row_of(const std::string& name, double duration, const GaitFacts& fa
            facts.is_run() ? std::nullopt : std::optional(1000 * slide)}) {
     row += value ? "," + readable(*value, 4) : ",";
   }
-  return row + (steps_known ? facts.is_run() ? ",run\n" : ",walk\n" : ",\n");
+  return fmt::format("{},{}\n", row, steps_known ? facts.name() : "");
 }
 
 using Rows = Result<std::string>(const std::string& path, const io::FindRoles& find_roles,

@@ -115,6 +115,7 @@ void declare(CommandOptions& command, Options& o) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-keys", options, declare, nullptr, run);
+  spec.keeps_going = true;
   spec.summary = "Detects foot contacts and gait keytimes; shows and saves them";
   spec.details =
       "They are written to an editable file beside the motion, or with -o OUT.csv as a table.";

@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "contacts/step_measures.h"
 #include "core/numbers.h"
 #include "draw/difference_chart.h"
 #include "formats/io/open_motion.h"
@@ -16,6 +17,7 @@
 #include "motion/joint_selection.h"
 #include "terrain/level.h"
 #include "tools/cli/file_name.h"
+#include "tools/cli/usage.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/shown_ground.h"
 
@@ -156,6 +158,15 @@ class MotionChart {
                     fmt::format("{} of {} have no whole gait cycle and are left out",
                                 motions_.files.size() - static_cast<std::size_t>(cycles.motions),
                                 counted(static_cast<long long>(motions_.files.size()), "motion")));
+    }
+    const auto is_unsteady = [](const draw::ChartedMotion& motion) {
+      return !step_measures(*motion.clip, *motion.roles, motion.keys.keytimes).are_steady();
+    };
+    if (const auto unsteady = std::ranges::count_if(motions_.charted, is_unsteady); unsteady > 0) {
+      context_.warn("plot-cycles",
+                    fmt::format("{} of {} step to and fro, as in a dance: the mean has them, too",
+                                unsteady, counted(motions_.files.size(), "motion")),
+                    "krok keys IN... --table OUT.csv names the gait of each file");
     }
     const int all = cycles.counts[0] + cycles.counts[1];
     if (10 * std::min(cycles.runs, all - cycles.runs) > all) {
@@ -338,7 +349,11 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
   const bool of_cycles = std::ranges::find(charts, ChartKind::cycles) != charts.end();
   for (const std::string& path : inputs) {
     auto clip = io::open_motion(path, context);
-    if (!clip) return std::move(clip).error().in_file(path);
+    if (!clip) {
+      Status status = context.leave_out(path, std::move(clip).error(), inputs.size());
+      if (!status) return status.error();
+      continue;
+    }
     auto roles = (*find_roles_of)(clip->skeleton);
     if (!roles) return roles.error();
     motions.files.push_back({path, std::move(*clip), std::move(*roles)});
@@ -356,6 +371,7 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
     charted.keys = std::move(*keys);
     motions.charted.push_back(std::move(charted));
   }
+  if (motions.files.empty()) return none_can_be_used();
   auto ground = read_ground(options, motions, context);
   if (!ground) return ground.error();
   motions.ground = *std::move(ground);

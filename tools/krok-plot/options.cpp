@@ -229,6 +229,7 @@ bool Options::plots_tables() const {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-plot", options, declare, nullptr, run);
+  spec.keeps_going = true;
   spec.summary = "Plots motions and numeric tables as charts: SVG, PDF, PNG";
   spec.details = "Contact sheets and strips of a motion are PNG.";
   spec.inputs = "IN...";

@@ -135,6 +135,7 @@ const char* ending_of(Format format) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-render", options, declare, check, run);
+  spec.keeps_going = true;
   spec.summary = "Renders films of motions and characters: mp4, gif, webp, PNG frames";
   spec.details = "ffmpeg makes mp4, gif and webp.";
   spec.inputs = "IN...";

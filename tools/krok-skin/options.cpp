@@ -135,7 +135,10 @@ Status check(const Options& options) {
   if (options.has_weights_by_clip() && options.motions.empty()) {
     return usage("{clip} in the name of --weights needs a motion");
   }
-  if (options.retarget && options.motions.empty()) return usage("--retarget needs a motion");
+  if (options.retarget && options.motions.empty()) {
+    return usage("--retarget needs a mesh and motions",
+                 "the mesh comes first: krok-skin hero.glb takes --retarget -o hero_clips.glb");
+  }
   if (!options.weights.empty() && options.morphs.empty() &&
       extension(options.subject) == ".model") {
     return usage("--weights needs morph targets", "add --morph IN.exr; a .character has its own");
@@ -244,7 +247,7 @@ ToolSpec make_spec() {
       {"krok-skin body.model walk.anim --as baked -o baked.glb",
        "baked vertex animation, for viewers without skinning"},
       {"krok-skin body.model walk.anim -o walk.pc2", "a point cache for Blender or 3ds Max"}};
-  spec.batch = {{".anim", ".kanim"}, always(".glb")};
+  spec.batch = {io::motion_endings(), always(".glb")};
   return spec;
 }
 

@@ -135,11 +135,7 @@ Result<int> run(const Options& given, ToolContext& context) {
                                     ? counted(subject->model.skeleton.joint_count(), "joint")
                                     : counted(subject->model.vertex_count(), "vertex", "vertices"),
                                 counted(frames, "frame"), clips_text(*subject)));
-  if (subject->left_out > 0) {
-    context.log(fmt::format("{} left out", counted(subject->left_out, "motion")));
-  }
-  return written->exit_code == kExitDone && subject->left_out > 0 ? kExitPartly
-                                                                  : written->exit_code;
+  return written->exit_code;
 }
 
 }  // namespace krok::cli::skin

@@ -185,7 +185,11 @@ class Loader {
     if (!clip || !options_.retarget) return clip;
     const RoleMap roles = find_roles(clip->skeleton);
     auto moved = krok::retarget::transfer(*clip, roles, target_, target_roles_, how_);
-    if (!moved) return std::move(moved).error().in_file(path);
+    if (!moved) {
+      // No motion goes onto such a mesh.
+      const bool of_mesh = roles.humanoid && !target_roles_.humanoid;
+      return std::move(moved).error().in_file(of_mesh ? options_.subject : path);
+    }
     const Outcome outcome{clip->skeleton, roles, target_.skeleton, target_roles_, moved->report};
     context_.diagnose_in(path, choices_of(outcome, false));
     if (context_.verbose) context_.log(fmt::format("{}: {}", path, summary(outcome)));
@@ -200,21 +204,15 @@ class Loader {
     how_.jobs = context_.jobs;
   }
 
-  // A motion that cannot be used is an error, or with --keep-going a warning while others are left.
   Status leave_out(std::size_t motion, Error error) {
-    if (options_.motions.size() == 1) return error;
-    if (!context_.keep_going) {
-      error.hint += fmt::format("{}--keep-going leaves it out", error.hint.empty() ? "" : "; ");
-      return error;
-    }
-    Diagnostic diagnostic = error;
-    diagnostic.severity = Severity::warning;
-    diagnostic.hint = "left out";
-    context_.diagnose(std::move(diagnostic));
+    const bool of_mesh = error.where.file == options_.subject;
+    Status status = of_mesh ? Status(std::move(error))
+                            : context_.leave_out(options_.motions[motion], std::move(error),
+                                                 options_.motions.size());
+    if (!status) return status;
     const auto place = static_cast<std::ptrdiff_t>(motion);
     options_.motions.erase(options_.motions.begin() + place);
     options_.clip_names.erase(options_.clip_names.begin() + place);
-    ++subject_.left_out;
     return {};
   }
 

@@ -44,8 +44,6 @@ struct Subject {
   };
   std::vector<Motion> others;  // on the same skeleton, for --as rig and motion; names are unique
 
-  int left_out = 0;  // motions that could not be used
-
   MorphSet morphs;       // may have no targets
   MorphWeights weights;  // at the frames of `clip`, for the targets of `morphs`; or empty
 

@@ -30,6 +30,7 @@
 #include "roles/roles.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/tool.h"
+#include "tools/cli/usage.h"
 #include "tools/shared/goal_input.h"
 #include "tools/shared/keys_sidecar.h"
 
@@ -402,9 +403,11 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
   Files files;
   for (const std::string& path : options.inputs) {
     if (Status status = add_file(path, options.keys, context, files); !status) {
-      return status.error();
+      status = context.leave_out(path, std::move(status).error(), options.inputs.size());
+      if (!status) return status.error();
     }
   }
+  if (context.left_out.size() == options.inputs.size()) return none_can_be_used();
   share_models(files);
   if (Status status = show_ragdoll_bodies(options.bodies, context, files); !status) {
     return status.error();

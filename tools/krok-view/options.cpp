@@ -69,6 +69,7 @@ void declare(CommandOptions& command, Options& options) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-view", options, declare, nullptr, run);
+  spec.keeps_going = true;
   spec.summary = "Makes an HTML page that plays motions offline in any browser";
   spec.details = "It shows characters and cameras, too, on any ground with footprints.";
   spec.inputs = "IN...";

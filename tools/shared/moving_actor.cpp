@@ -23,6 +23,7 @@
 #include "roles/body_frame.h"
 #include "skin/scene_of.h"
 #include "tools/cli/file_name.h"
+#include "tools/cli/usage.h"
 #include "tools/shared/bone_actor.h"
 #include "tools/shared/drawn_scene.h"
 
@@ -346,9 +347,11 @@ Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& pat
   const SkinMethod method = options.method;
   for (std::size_t place = 0; place < paths.size(); ++place) {
     if (Status status = add_file(paths[place], place, options, context, read); !status) {
-      return status.error();
+      status = context.leave_out(paths[place], std::move(status).error(), paths.size());
+      if (!status) return status.error();
     }
   }
+  if (!paths.empty() && context.left_out.size() == paths.size()) return none_can_be_used();
   share_models(bones, read);
   if (Status status = make_bodies(options.body, context, read); !status) return status.error();
   for (auto* list : {&read.models, &read.motions}) {

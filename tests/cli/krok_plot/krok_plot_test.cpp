@@ -66,6 +66,36 @@ TEST_F(KrokPlot, CyclesAreOfAllTakesAndKeysNeedNotBeThere) {
   expect_trouble({kWalk, "--show", "cycles", "--to", "0.3s"}, "plot-cycles", "no whole gait cycle");
 }
 
+// Would fail if one broken file of a folder kept the chart, the sheet or the page from all others.
+TEST_F(KrokPlot, WhatCannotBeReadIsLeftOutWhereThatIsAskedFor) {
+  put("broken.bvh", "HIERARCHY nothing");
+  const std::vector<std::string> inputs = {kWalk, path("broken.bvh"), kTurn};
+  const auto run = [&](const char* tool, std::vector<std::string> options) {
+    options.insert(options.begin(), inputs.begin(), inputs.end());
+    return run_tool(tool, options);
+  };
+  for (const auto& [tool, output] :
+       {std::pair{"krok-plot",
+                  std::vector<std::string>{"--show", "cycles", "-o", path("angles.svg")}},
+        {"krok-plot", {"--sheet", path("sheet.png")}},
+        {"krok-view", {"-o", path("page.html")}}}) {
+    const ToolRun stopped = run(tool, output);
+    EXPECT_EQ(stopped.exit_code, 2) << tool;
+    EXPECT_THAT(stopped.err, HasSubstr("--keep-going leaves it out")) << tool;
+    EXPECT_FALSE(std::filesystem::exists(output.back()));
+    std::vector<std::string> going = output;
+    going.emplace_back("--keep-going");
+    const ToolRun done = run(tool, going);
+    EXPECT_EQ(done.exit_code, 3) << tool << done.err;
+    EXPECT_THAT(done.err,
+                AllOf(HasSubstr("broken.bvh:1:11: warning"), HasSubstr("1 input left out")));
+  }
+  const ToolRun none = run_tool("krok-plot", {path("broken.bvh"), path("broken.bvh"), "--show",
+                                              "cycles", "--keep-going", "-o", path("none.svg")});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_TRUE(has_code(none.err, "inputs-none")) << none.err;
+}
+
 TEST_F(KrokPlot, ChartsAreWhatTheirNamesSay) {
   const auto into = [&](const std::string& name, const std::string& folders) {
     return test::run({"/usr/bin/env", "PATH=" + folders, test::tools_folder() + "/krok-plot", kWalk,

@@ -37,6 +37,29 @@ ClipDifference compare(const Clip& a, const Clip& b) {
   return found.ok() ? *found : ClipDifference();
 }
 
+// Would fail if the hand were blamed for what the arm does: all that hangs on a joint turns as far,
+// but for rounding.
+TEST(ClipDifference, OfATurnedLimbTheTopmostJointIsNamed) {
+  Totals totals(1e-4);
+  for (int frame = 0; frame < 5; ++frame) {
+    for (int joint = 3; joint < 9; ++joint) {
+      totals.add(0.1 * (1 + 1e-6 * (joint + frame)), {.joint = joint, .frame = frame});
+    }
+  }
+  EXPECT_EQ(totals.where.joint, 3);
+  EXPECT_DOUBLE_EQ(totals.largest, 0.1 * (1 + 12e-6));
+  Totals moments(1e-4);
+  moments.merge(totals);
+  Totals other(1e-4);
+  other.add(0.1 * (1 + 2e-5), {.joint = 7, .frame = 9});
+  moments.merge(other);
+  EXPECT_EQ(moments.where.joint, 3);
+  other.add(0.11, {.joint = 7, .frame = 9});
+  moments.merge(other);
+  EXPECT_EQ(moments.where.joint, 7);
+  EXPECT_EQ(moments.count, 33);
+}
+
 TEST(ClipDifference, ACopyIsTheSame) {
   Clip copy = make_clip();
   copy.provenance.tool = "another";

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -138,6 +139,24 @@ TEST(Cycloid, MeasuresOfTheSteps) {
   EXPECT_NEAR(steps.step_width.value(), 0.2, 0.001);
   const StepMeasures none = step_measures(clip, find_roles(clip.skeleton), {});
   EXPECT_FALSE(none.speed || none.step_width || none.step_length[0]);
+}
+
+// Would fail if a dance to and fro passed for a walk, and its steps for a speed.
+TEST(Cycloid, StepsToAndFroAreNoGait) {
+  Clip clip = cycloid_walk(120);
+  const RoleMap roles = find_roles(clip.skeleton);
+  const std::vector<Keytime> keys = test::keytimes_of(clip);
+  const StepMeasures walk = step_measures(clip, roles, keys);
+  EXPECT_EQ(walk.steadiness, 1);
+  EXPECT_TRUE(walk.are_steady());
+  for (Vec3f& place : clip.positions) {
+    const float back = std::fmod(std::abs(place.z()), 2.4f);
+    place.z() = std::min(back, 2.4f - back);
+  }
+  const StepMeasures dance = step_measures(clip, roles, keys);
+  EXPECT_EQ(dance.steps, walk.steps);
+  EXPECT_LT(dance.steadiness.value(), 0.3);
+  EXPECT_FALSE(dance.are_steady());
 }
 
 TEST(Cycloid, PlacesAreTheJoints) {
