@@ -255,13 +255,17 @@ class ConventionChooser {
     const auto clear = [&] {
       return found.up_confidence != Confidence::guess || !capture_.roles.humanoid;
     };
+    const Direction of_first = found.up;
     if (!clear()) {
       // The ground is evidence of up, which only the right positions show.
       if (Status status = detect(samples, Positions::additive); !status) return status.error();
       assumed = Positions::additive;
     }
+    // Doubtful, but the same whichever positions are right: the ground may decide by it.
+    const bool usable = clear() || found.up == of_first;
     auto choice =
-        choose_positions(hierarchy_, samples, clear() ? std::optional(found.up) : std::nullopt);
+        choose_positions(hierarchy_, samples, usable ? std::optional(found.up) : std::nullopt);
+    if (!clear() && !choice.by_ground) choice = choose_positions(hierarchy_, samples, std::nullopt);
     if (choice.positions != assumed) {
       if (Status status = detect(samples, choice.positions); !status) return status.error();
     }

@@ -141,7 +141,7 @@ std::optional<PositionChoice> choose_by_ground(const HeightsOverGround& heights)
   const auto percent = [](double share) { return readable(std::round(100 * share), 3); };
   PositionChoice result;
   result.positions = absolute ? Positions::absolute : Positions::additive;
-  result.has_evidence = true;
+  result.has_evidence = result.by_ground = true;
   result.choice.choice = absolute ? "absolute" : "additive";
   result.choice.reason = fmt::format(
       "the lowest joint is {}% of the character's height from the ground if the root's positions "

@@ -22,6 +22,7 @@ struct PositionChoice {
   Positions positions = Positions::absolute;
   Choice choice;
   bool depends_on_up = false;  // the root decides
+  bool by_ground = false;      // the character is on it in one mode alone
   bool has_evidence = false;   // false: no joint decides, and both modes give the same result
 };
 
