@@ -151,6 +151,36 @@ TEST(Motion, TheGroundTellsWhetherTheRootsPositionsReplaceItsOffset) {
   EXPECT_EQ(choice("0 -20 0", "0 200 0\n").confidence, Confidence::guess);
 }
 
+// A person who leaps, in a file whose reference pose has the legs folded up: its up axis is a
+// guess, but the same in both readings, in one of which it would leap under the ground.
+TEST(Motion, TheGroundTellsItWhereUpIsAGuessThatDoesNotDependOnIt) {
+  const auto joint = [](const char* name, const char* offset, const std::string& below) {
+    return std::string("JOINT ") + name + "\n{\nOFFSET " + offset + "\nCHANNELS 1 Xrotation\n" +
+           below + "}\n";
+  };
+  const auto leg = [&](const std::string& side, const char* offset) {
+    return joint(
+        (side + "UpLeg").c_str(), offset,
+        joint((side + "Leg").c_str(), "0 50 0",
+              joint((side + "Foot").c_str(), "0 50 0", "End Site\n{\nOFFSET 0 4 12\n}\n")));
+  };
+  const std::string text =
+      "HIERARCHY\nROOT Hips\n{\nOFFSET 0 105 0\n"
+      "CHANNELS 4 Xposition Yposition Zposition Xrotation\n" +
+      joint("Spine", "0 20 0", joint("Head", "0 40 0", "End Site\n{\nOFFSET 0 20 0\n}\n")) +
+      leg("Left", "10 0 0") + leg("Right", "-10 0 0") + "}\n" +
+      motion(4,
+             "0 3 0 0 0 0 180 0 0 180 0 0\n0 4 10 0 0 0 180 0 0 180 0 0\n"
+             "0 5 20 0 0 0 180 0 0 180 0 0\n0 45 50 0 0 0 180 0 0 180 0 0\n");
+  ReadOptions options = plain_options();
+  options.positions = Positions::automatic;
+  options.up = std::nullopt;
+  const Capture capture = read_ok(text, options);
+  EXPECT_EQ(capture.conventions.up_confidence, Confidence::guess);
+  EXPECT_EQ(capture.conventions.up, Direction::plus_y);
+  EXPECT_EQ(capture.positions.choice, "additive") << capture.positions.reason;
+}
+
 TEST(Motion, HipsUnderARootThatOnlyPlacesThemTravelAsARootDoes) {
   // The OFFSET is where the hips stood in another take, the root turns their height from x to y.
   const auto choice = [](const std::string& row) {
