@@ -6,12 +6,10 @@
 namespace krok::compare {
 
 void Totals::merge(const Totals& later) {
-  const double squares = square_sum + later.square_sum;
-  const std::int64_t values = count + later.count, beyond = over + later.over;
-  add(later.largest, later.where);
-  square_sum = squares;
-  count = values;
-  over = beyond;
+  take_largest(later.largest, later.where);
+  square_sum += later.square_sum;
+  count += later.count;
+  over += later.over;
 }
 
 double Totals::rms() const {

@@ -59,13 +59,7 @@ struct Totals {
   // `difference` >= 0. NaN counts as infinity.
   void add(double difference, const ValueLocation& place) {
     difference = finite_or_infinite(difference);
-    if (difference > largest) {
-      constexpr double kRounding = 1e-4;
-      const bool hangs_on_it = largest > 0 && where.joint >= 0 && place.joint > where.joint &&
-                               difference <= (1 + kRounding) * largest;
-      largest = difference;
-      if (!hangs_on_it) where = place;
-    }
+    take_largest(difference, place);
     square_sum += difference * difference;
     over += difference > tolerance ? 1 : 0;
     ++count;
@@ -76,6 +70,15 @@ struct Totals {
 
   double rms() const;
   bool within() const { return over == 0; }
+
+  void take_largest(double difference, const ValueLocation& place) {
+    if (!(difference > largest)) return;
+    constexpr double kRounding = 1e-4;
+    const bool hangs_on_it = largest > 0 && where.joint >= 0 && place.joint > where.joint &&
+                             difference <= (1 + kRounding) * largest;
+    largest = difference;
+    if (!hangs_on_it) where = place;
+  }
 
   static double finite_or_infinite(double difference) {
     return difference <= std::numeric_limits<double>::max()

@@ -139,6 +139,20 @@ class ToolContext : public io::Inputs {
   std::set<std::string> written_;     // canonical paths that passed check_output
 };
 
+// While it lives, the reading of a file shows no progress: for tools that count the files.
+class HiddenProgress {
+ public:
+  explicit HiddenProgress(ToolContext& context)
+      : context_(context), hidden_(std::exchange(context.progress, nullptr)) {}
+  ~HiddenProgress() { context_.progress = hidden_; }
+  HiddenProgress(const HiddenProgress&) = delete;
+  HiddenProgress& operator=(const HiddenProgress&) = delete;
+
+ private:
+  ToolContext& context_;
+  Progress* hidden_;
+};
+
 struct ToolSpec {
   struct Example {
     std::string command;

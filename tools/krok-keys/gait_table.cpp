@@ -91,7 +91,11 @@ Result<int> write_rows(const Options& options, const char* header, Rows* rows_of
   std::size_t motions = 0;
   context.progress->begin(task, options.inputs.size());
   for (const std::string& path : options.inputs) {
-    if (auto rows = rows_of(path, *find_roles, context)) {
+    const auto rows = [&] {
+      const HiddenProgress hidden(context);
+      return rows_of(path, *find_roles, context);
+    }();
+    if (rows) {
       text += *rows;
       ++motions;
     } else {

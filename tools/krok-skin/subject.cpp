@@ -150,6 +150,8 @@ class Loader {
       clip.set_pose(0, clip.skeleton.reference);
       return {};
     }
+    context_.progress->begin(options_.retarget ? "moving motions to the mesh" : "reading motions",
+                             options_.motions.size());
     // With --keep-going the first that can be used.
     for (Status status = read_first(); !status; status = read_first()) {
       status = leave_out(0, std::move(status).error());
@@ -181,7 +183,11 @@ class Loader {
 
   // Opens a motion; with --retarget, of the mesh's skeleton as it was read.
   Result<Clip> open(const std::string& path, Stretches& stretches) {
-    auto clip = io::open_motion(path, context_, {.stretches = &stretches});
+    auto clip = [&] {
+      const HiddenProgress hidden(context_);
+      return io::open_motion(path, context_, {.stretches = &stretches});
+    }();
+    context_.progress->advance(1);
     if (!clip || !options_.retarget) return clip;
     const RoleMap roles = find_roles(clip->skeleton);
     auto moved = krok::retarget::transfer(*clip, roles, target_, target_roles_, how_);
@@ -226,6 +232,7 @@ class Loader {
         return status;
       }
     }
+    context_.progress->end();
     return {};
   }
 
