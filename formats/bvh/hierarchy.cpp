@@ -347,6 +347,10 @@ class HierarchyParser {
     has_offset_[index] = true;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = cursor_.word();
+      if (word.empty()) {
+        return fail("bvh-syntax", fmt::format("the file ends in the OFFSET of {}", open_name()),
+                    "the file is truncated; export or copy it again");
+      }
       const auto value = parse_finite(word);
       if (!value) {
         return fail("bvh-number",

@@ -67,19 +67,20 @@ LocalMotion Settler::moved() const {
   return motion;
 }
 
-double Settler::jerk_of(const LocalMotion& motion) const {
-  std::vector<double> jerks;
+double Settler::differences_of(const LocalMotion& motion, const Eigen::Vector4d& factors) const {
+  std::vector<double> differences;
   std::array<std::vector<Transform>, 4> poses;
   for (int f = 0; f < frames(); ++f) {
     std::rotate(poses.begin(), poses.begin() + 1, poses.end());
     poses[3] = pose_of(motion, f);
     if (f < 3) continue;
     for (const ragdoll::Body& body : bodies_) {
-      const auto place = [&](int i) { return poses[at(i)][at(body.joint)].position; };
-      jerks.push_back((place(3) - 3 * place(2) + 3 * place(1) - place(0)).norm());
+      Vec3 sum = Vec3::Zero();
+      for (int i = 0; i < 4; ++i) sum += factors[i] * poses[at(i)][at(body.joint)].position;
+      differences.push_back(sum.norm());
     }
   }
-  return quantile(std::move(jerks), 0.99);
+  return quantile(std::move(differences), 0.99);
 }
 
 Settled Settler::finish() {
@@ -93,8 +94,9 @@ Settled Settler::finish() {
     set_local_motion(motion, rooted_);
     settled.clip = hips_root_.restored(rooted_, clip_.skeleton);
     settled.clip.provenance = clip_.provenance;
-    const double jerk = jerk_of(source_);
-    if (jerk > 0) settled.jerk = jerk_of(motion) / jerk;
+    const Eigen::Vector4d third(-1, 3, -3, 1);
+    const double jerk = differences_of(source_, third);
+    if (jerk > 0) settled.jerk = differences_of(motion, third) / jerk;
     for (const Eigen::VectorXd& values : values_) {
       for (std::size_t i = 1; i < freedoms_.size(); ++i) {
         const double turn = std::abs(std::remainder(

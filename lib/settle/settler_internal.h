@@ -106,7 +106,8 @@ class Settler {
   double bend_of(const Freedom& freedom, std::span<const Transform> pose) const;
   void solve_stretch(int first, int last);
   double correct_targets(int first, int last);
-  double jerk_of(const LocalMotion& motion) const;
+  // The 99th percentile of sums of the parts' places in four frames times `factors`, metres.
+  double differences_of(const LocalMotion& motion, const Eigen::Vector4d& factors) const;
 
   const Clip& clip_;
   const RoleMap& roles_;

@@ -6,25 +6,25 @@
 
 namespace krok::settling {
 
-SmoothSystem::SmoothSystem(int frames, Eigen::VectorXd bend)
+SmoothSystem::SmoothSystem(int frames, Eigen::Index size)
     : matrix_(at(frames)),
       one_before_(at(frames)),
       two_before_(at(frames)),
       right_(at(frames)),
-      bend_(std::move(bend)) {
+      size_(size) {
   clear();
 }
 
 void SmoothSystem::clear() {
-  const Eigen::Index size = bend_.size();
   for (std::size_t f = 0; f < matrix_.size(); ++f) {
-    for (auto* block : {&matrix_[f], &one_before_[f], &two_before_[f]}) block->setZero(size, size);
-    right_[f].setZero(size);
+    for (auto* block : {&matrix_[f], &one_before_[f], &two_before_[f]})
+      block->setZero(size_, size_);
+    right_[f].setZero(size_);
   }
 }
 
 const std::vector<Eigen::VectorXd>& SmoothSystem::solve(std::span<const Eigen::VectorXd> values,
-                                                        int before) {
+                                                        int before, const Eigen::VectorXd& bend) {
   constexpr std::array<double, 3> kDifference = {1, -2, 1};
   const int count = static_cast<int>(values.size());
   for (int first = 0; first + 2 < count; ++first) {
@@ -33,11 +33,11 @@ const std::vector<Eigen::VectorXd>& SmoothSystem::solve(std::span<const Eigen::V
     for (int i = 0; i < 3; ++i) {
       const int row = first + i - before;
       if (row < 0) continue;
-      right_[at(row)] -= kDifference[at(i)] * bend_.cwiseProduct(bent);
+      right_[at(row)] -= kDifference[at(i)] * bend.cwiseProduct(bent);
       for (int k = 0; k <= i; ++k) {
         if (first + k < before) continue;
         auto& block = i == k ? matrix_ : i - k == 1 ? one_before_ : two_before_;
-        block[at(row)].diagonal() += kDifference[at(i)] * kDifference[at(k)] * bend_;
+        block[at(row)].diagonal() += kDifference[at(i)] * kDifference[at(k)] * bend;
       }
     }
   }

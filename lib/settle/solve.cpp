@@ -24,12 +24,15 @@ constexpr double kYaw = one_at(0.05), kTilt = one_at(0.3), kUpright = 60;       
 constexpr double kTrunk = one_at(0.2), kLimb = one_at(0.3), kEnd = one_at(0.5);  // radians
 constexpr double kHinge = one_at(0.5), kAcross = 30;
 constexpr double kShiftBend = one_at(10), kTurnBend = one_at(13);  // metres, radians per second^2
+// The change is as much smoother as the source accelerates less than the first, down to the second
+// (metres per second^2), so that who hardly moves is not shaken; from pass to pass it is looser.
+constexpr double kMoving = 40, kMinMoving = 0.3, kLoosening = 1.15;
 constexpr double kStraight = 0.02;  // radians that knees stay bent, as far as they are
 constexpr double kMaxTurn = 0.8, kBeyond = one_at(0.01);  // radians, of a joint
 constexpr double kMaxLack = 0.03, kMaxPush = 0.1;         // metres, of a pass and of all
 constexpr double kKept = 0.1;    // weight of a part's heights after the first pass
 constexpr double kNearby = 200;  // of staying where the pass before ended: metres, radians
-constexpr int kPasses = 24, kRounds = 4;
+constexpr int kPasses = 60, kRounds = 4;
 constexpr double kGain = 1e-4;                // share of the errors that a round must take away
 constexpr double kDone = 2e-4;                // metres or radians
 constexpr int kStretch = 480, kOverlap = 60;  // frames
@@ -256,14 +259,19 @@ double Settler::add_frames(int first, int last, const Eigen::VectorXd& bend,
 void Settler::solve_stretch(int first, int last) {
   near_.clear();
   const int before = std::min(first, 2), count = last - first + 1;
-  Eigen::VectorXd bend = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(size()), kTurnBend);
-  bend.head<3>().setConstant(kShiftBend);
-  bend *= std::pow(rooted_.rate, 4);
-  SmoothSystem system(count, bend);
+  Eigen::VectorXd as_strong =
+      Eigen::VectorXd::Constant(static_cast<Eigen::Index>(size()), kTurnBend);
+  as_strong.head<3>().setConstant(kShiftBend);
+  as_strong *= std::pow(rooted_.rate, 4);
+  const double acceleration = differences_of(source_, {0, 1, -2, 1}) * rooted_.rate * rooted_.rate;
+  double loose = std::clamp(acceleration, kMinMoving, kMoving) / kMoving;
+  SmoothSystem system(count, as_strong.size());
   const auto stretch = std::span(values_).subspan(at(first - before), at(count + before));
   Values closest;
   double closest_off = std::numeric_limits<double>::infinity();
   for (int pass = 0; pass < kPasses; ++pass) {
+    const Eigen::VectorXd bend = as_strong * one_at(loose);
+    loose = std::min(1.0, kLoosening * loose);
     Values best(stretch.begin(), stretch.end());
     double least = std::numeric_limits<double>::infinity(), careful = 1e-2;
     for (int round = 0; round < kRounds; ++round) {
@@ -280,7 +288,7 @@ void Settler::solve_stretch(int first, int last) {
         if (ends) break;
       }
       for (int i = 0; i < count; ++i) system.matrix(i).diagonal() *= 1 + careful;
-      const auto& steps = system.solve(stretch, before);
+      const auto& steps = system.solve(stretch, before, bend);
       double largest = 0;
       for (int i = 0; i < count; ++i) {
         stretch[at(before + i)] += steps[at(i)];

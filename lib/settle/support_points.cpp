@@ -108,7 +108,7 @@ double clearance(const Terrain& ground, const Vec3& centre, double radius) {
   };
   double highest = height(centre.x(), centre.z(), true);
   for (const double share : {0.7, 1.0}) {
-    if (radius == 0 || (share < 1 && radius < kSpacing / 4)) continue;
+    if (radius == 0) break;
     const double aside = share * radius, below = radius * std::sqrt(1 - share * share);
     for (const auto& [dx, dz] : {std::pair(aside, 0.0), std::pair(-aside, 0.0),
                                  std::pair(0.0, aside), std::pair(0.0, -aside)}) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "settle/rolled_ground_internal.h"
+#include "settle/support_points_internal.h"
 #include "terrain/spec.h"
 
 namespace krok::settling {
@@ -30,6 +31,13 @@ TEST(RolledGround, IsARampOverStairsAndNowhereBelowThem) {
     }
     before = height;
   }
+}
+
+// A round edge of 1 cm, half of it beside the edge of a step, and 3 mm in it.
+TEST(SettleClearance, SeesTheEdgeOfAStepBesideASmallSphere) {
+  const auto step = *terrain::from_spec("stairs:rise=17cm,run=29cm,count=1,begin=0m");
+  EXPECT_LT(clearance(*step, Vec3(0, 0.176, -0.005), 0.01), -0.001);
+  EXPECT_GT(clearance(*step, Vec3(0, 0.181, -0.005), 0.01), 0.001);
 }
 
 TEST(RolledGround, SlopesAreNoSteps) {

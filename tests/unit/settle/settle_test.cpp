@@ -115,6 +115,24 @@ TEST_F(Settle, FeetRestOnTreads) {
   }
 }
 
+// Someone who lies and breathes. Would fail if parts shook as they come over one edge or another.
+TEST_F(Settle, WhoHardlyMovesIsNotShaken) {
+  const Clip moving = rise(samples::Lying::front);
+  constexpr int kFrames = 60;
+  Clip clip = moving;
+  clip.resize(kFrames);
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  for (int f = 0; f < kFrames; ++f) {
+    moving.get_pose(0, pose);
+    const double sway = 0.02 * std::sin(2 * kPi * f / 45);
+    for (Transform& joint : pose) joint.position += Vec3(0.5 * sway, 0, sway);
+    clip.set_pose(f, pose);
+  }
+  const Settled result = settled(clip, *ground("stairs:rise=17cm,run=29cm,count=40,begin=-5m"));
+  EXPECT_LE(std::max(result.after.depth, result.after.hover), 0.005);
+  EXPECT_LE(result.jerk, 1.5);
+}
+
 TEST_F(Settle, TwiceIsOnce) {
   for (const char* spec : {"slope:10deg,begin=-5m", "rough:seed=2,height=10cm"}) {
     const auto on = ground(spec);
