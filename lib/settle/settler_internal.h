@@ -104,7 +104,8 @@ class Settler {
                      Eigen::VectorXd& right) const;
   double add_frames(int first, int last, const Eigen::VectorXd& bend, SmoothSystem& system) const;
   double bend_of(const Freedom& freedom, std::span<const Transform> pose) const;
-  void solve_stretch(int first, int last);
+  // `loose`: how strongly the change may bend at first, of the strongest.
+  void solve_stretch(int first, int last, double loose);
   double correct_targets(int first, int last);
   // The 99th percentile of sums of the parts' places in four frames times `factors`, metres.
   double differences_of(const LocalMotion& motion, const Eigen::Vector4d& factors) const;

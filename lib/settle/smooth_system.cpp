@@ -17,8 +17,9 @@ SmoothSystem::SmoothSystem(int frames, Eigen::Index size)
 
 void SmoothSystem::clear() {
   for (std::size_t f = 0; f < matrix_.size(); ++f) {
-    for (auto* block : {&matrix_[f], &one_before_[f], &two_before_[f]})
+    for (auto* block : {&matrix_[f], &one_before_[f], &two_before_[f]}) {
       block->setZero(size_, size_);
+    }
     right_[f].setZero(size_);
   }
 }

@@ -256,15 +256,13 @@ double Settler::add_frames(int first, int last, const Eigen::VectorXd& bend,
 
 // Levenberg and Marquardt's method. The first pass lays the body on the ground as a whole; those
 // after it, each near the one before, press single points on it, and the closest is kept.
-void Settler::solve_stretch(int first, int last) {
+void Settler::solve_stretch(int first, int last, double loose) {
   near_.clear();
   const int before = std::min(first, 2), count = last - first + 1;
   Eigen::VectorXd as_strong =
       Eigen::VectorXd::Constant(static_cast<Eigen::Index>(size()), kTurnBend);
   as_strong.head<3>().setConstant(kShiftBend);
   as_strong *= std::pow(rooted_.rate, 4);
-  const double acceleration = differences_of(source_, {0, 1, -2, 1}) * rooted_.rate * rooted_.rate;
-  double loose = std::clamp(acceleration, kMinMoving, kMoving) / kMoving;
   SmoothSystem system(count, as_strong.size());
   const auto stretch = std::span(values_).subspan(at(first - before), at(count + before));
   Values closest;
@@ -353,9 +351,11 @@ double Settler::correct_targets(int first, int last) {
 
 void Settler::solve() {
   set_targets();
+  const double acceleration = differences_of(source_, {0, 1, -2, 1}) * rooted_.rate * rooted_.rate;
+  const double loose = std::clamp(acceleration, kMinMoving, kMoving) / kMoving;
   for (int first = 0; first < frames(); first += kStretch - kOverlap) {
     const int last = std::min(first + kStretch, frames()) - 1;
-    solve_stretch(first, last);
+    solve_stretch(first, last, loose);
     if (last + 1 == frames()) break;
   }
 }

@@ -69,9 +69,13 @@ export class Recorder {
     player.loop = false;
     player.setTime(player.begin);
     player.ended = () => this.stop();
+    // On a busy machine a short motion would be over before the first picture is taken.
+    this.recorder.addEventListener('start', () => {
+      stage.redraw();
+      player.playing = Boolean(player.ended);
+      player.changed();
+    });
     this.recorder.start();
-    player.playing = true;
-    player.changed();
     this.changed();
   }
 
@@ -81,7 +85,10 @@ export class Recorder {
     player.ended = null;
     player.playing = false;
     // The last picture still has to be drawn.
-    requestAnimationFrame(() => requestAnimationFrame(() => this.recorder.stop()));
+    requestAnimationFrame(() => {
+      this.stage.redraw();
+      requestAnimationFrame(() => requestAnimationFrame(() => this.recorder.stop()));
+    });
     player.changed();
   }
 }
