@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
 
 #include "body/body.h"
+#include "core/in_order.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
@@ -120,8 +122,16 @@ struct Read {
   std::multimap<std::size_t, MovingActor> actors;  // keyed by input index
   DecodedImages images;                            // of all of them
 
+  void add(Read other);
   void draw(One one, SkinMethod method, bool bones);
 };
+
+void Read::add(Read other) {
+  std::ranges::move(other.motions, std::back_inserter(motions));
+  std::ranges::move(other.models, std::back_inserter(models));
+  actors.merge(other.actors);
+  images.merge(other.images);
+}
 
 void Read::draw(One one, SkinMethod method, bool bones) {
   if (one.places.empty()) return;
@@ -244,6 +254,65 @@ Status add_file(const std::string& path, std::size_t place, const ActorOptions& 
   return {};
 }
 
+// A file read beside others: what it adds, and what the run's context is to know of it.
+struct ReadBeside {
+  Read read;
+  Status status;
+  Report report;
+  std::vector<std::string> refused_inputs;
+};
+
+// Called from several threads.
+ReadBeside read_beside(const std::string& path, std::size_t place, const ActorOptions& options,
+                       const ToolContext& context) {
+  ReadBeside one;
+  OneOfMany one_of_many;
+  Progress no_progress;
+  ToolContext own;
+  own.jobs = context.jobs;
+  own.limits = context.limits;
+  own.quiet = true;
+  own.progress = &no_progress;
+  own.one_of_many = &one_of_many;
+  own.destinations = context.destinations;
+  one.status = add_file(path, place, options, own, one.read);
+  one.report = std::move(own.report);
+  one.refused_inputs = std::move(own.refused_inputs);
+  return one;
+}
+
+Status add_files(const std::vector<std::string>& paths, const ActorOptions& options,
+                 ToolContext& context, Read& read) {
+  if (paths.size() == 1) return add_file(paths[0], 0, options, context, read);
+  context.progress->begin("reading", paths.size());
+  Status result;
+  in_order<ReadBeside>(
+      paths.size(), thread_count(context.jobs), paths.size(),
+      [&](std::size_t i) {
+        // Only the context knows whether standard input has been read.
+        return paths[i] == "-" ? ReadBeside() : read_beside(paths[i], i, options, context);
+      },
+      [&](std::size_t i, ReadBeside one) {
+        if (paths[i] == "-") {
+          const HiddenProgress hidden(context);
+          one.status = add_file(paths[i], i, options, context, one.read);
+        }
+        context.diagnose(one.report.issues);
+        std::ranges::move(one.report.inputs, std::back_inserter(context.report.inputs));
+        std::ranges::move(one.report.choices, std::back_inserter(context.report.choices));
+        std::ranges::move(one.refused_inputs, std::back_inserter(context.refused_inputs));
+        context.progress->advance(1);
+        if (one.status) {
+          read.add(std::move(one.read));
+        } else {
+          result = context.leave_out(paths[i], std::move(one.status).error(), paths.size());
+        }
+        return result.ok();
+      });
+  context.progress->end();
+  return result;
+}
+
 // Moves a motion to another actor of its skeleton, which then is not shown at rest.
 void move_motion(Read::One& from, Read::One& to) {
   if (to.actor.motions.empty()) to.places.clear();
@@ -284,8 +353,9 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   };
   const auto bare = std::ranges::count_if(read.motions, is_bare);
   if (choice == BodyChoice::automatic) choice = bare > 2 ? BodyChoice::low : BodyChoice::medium;
-  const BodyOptions how = body_options(choice, context);
-  std::vector<Read::One*> made;
+  BodyOptions how = body_options(choice, context);
+  how.progress = nullptr;
+  std::vector<Read::One*> made;  // a motion of each skeleton
   for (Read::One& motion : read.motions) {
     if (!is_bare(motion)) continue;
     const auto same = std::ranges::find_if(made, [&](const Read::One* other) {
@@ -293,14 +363,24 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
     });
     if (same != made.end()) {
       move_motion(motion, **same);
-      continue;
+    } else {
+      made.push_back(&motion);
     }
-    auto body = make_body(motion.actor.motions[0].clip, how);
-    if (!body) return std::move(body).error().in_file(motion.places[0].path);
-    motion.actor.model = std::move(body->model);
-    made.push_back(&motion);
   }
-  return {};
+  context.progress->begin("shaping bodies", made.size());
+  Status status = make_in_order(
+      made.size(), context.jobs,
+      [&](std::size_t i, std::size_t) -> Status {
+        Actor& actor = made[i]->actor;
+        auto body = make_body(actor.motions[0].clip, how);
+        if (!body) return std::move(body).error().in_file(made[i]->places[0].path);
+        actor.model = std::move(body->model);
+        context.progress->advance(1);
+        return {};
+      },
+      [](std::size_t, std::size_t) -> Status { return {}; });
+  context.progress->end();
+  return status;
 }
 
 Result<double> time_of(const std::optional<ClipTime>& time, const char* option,
@@ -345,12 +425,7 @@ Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& pat
   Read read;
   const bool bones = options.body == BodyChoice::none;
   const SkinMethod method = options.method;
-  for (std::size_t place = 0; place < paths.size(); ++place) {
-    if (Status status = add_file(paths[place], place, options, context, read); !status) {
-      status = context.leave_out(paths[place], std::move(status).error(), paths.size());
-      if (!status) return status.error();
-    }
-  }
+  if (Status status = add_files(paths, options, context, read); !status) return status.error();
   if (!paths.empty() && context.left_out.size() == paths.size()) return none_can_be_used();
   share_models(bones, read);
   if (Status status = make_bodies(options.body, context, read); !status) return status.error();
