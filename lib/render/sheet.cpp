@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "core/numbers.h"
+#include "core/parallel.h"
 #include "render/colour_key_internal.h"
 #include "render/grid_internal.h"
 #include "render/layout_internal.h"
@@ -229,15 +231,29 @@ Result<SheetImage> make_sheet(const Sheet& sheet, const SheetOptions& options) {
   auto text = TextPainter::create();
   if (!text) return text.error();
   widen_for_headers(sheet, *text, *layout);
-  const auto tracer = Tracer::create();
-  if (!tracer) return tracer.error();
+  // A device of each thread's own: one prepares one actor at a time.
+  std::vector<std::optional<Tracer>> tracers(slots_for(options.jobs));
+  std::vector<std::optional<TracedActor>> made(tracers.size());
   std::vector<TracedActor> traced;
   traced.reserve(actors.size());
-  for (const Actor* actor : actors) {
-    auto ready = tracer->add(*actor);
-    if (!ready) return ready.error();
-    traced.push_back(std::move(*ready));
-  }
+  const Status status = make_in_order(
+      actors.size(), options.jobs,
+      [&](std::size_t i, std::size_t slot) -> Status {
+        if (!tracers[slot]) {
+          auto tracer = Tracer::create();
+          if (!tracer) return tracer.error();
+          tracers[slot] = *std::move(tracer);
+        }
+        auto ready = tracers[slot]->add(*actors[i]);
+        if (!ready) return ready.error();
+        made[slot] = *std::move(ready);
+        return {};
+      },
+      [&](std::size_t, std::size_t slot) -> Status {
+        traced.push_back(*std::move(made[slot]));
+        return {};
+      });
+  if (!status) return status.error();
 
   SheetImage image;
   image.image = Image(layout->width, layout->height, kPaper);
