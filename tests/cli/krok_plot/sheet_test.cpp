@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <tuple>
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
@@ -252,6 +253,28 @@ TEST_F(KrokPlotSheet, GivesTheSameBytesForAnyNumberOfThreads) {
               0);
   }
   EXPECT_EQ(get(path("1.png")), get(path("2.png")));
+}
+
+// Would fail if files that are read at the same time came in another order, in the sheet or in what
+// is said of them, or if standard input were read as two files.
+TEST_F(KrokPlotSheet, FilesReadBesideEachOtherComeInTheirOrder) {
+  put("broken.bvh", "HIERARCHY nothing");
+  put("chain.bvh", capture(3));
+  const auto run = [&](const char* jobs, std::vector<std::string> more) {
+    more.insert(more.end(), {path("chain.bvh"), kTurn, path("broken.bvh"), path("none.bvh"), kWalk,
+                             "--keep-going", "--moments", "1", "-j", jobs, "--sheet", path("s.png"),
+                             "--json=" + path("report.json")});
+    const ToolRun done = run_tool("krok-plot", more);
+    return std::tuple(done.exit_code, done.err, get(path("report.json")), get(path("s.png")));
+  };
+  const auto one = run("1", {});
+  EXPECT_EQ(std::get<0>(one), 3) << std::get<1>(one);
+  EXPECT_EQ(one, run("4", {}));
+  ToolOptions options;
+  options.input = get(kWalk);
+  const ToolRun twice = run_tool("krok-plot", {"-", "-", "--sheet", path("t.png")}, options);
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("standard input can be read only once"));
 }
 
 TEST_F(KrokPlotSheet, RefusesWhatMakesNoSense) {
