@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 #include <utility>
 
 #include "core/base64.h"
@@ -32,17 +33,23 @@ struct Parts {
   // Bodies and their materials that several motions share are on the page once.
   std::map<std::pair<const Model*, const Material*>, Json> bodies;
 
-  void finish(Json item, const std::string& base64) {
+  void finish(Json item, std::string_view base64) {
     const std::string id = fmt::format("krok-blob-{}", items.size());
     item["blob"] = id;
     items.push_back(std::move(item));
     add_blob(id, base64);
   }
 
-  void add_blob(const std::string& id, const std::string& base64) {
-    scripts += fmt::format("<script type=\"application/octet-stream\" id=\"{}\">", id);
-    scripts += base64;
-    scripts += "</script>\n";
+  // In pieces that are decoded one by one: browsers take a second for an element of ten megabytes.
+  void add_blob(const std::string& id, std::string_view base64) {
+    constexpr std::size_t kPiece = 32768;
+    scripts += fmt::format("<div id=\"{}\" hidden>", id);
+    for (; !base64.empty(); base64.remove_prefix(std::min(kPiece, base64.size()))) {
+      scripts += "<script type=\"application/octet-stream\">";
+      scripts += base64.substr(0, kPiece);
+      scripts += "</script>";
+    }
+    scripts += "</div>\n";
   }
 };
 
