@@ -42,11 +42,11 @@ struct Parts {
 
   // In pieces that are decoded one by one: browsers take a second for an element of ten megabytes.
   void add_blob(const std::string& id, std::string_view base64) {
-    constexpr std::size_t kPiece = 32768;
+    constexpr std::size_t kPieceLength = 32768;
     scripts += fmt::format("<div id=\"{}\" hidden>", id);
-    for (; !base64.empty(); base64.remove_prefix(std::min(kPiece, base64.size()))) {
+    for (; !base64.empty(); base64.remove_prefix(std::min(kPieceLength, base64.size()))) {
       scripts += "<script type=\"application/octet-stream\">";
-      scripts += base64.substr(0, kPiece);
+      scripts += base64.substr(0, kPieceLength);
       scripts += "</script>";
     }
     scripts += "</div>\n";

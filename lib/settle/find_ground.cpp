@@ -18,7 +18,8 @@ namespace {
 constexpr double kRising = 0.3, kShortest = 0.06;
 constexpr double kSoft = 0.06, kFade = 0.2, kTread = 0.04;  // seconds
 constexpr double kStep = 0.02;                              // metres, from one tread to another
-// A motion follows the ground that touches it about as long and as closely as a level floor.
+// A motion follows the ground that touches it about as long and as closely as a level floor, or
+// longer and is not in it.
 constexpr double kLittle = 0.003, kAlike = 0.9, kClearly = 0.2;
 
 }  // namespace
@@ -72,6 +73,12 @@ Heights Settler::heights(const LocalMotion& motion, const Over& over) const {
     heights.touches.push_back(retarget::find_touch(distance, rising, limits, rooted_.rate));
   }
   return heights;
+}
+
+Heights Settler::over_ground(const LocalMotion& motion) const {
+  return heights(motion, [&](const SupportPoint& point, const Vec3& place, int) {
+    return clearance(ground_, place, point.radius);
+  });
 }
 
 // The median height of the lowest part where it hardly rises or falls.
@@ -186,6 +193,8 @@ Status Settler::find_ground() {
   };
   Heights on_ground = heights(source_, over_rest);
   const double ground_height = usual(on_ground);
+  // What rests on a tread is deep in the ramp over it, and not in the ground.
+  const Heights clear = rolled_ ? over_ground(source_) : on_ground;
   const auto over_level = [](const SupportPoint& point, const Vec3& place, int) {
     return place.y() - point.radius;
   };
@@ -193,7 +202,7 @@ Status Settler::find_ground() {
   Heights over_floor = heights(source_, [&](const SupportPoint& point, const Vec3& place, int) {
     return place.y() - point.radius - floor_;
   });
-  fit_ = fit(on_ground, on_ground, on_ground.touches);
+  fit_ = fit(clear, on_ground, on_ground.touches);
   const GroundFit on_level = fit(over_floor, over_floor, over_floor.touches);
   const auto misfit = [](const GroundFit& fit) { return std::max(fit.depth, fit.hover); };
   const auto touching = [](const Heights& over) {  // frames, of all parts
@@ -203,13 +212,15 @@ Status Settler::find_ground() {
     }
     return sum;
   };
-  const bool as_much = touching(on_ground) >= kAlike * touching(over_floor);
+  const int on_it = touching(on_ground), on_level_floor = touching(over_floor);
   const double level_misfit = misfit(on_level);
+  const bool closely = misfit(fit_) <= level_misfit + kLittle * scale_;
+  const bool longer = kAlike * on_it > on_level_floor && fit_.depth <= kTolerated;
   follows_ground_ = !options_.floor && std::abs(ground_height) <= kNear * scale_ &&
-                    (misfit(fit_) < kClearly * level_misfit ||
-                     (as_much && misfit(fit_) <= level_misfit + kLittle * scale_));
+                    (misfit(fit_) < kClearly * level_misfit || longer ||
+                     (closely && on_it >= kAlike * on_level_floor));
   lies_already_ = follows_ground_ && fit_.depth <= kNear * scale_;
-  if (!follows_ground_) fit_ = fit(on_ground, on_ground, over_floor.touches);
+  if (!follows_ground_) fit_ = fit(clear, on_ground, over_floor.touches);
   set_goals(std::move(follows_ground_ ? on_ground : over_floor));
   if (!follows_ground_) find_treads();
   // What is under the hips, carried over gaps.

@@ -108,9 +108,7 @@ Settled Settler::finish() {
     }
     motion = local_motion(hips_root_.rooted(settled.clip));
   }
-  const Heights on_ground = heights(motion, [&](const SupportPoint& point, const Vec3& place, int) {
-    return clearance(ground_, place, point.radius);
-  });
+  const Heights on_ground = over_ground(motion);
   const Heights over_rest =
       heights(motion, [&](const SupportPoint& point, const Vec3& place, int frame) {
         return this->over_rest(point, place, frame);

@@ -66,8 +66,11 @@ struct Settled {
 // an error.
 //
 // A motion that touches `ground` as much and as closely as it does a level floor, with no part
-// deeper than 10 mm, is returned as it is: settling twice is settling once. So is one that would
-// come out further off than it is (the larger of depth and hover).
+// deeper than 10 mm, or longer, with none deeper than 5 mm, is returned as it is: what came out
+// within 5 mm is not settled again. The exception are skeletons whose reference pose shows no body
+// (retarget::neutral_skeleton()): theirs is found from the motion, so that the second time other
+// parts may be in the ground. What would come out further off than it is (the larger of depth and
+// hover) is returned as it is, too.
 //
 // Codes: those of check(Clip) and ragdoll::make_bodies(); settle-ground. Warnings: settle-depth and
 // settle-hover, for more than 5 mm with the part and frame; settle-partly, frames with no ground

@@ -77,6 +77,7 @@ class Settler {
 
   // `over` gives the height of a sphere over what counts as the ground.
   Heights heights(const LocalMotion& motion, const Over& over) const;
+  Heights over_ground(const LocalMotion& motion) const;
   double usual(const Heights& heights) const;
   GroundFit fit(const Heights& on_ground, const Heights& over_rest,
                 std::span<const retarget::Touch> touches) const;

@@ -33,6 +33,22 @@ class Settle : public testing::TestWithParam<const char*> {
 
   static std::unique_ptr<Terrain> ground(const char* spec) { return *terrain::from_spec(spec); }
 
+  // Someone who lies and breathes.
+  static Clip breathing() {
+    const Clip moving = rise(samples::Lying::front);
+    constexpr int kFrames = 60;
+    Clip clip = moving;
+    clip.resize(kFrames);
+    std::vector<Transform> pose(clip.skeleton.names.size());
+    for (int f = 0; f < kFrames; ++f) {
+      moving.get_pose(0, pose);
+      const double sway = 0.02 * std::sin(2 * kPi * f / 45);
+      for (Transform& joint : pose) joint.position += Vec3(0.5 * sway, 0, sway);
+      clip.set_pose(f, pose);
+    }
+    return clip;
+  }
+
   static Settled settled(const Clip& clip, const Terrain& ground) {
     auto result = settle(clip, find_roles(clip.skeleton), ground);
     EXPECT_TRUE(result.ok());
@@ -115,29 +131,25 @@ TEST_F(Settle, FeetRestOnTreads) {
   }
 }
 
-// Someone who lies and breathes. Would fail if parts shook as they come over one edge or another.
+// Would fail if parts shook as they come over one edge or another.
 TEST_F(Settle, WhoHardlyMovesIsNotShaken) {
-  const Clip moving = rise(samples::Lying::front);
-  constexpr int kFrames = 60;
-  Clip clip = moving;
-  clip.resize(kFrames);
-  std::vector<Transform> pose(clip.skeleton.names.size());
-  for (int f = 0; f < kFrames; ++f) {
-    moving.get_pose(0, pose);
-    const double sway = 0.02 * std::sin(2 * kPi * f / 45);
-    for (Transform& joint : pose) joint.position += Vec3(0.5 * sway, 0, sway);
-    clip.set_pose(f, pose);
-  }
-  const Settled result = settled(clip, *ground("stairs:rise=17cm,run=29cm,count=40,begin=-5m"));
+  const Settled result =
+      settled(breathing(), *ground("stairs:rise=17cm,run=29cm,count=40,begin=-5m"));
   EXPECT_LE(std::max(result.after.depth, result.after.hover), 0.005);
   EXPECT_LE(result.jerk, 1.5);
 }
 
+// Would fail if what rests on a tread counted as deep in the ramp over it, or if a part that nears
+// the ground and so touches it from a few millimetres on outweighed how long all of them do.
 TEST_F(Settle, TwiceIsOnce) {
-  for (const char* spec : {"slope:10deg,begin=-5m", "rough:seed=2,height=10cm"}) {
+  for (const char* spec : {"slope:10deg,begin=-5m", "rough:seed=2,height=10cm",
+                           "stairs:rise=17cm,run=29cm,count=40,begin=-5m"}) {
     const auto on = ground(spec);
-    const Settled once = settled(rise(samples::Lying::back), *on);
-    EXPECT_LT(largest_distance(once.clip, settled(once.clip, *on).clip), 5e-5) << spec;
+    for (const Clip& clip : {rise(samples::Lying::back), breathing()}) {
+      const Settled once = settled(clip, *on);
+      EXPECT_LT(largest_distance(once.clip, settled(once.clip, *on).clip), 5e-5)
+          << spec << ' ' << clip.frame_count();
+    }
   }
 }
 
