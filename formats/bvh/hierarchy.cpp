@@ -341,6 +341,11 @@ class HierarchyParser {
                    fmt::format("{} has no OFFSET, assumed to be 0 0 0", name), name);
   }
 
+  Status cut_in(std::string_view item) {
+    return fail("bvh-syntax", fmt::format("the file ends in the {} of {}", item, open_name()),
+                "the file is truncated; export or copy it again");
+  }
+
   Status parse_offset() {
     const auto index = static_cast<std::size_t>(open_.back());
     if (has_offset_[index]) return fail("bvh-syntax", "a second OFFSET for one joint");
@@ -348,8 +353,7 @@ class HierarchyParser {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = cursor_.word();
       if (word.empty()) {
-        return fail("bvh-syntax", fmt::format("the file ends in the OFFSET of {}", open_name()),
-                    "the file is truncated; export or copy it again");
+        return cut_in("OFFSET");
       }
       const auto value = parse_finite(word);
       if (!value) {
@@ -376,6 +380,7 @@ class HierarchyParser {
     if (has_channels_[index]) return fail("bvh-syntax", "a second CHANNELS for one joint");
     has_channels_[index] = true;
     const std::string_view count_word = cursor_.word();
+    if (count_word.empty()) return cut_in("CHANNELS");
     const auto count = parse_integer(count_word);
     if (!count || *count < 0) {
       return fail("bvh-channels",
@@ -393,8 +398,9 @@ class HierarchyParser {
     }
     for (long long i = 0; i < *count; ++i) {
       const std::string_view word = cursor_.peek();
-      if (word.empty() || word == "{" || word == "}" || same_word(word, "JOINT") ||
-          same_word(word, "End") || same_word(word, "OFFSET")) {
+      if (word.empty()) return cut_in("CHANNELS");
+      if (word == "{" || word == "}" || same_word(word, "JOINT") || same_word(word, "End") ||
+          same_word(word, "OFFSET")) {
         return fail_at(count_place, "bvh-channels",
                        fmt::format("{} declares {} channels and names {}", open_name(), *count, i),
                        kChannelsHint);

@@ -22,12 +22,13 @@ void warn_of_level_ground(const Edit& edit, ToolContext& context) {
     }
   }
   if (under.isEmpty()) return;
-  context.warn("settle-level",
-               fmt::format("--ground is level where the motion is: x {} to {} m, z {} to {} m",
-                           readable(under.min().x(), 3), readable(under.max().x(), 3),
-                           readable(under.min().z(), 3), readable(under.max().z(), 3)),
-               "stairs and slopes begin at z = 1 m: slope:12deg,begin=-2m; or move the motion with "
-               "--at-origin, --move");
+  context.warn(
+      "settle-level",
+      fmt::format("--ground is level where the motion is: x {} to {} m, z {} to {} m",
+                  readable(under.min().x(), 3), readable(under.max().x(), 3),
+                  readable(under.min().z(), 3), readable(under.max().z(), 3)),
+      "slopes and stairs begin where begin= says, or at z = 1 m: slope:12deg,begin=-2m; or "
+      "move the motion with --at-origin, --move");
 }
 
 }  // namespace

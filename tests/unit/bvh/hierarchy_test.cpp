@@ -181,6 +181,8 @@ TEST(Hierarchy, FaultsAreToldWithTheirPlace) {
       {"HIERARCHY\nROOT a\n{\nEnd Site\n{\nJOINT b\n{\n}\n}\n}\n" + rest, "bvh-syntax", 6, 1},
       {"HIERARCHY\n" + rest, "bvh-syntax", 2, 1},
       {"HIERARCHY\nROOT a\n{\nOFFSET 0 0", "bvh-syntax", 4, 11},
+      {"HIERARCHY\nROOT a\n{\nCHANNELS", "bvh-syntax", 4, 9},
+      {"HIERARCHY\nROOT a\n{\nCHANNELS 2 Xrotation", "bvh-syntax", 4, 21},
       {kArm + "MOTION\n", "bvh-syntax", 17, 1},
       {kArm + "MOTION\nFrames: x\n", "bvh-frame-count", 17, 9},
       {kArm + "MOTION\nFrames: -1\nFrame Time: 1\n", "bvh-frame-count", 17, 9},
