@@ -91,6 +91,11 @@ class Document {
   // A scene root with a mesh; skin -1 for none. Returns the node.
   int add_mesh_node(int mesh, int skin, const std::string& name);
 
+  // The meshes with vertices of their own of which `moves` says so, and all that share theirs; the
+  // first if there are none. (part_vertices.cpp)
+  std::vector<MeshNode> moved_meshes(std::span<const MeshNode> meshes,
+                                     const std::function<bool(std::size_t vertex)>& moves) const;
+
   // Morph targets for every primitive of the meshes, with names for viewers (extras.targetNames).
   void set_targets(std::span<const MeshNode> meshes,
                    const std::vector<std::map<std::string, int>>& targets,

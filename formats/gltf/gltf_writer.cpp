@@ -66,13 +66,23 @@ Status add_weight_keys(Document& document, std::span<const Document::MeshNode> m
   return {};
 }
 
-// Adds them to the model's meshes, which have `attributes`, and to the animations of their nodes.
+// Adds them to the model's meshes that they move, which have `attributes`, and to the animations of
+// their nodes.
 Status add_morphs(Document& document, const Model& model,
                   const std::map<std::string, int>& attributes,
-                  std::span<const Document::MeshNode> meshes, std::span<const NamedTracks> clips,
-                  const WriteOptions& options) {
+                  std::span<const Document::MeshNode> all_meshes,
+                  std::span<const NamedTracks> clips, const WriteOptions& options) {
   if (options.morphs == nullptr || options.morphs->names.empty()) return {};
   const MorphSet& morphs = *options.morphs;
+  const bool has_normals =
+      !morphs.normals.empty() && !model.normals.empty() && attributes.contains("NORMAL");
+  const auto meshes = document.moved_meshes(all_meshes, [&](std::size_t v) {
+    for (int t = 0; t < morphs.target_count(); ++t) {
+      if (morphs.target_positions(t)[v] != model.positions[v]) return true;
+      if (has_normals && morphs.target_normals(t)[v] != model.normals[v]) return true;
+    }
+    return false;
+  });
   std::vector<std::map<std::string, int>> targets(morphs.names.size());
   for (int t = 0; t < morphs.target_count(); ++t) {
     auto& target = targets[static_cast<std::size_t>(t)];
@@ -84,7 +94,7 @@ Status add_morphs(Document& document, const Model& model,
     target["POSITION"] = document.add_displacements(
         displacements(morphs.target_positions(t), model.positions), true);
     // In glTF a target may only have attributes that the mesh has.
-    if (morphs.normals.empty() || model.normals.empty() || !attributes.contains("NORMAL")) continue;
+    if (!has_normals) continue;
     target["NORMAL"] =
         document.add_displacements(displacements(morphs.target_normals(t), model.normals), false);
   }

@@ -222,6 +222,25 @@ void Document::fill_displacements(std::span<const Vec3f> values, tinygltf::Acces
   accessor.sparse.values = {value_view, 0};
 }
 
+std::vector<Document::MeshNode> Document::moved_meshes(
+    std::span<const MeshNode> meshes, const std::function<bool(std::size_t vertex)>& moves) const {
+  const auto is_moved = [&](const VertexRange& range) {
+    for (std::size_t v = range.first; v < range.first + range.count; ++v) {
+      if (moves(v)) return true;
+    }
+    return false;
+  };
+  std::vector<MeshNode> moved;
+  for (const MeshNode& one : meshes) {
+    const auto ranges = ranges_.find(one.mesh);
+    if (ranges == ranges_.end() || std::ranges::any_of(ranges->second, is_moved)) {
+      moved.push_back(one);
+    }
+  }
+  if (moved.empty() && !meshes.empty()) moved.push_back(meshes[0]);
+  return moved;
+}
+
 void Document::set_targets(std::span<const MeshNode> meshes,
                            const std::vector<std::map<std::string, int>>& targets,
                            std::span<const std::string> names) {
