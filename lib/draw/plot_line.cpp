@@ -222,10 +222,6 @@ FieldScale scale_of(const Field& field) {
   return {(below - 0.5) * step, (above + 0.5) * step, static_cast<int>(above - below) + 1};
 }
 
-std::string field_colour(double value, const FieldScale& scale) {
-  return colour_of_step(step_holding(value, scale), scale);
-}
-
 void write_field(const Field& field, const PlotArea& area, std::string& out) {
   const FieldScale scale = scale_of(field);
   const double width = (field.x_high - field.x_low) / field.columns;

@@ -108,9 +108,6 @@ struct FieldScale {
 };
 FieldScale scale_of(const Field& field);
 
-// The colour of a value as "#rrggbb": white for the step that contains zero.
-std::string field_colour(double value, const FieldScale& scale);
-
 // Writes the cells as rectangles; neighbours of the same colour are merged.
 void write_field(const Field& field, const PlotArea& area, std::string& out);
 

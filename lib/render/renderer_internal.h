@@ -40,7 +40,6 @@ class Projection {
   const Vec3& right() const { return right_; }
   const Vec3& up() const { return up_; }
   const Vec3& towards() const { return towards_; }  // of the image's middle
-  bool has_eye() const { return lens_.has_value(); }
   // The depth scale's origin: the target of a camera, the eye of a lens.
   const Vec3& origin() const { return origin_; }
 
