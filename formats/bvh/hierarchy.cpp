@@ -352,9 +352,7 @@ class HierarchyParser {
     has_offset_[index] = true;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = cursor_.word();
-      if (word.empty()) {
-        return cut_in("OFFSET");
-      }
+      if (word.empty()) return cut_in("OFFSET");
       const auto value = parse_finite(word);
       if (!value) {
         return fail("bvh-number",

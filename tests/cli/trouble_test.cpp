@@ -248,6 +248,7 @@ TEST_F(Trouble, LimitsOfOtherLibrariesAreTheUsers) {
       {"krok-import", "in.smd", "-o", "out.anim"},
       {"krok-view", "in.bvh", "--ground", "in.smd", "-o", "out.html"},
       {"krok-plot", "in.bvh", "--ground", "in.smd", "--sheet", "out.png"},
+      {"krok-plot", "in.bvh", "in.smd", "--sheet", "out.png"},
       {"krok-ik", "in.bvh", "--reach", "Head=0,1,0@0s", "--ground", "in.smd", "-o", "out.anim"},
   };
   for (const auto& command : commands) {

@@ -80,6 +80,19 @@ void ToolContext::print(const std::string& given) {
   (void)std::fwrite(text.data(), 1, text.size(), stdout);
 }
 
+ToolContext ToolContext::beside(OneOfMany& messages, int threads) const {
+  static Progress none;
+  ToolContext context;
+  context.report.tool = report.tool;
+  context.jobs = threads;
+  context.limits = limits;
+  context.quiet = true;
+  context.progress = &none;
+  context.one_of_many = &messages;
+  context.destinations = destinations;
+  return context;
+}
+
 Result<InputFile> ToolContext::open_input(const std::string& path) {
   auto file = open_long_input(path);
   if (file) note_checksum(*file);

@@ -102,6 +102,11 @@ class ToolContext : public io::Inputs {
   Result<InputFile> open_long_input(const std::string& path) override;
   void note_checksum(const InputFile& input) override;
 
+  // The context of a file that is read beside others, on any thread: with the same limits and
+  // destinations, silent (`messages` gets what it would print), and with a report of its own, which
+  // is for the caller to add in the order of the files.
+  ToolContext beside(OneOfMany& messages, int threads) const;
+
   // Records that the result depends on which files with this suffix, ".asf", or of this full name,
   // "walk.keys.json", exist beside `path`: a batch processes the file again if one is added or
   // removed.

@@ -188,15 +188,8 @@ class Comparison {
     one.first = first_path(path);
     one.second = second_path(path);
     one.folders = {};
-    OneOfMany one_of_many;
-    Progress no_progress;
-    ToolContext context;
-    context.report.tool = context_.report.tool;
-    context.jobs = jobs_of_a_file_;
-    context.quiet = true;
-    context.progress = &no_progress;
-    context.one_of_many = &one_of_many;
-    context.destinations = context_.destinations;
+    OneOfMany messages;
+    ToolContext context = context_.beside(messages, jobs_of_a_file_);
     const auto begin = std::chrono::steady_clock::now();
     auto outcome = outcome_of(one, context);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;

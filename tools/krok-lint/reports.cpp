@@ -100,9 +100,8 @@ std::array<double, 5> moments_of(const Finding& finding, const LintedFile& file)
 
 Result<std::string> strip_of(const LintedFile& file, const Finding& finding, ToolContext& context) {
   // Its warnings are known from the first reading.
-  ToolContext own;
-  own.quiet = true;
-  own.jobs = context.jobs;
+  OneOfMany messages;
+  ToolContext own = context.beside(messages, context.jobs);
   auto actors = read_actors({file.path}, {BodyChoice::none, SkinMethod::linear, ""}, own);
   if (!actors) return actors.error();
   const MovingActor& actor = actors->front();

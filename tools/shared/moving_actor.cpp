@@ -264,17 +264,10 @@ struct ReadBeside {
 
 // Called from several threads.
 ReadBeside read_beside(const std::string& path, std::size_t place, const ActorOptions& options,
-                       const ToolContext& context) {
+                       int threads, const ToolContext& context) {
   ReadBeside one;
-  OneOfMany one_of_many;
-  Progress no_progress;
-  ToolContext own;
-  own.jobs = context.jobs;
-  own.limits = context.limits;
-  own.quiet = true;
-  own.progress = &no_progress;
-  own.one_of_many = &one_of_many;
-  own.destinations = context.destinations;
+  OneOfMany messages;
+  ToolContext own = context.beside(messages, threads);
   one.status = add_file(path, place, options, own, one.read);
   one.report = std::move(own.report);
   one.refused_inputs = std::move(own.refused_inputs);
@@ -286,11 +279,14 @@ Status add_files(const std::vector<std::string>& paths, const ActorOptions& opti
   if (paths.size() == 1) return add_file(paths[0], 0, options, context, read);
   context.progress->begin("reading", paths.size());
   Status result;
+  const int threads = thread_count(context.jobs);
+  const int readers = std::clamp(static_cast<int>(paths.size()), 1, threads);
   in_order<ReadBeside>(
-      paths.size(), thread_count(context.jobs), paths.size(),
+      paths.size(), readers, paths.size(),
       [&](std::size_t i) {
         // Only the context knows whether standard input has been read.
-        return paths[i] == "-" ? ReadBeside() : read_beside(paths[i], i, options, context);
+        return paths[i] == "-" ? ReadBeside()
+                               : read_beside(paths[i], i, options, threads / readers, context);
       },
       [&](std::size_t i, ReadBeside one) {
         if (paths[i] == "-") {
