@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string_view>
 #include <utility>
 
 #include "core/base64.h"
@@ -33,23 +32,17 @@ struct Parts {
   // Bodies and their materials that several motions share are on the page once.
   std::map<std::pair<const Model*, const Material*>, Json> bodies;
 
-  void finish(Json item, std::string_view base64) {
+  void finish(Json item, const std::string& base64) {
     const std::string id = fmt::format("krok-blob-{}", items.size());
     item["blob"] = id;
     items.push_back(std::move(item));
     add_blob(id, base64);
   }
 
-  // In pieces that are decoded one by one: browsers take a second for an element of ten megabytes.
-  void add_blob(const std::string& id, std::string_view base64) {
-    constexpr std::size_t kPieceLength = 32768;
-    scripts += fmt::format("<div id=\"{}\" hidden>", id);
-    for (; !base64.empty(); base64.remove_prefix(std::min(kPieceLength, base64.size()))) {
-      scripts += "<script type=\"application/octet-stream\">";
-      scripts += base64.substr(0, kPieceLength);
-      scripts += "</script>";
-    }
-    scripts += "</div>\n";
+  void add_blob(const std::string& id, const std::string& base64) {
+    scripts += fmt::format("<script type=\"application/octet-stream\" id=\"{}\">", id);
+    scripts += base64;
+    scripts += "</script>\n";
   }
 };
 

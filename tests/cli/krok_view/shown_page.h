@@ -1,19 +1,17 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <string>
 
 namespace krok::test {
 
 // The text of an element of a page that krok-view wrote.
 inline std::string element_of(const std::string& page, const std::string& id) {
-  const auto at = page.find("id=\"" + id + "\"");
+  const std::string start = "id=\"" + id + "\">";
+  const auto at = page.find(start);
   if (at == std::string::npos) return {};
-  const auto begin = page.find('>', at) + 1;
-  // Data are in pieces, each in an element of its own.
-  static const std::regex kTag("<[^>]*>");
-  return std::regex_replace(page.substr(begin, page.find('\n', begin) - begin), kTag, "");
+  const auto begin = at + start.size();
+  return page.substr(begin, page.find("</script>", begin) - begin);
 }
 
 // The description that the page carries of what it shows.

@@ -7,17 +7,14 @@ const COMPONENT_LIMIT = Math.SQRT1_2; // bound of the three smaller quaternion c
 
 const decoded = new Map();
 
-// Decodes the base64 script elements of a blob, once.
+// Decodes a base64 script element, once.
 export function blobBytes(id) {
   if (decoded.has(id)) return decoded.get(id);
   const element = document.getElementById(id);
-  const pieces = [...element.children].map((piece) => atob(piece.textContent));
-  element.remove(); // frees the text, so that the data is not held twice
-  const bytes = new Uint8Array(pieces.reduce((sum, { length }) => sum + length, 0));
-  let at = 0;
-  for (const piece of pieces) {
-    for (let i = 0; i < piece.length; ++i) bytes[at++] = piece.charCodeAt(i);
-  }
+  const text = atob(element.textContent.trim());
+  element.textContent = ''; // frees the text, so that the data is not held twice
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
   decoded.set(id, bytes);
   return bytes;
 }
