@@ -91,8 +91,8 @@ class Document {
   // A scene root with a mesh; skin -1 for none. Returns the node.
   int add_mesh_node(int mesh, int skin, const std::string& name);
 
-  // The meshes with vertices of their own of which `moves` says so, and all that share theirs; the
-  // first if there are none. (part_vertices.cpp)
+  // The meshes with a vertex for which `moves` holds, and all without a range of their own; the
+  // first if there are none, so that the targets' names are kept. (part_vertices.cpp)
   std::vector<MeshNode> moved_meshes(std::span<const MeshNode> meshes,
                                      const std::function<bool(std::size_t vertex)>& moves) const;
 

@@ -35,6 +35,18 @@ SceneMesh::Target displaced(const ScenePlacement& placement, const SceneMesh& me
   return mesh.targets[static_cast<std::size_t>(target)];
 }
 
+bool moves_nothing(const ScenePlacement& placement, const SceneMesh& mesh, int mesh_index) {
+  ScenePlacement::Memory memory;
+  const auto is_zero = [](const Vec3f& value) { return value.isZero(0); };
+  for (int t = 0; t < static_cast<int>(mesh.targets.size()); ++t) {
+    const auto target = displaced(placement, mesh, mesh_index, t, memory);
+    for (const auto& values : {target.positions, target.normals, target.tangents}) {
+      if (!std::ranges::all_of(values, is_zero)) return false;
+    }
+  }
+  return true;
+}
+
 void compare_targets(SceneComparison& comparison, std::pair<int, int> meshes,
                      const std::string& name, ValueLocation place) {
   const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(meshes.first)];
@@ -42,7 +54,10 @@ void compare_targets(SceneComparison& comparison, std::pair<int, int> meshes,
   if (a.targets.size() != b.targets.size()) {
     std::string text = fmt::format("{}: {} morph targets in the first, {} in the second", name,
                                    a.targets.size(), b.targets.size());
-    if (comparison.options.matching != Matching::name && is_bake_of(a, b)) {
+    if ((a.targets.empty() && moves_nothing(comparison.second_placement, b, meshes.second)) ||
+        (b.targets.empty() && moves_nothing(comparison.first_placement, a, meshes.first))) {
+      comparison.note(text + ", which move nothing");
+    } else if (comparison.options.matching != Matching::name && is_bake_of(a, b)) {
       comparison.note(text + "; compared by their effect only");
     } else {
       comparison.say(std::move(text));

@@ -240,6 +240,29 @@ GlbBuilder mirrored(bool by_node, bool turned) {
   return builder;
 }
 
+// Exporters give a face's targets to the eyes, too. Would fail if leaving out what moves nothing
+// were a difference, or if what moves were passed over.
+TEST_F(KrokDiffAsPlayed, TargetsThatMoveNothingMayBeLeftOut) {
+  const auto with_target = [](float height) {
+    GlbBuilder builder = mirrored(false, false);
+    std::vector<float> displacements(12, 0.0f);
+    displacements[1] = height;
+    primitive_of(builder)["targets"] = {{{"POSITION", builder.add(displacements, "VEC3")}}};
+    return builder;
+  };
+  write("none.glb", mirrored(false, false));
+  write("still.glb", with_target(0));
+  write("moves.glb", with_target(0.01f));
+  for (const auto& [first, second] :
+       {std::pair("none.glb", "still.glb"), {"still.glb", "none.glb"}}) {
+    const auto same = diff({first, second});
+    EXPECT_EQ(same.exit_code, 0) << same.out;
+    EXPECT_THAT(same.out, HasSubstr("which move nothing"));
+  }
+  EXPECT_EQ(diff({"none.glb", "moves.glb"}).exit_code, 1);
+  EXPECT_EQ(diff({"moves.glb", "none.glb"}).exit_code, 1);
+}
+
 TEST_F(KrokDiffAsPlayed, MirroringNodesTurnTheWinding) {
   write("node.glb", mirrored(true, false));
   write("baked.glb", mirrored(false, true));
