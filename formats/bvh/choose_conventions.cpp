@@ -22,29 +22,27 @@ namespace krok::bvh {
 
 namespace {
 
-// Returns the reason if rotation values look like radians: many joints rotate, yet no value exceeds
-// 2 pi, which in degrees (the unit of BVH) would be almost no motion.
-std::optional<std::string> looks_like_radians(const Hierarchy& hierarchy, const SampleRows& rows) {
-  // A moving character rotates some joint by more than 0.5 rad, and many by more than 0.1 rad.
-  constexpr double kMoves = 0.5;
-  constexpr double kTurns = 0.1;
-  constexpr int kMinChannels = 6;
-  constexpr double kWholeTurn = 2.0 * kPi * 1.001;
+constexpr double kWholeTurn = 2.0 * kPi * 1.001;
+
+// The values of rotation channels, in the file's unit.
+struct Rotations {
   double largest = 0;
-  int turning = 0;
+  int turning = 0;  // channels with more than kTurns
+};
+
+Rotations rotations_of(const Hierarchy& hierarchy, const SampleRows& rows) {
+  constexpr double kTurns = 0.1;
+  Rotations rotations;
   for (std::size_t c = 0; c < hierarchy.channels.size(); ++c) {
     if (hierarchy.channels[c].kind != ChannelKind::rotation) continue;
     double most = 0;
     for (std::size_t row = 0; row < rows.count(); ++row) {
       most = std::max(most, std::abs(rows.row(row)[c]));
     }
-    if (most > kWholeTurn) return std::nullopt;
-    largest = std::max(largest, most);
-    if (most > kTurns) ++turning;
+    rotations.largest = std::max(rotations.largest, most);
+    if (most > kTurns) ++rotations.turning;
   }
-  if (largest < kMoves || turning < kMinChannels) return std::nullopt;
-  return fmt::format("no rotation exceeds {}, which is less than a full turn in radians",
-                     readable(largest, 3));
+  return rotations;
 }
 
 constexpr std::size_t kMaxSamples = 200;
@@ -193,15 +191,30 @@ class ConventionChooser {
   }
 
   void choose_angles(const SampleRows& samples) {
+    // A character that moves turns some joint by more than half a radian, and many a little.
+    constexpr double kMoves = 0.5, kManyTurns = 10;
+    constexpr int kMinChannels = 6;
+    const Rotations rotations = rotations_of(hierarchy_, samples);
     if (file_.options.angles == Angles::radians) {
       hierarchy_.degrees_per_angle = 1.0 / kRadiansPerDegree;
+      if (rotations.largest < kManyTurns * kWholeTurn) return;
+      return report(
+          Severity::warning, "bvh-angles",
+          fmt::format("the angles may be degrees: one is {}, {} turns in radians",
+                      readable(rotations.largest, 3), readable(rotations.largest / kWholeTurn, 2)),
+          "leave --angles radians out if they are");
+    }
+    // Less than a turn in radians, which in degrees would be almost no motion.
+    if (rotations.largest > kWholeTurn || rotations.largest < kMoves ||
+        rotations.turning < kMinChannels) {
       return;
     }
-    const auto reason = looks_like_radians(hierarchy_, samples);
-    if (!reason) return;
-    report(Severity::warning, "bvh-angles",
-           fmt::format("the angles may be radians, though BVH uses degrees: {}", *reason),
-           "use --angles radians if they are");
+    report(
+        Severity::warning, "bvh-angles",
+        fmt::format("the angles may be radians, though BVH uses degrees: no rotation exceeds {}, "
+                    "which is less than a full turn in radians",
+                    readable(rotations.largest, 3)),
+        "use --angles radians if they are");
   }
 
   // The unit, if this project wrote the file.

@@ -318,7 +318,8 @@ class HierarchyParser {
         name_places_.back() = keyword;  // the warning comes with the name that it gets
       }
     }
-    if (cursor_.word() != "{") {
+    if (const std::string_view brace = cursor_.word(); brace != "{") {
+      if (brace.empty()) return cut("after " + (end_site ? "End Site" : readable_name(joint.name)));
       return fail("bvh-syntax",
                   fmt::format("a '{{' is expected after {}",
                               end_site ? "End Site" : readable_name(joint.name)),
@@ -341,9 +342,12 @@ class HierarchyParser {
                    fmt::format("{} has no OFFSET, assumed to be 0 0 0", name), name);
   }
 
-  Status cut_in(std::string_view item) {
-    return fail("bvh-syntax", fmt::format("the file ends in the {} of {}", item, open_name()),
+  Status cut(const std::string& where) {
+    return fail("bvh-syntax", "the file ends " + where,
                 "the file is truncated; export or copy it again");
+  }
+  Status cut_in(std::string_view item) {
+    return cut(fmt::format("in the {} of {}", item, open_name()));
   }
 
   Status parse_offset() {

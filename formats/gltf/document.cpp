@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/hash.h"
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/json_text_internal.h"
 #include "math/types.h"
@@ -11,9 +12,6 @@
 namespace krok::gltf {
 
 namespace {
-
-// The longest key of a track: those of tracks that stay are often the same in many clips.
-constexpr std::size_t kConstantBytes = 16;
 
 int components_of(int type) {
   return tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type));
@@ -89,10 +87,12 @@ int Document::add_accessor(std::span<const std::byte> bytes, int component,
                            Filter filter) {
   assert(promised_ == 0);
   const int next = static_cast<int>(gltf.accessors.size());
-  if (options_.compressed && use == Use::data && bytes.size() <= kConstantBytes) {
-    const auto [known, made] = constants_.try_emplace(
-        {component, type, filter, std::vector<std::byte>(bytes.begin(), bytes.end())}, next);
-    if (!made) return known->second;
+  // Tracks of joints that stay, or of fingers that turn together, are often the same.
+  if (options_.compressed && use == Use::data) {
+    const auto [known, made] = known_.try_emplace({component, type, filter, xxh3(bytes)}, next);
+    if (!made && std::ranges::equal(bytes_of(gltf.accessors[known->second]), bytes)) {
+      return known->second;
+    }
   }
   add_accessor_of(bytes.size(), component, component_size, type, use);
   put(bytes, keep);

@@ -164,6 +164,7 @@ class Document {
   void add_animation(const JointTracks& tracks, const std::string& name);
   void find_bounds(tinygltf::Accessor& accessor) const;
   std::span<const std::byte> bytes_from(std::size_t offset) const;
+  std::span<const std::byte> bytes_of(const tinygltf::Accessor& accessor) const;  // of its view
 
   void put(std::span<const std::byte> bytes, Keep keep);
   Result<int> add_image(const EncodedImage& image);
@@ -199,8 +200,8 @@ class Document {
   std::map<int, std::vector<VertexRange>> ranges_;   // of the primitives of a mesh
   std::map<int, std::vector<Vec3f>> displacements_;  // of accessors without data
   std::map<std::vector<float>, int> times_;          // accessors of key times
-  // Accessors of single keys, by component, type, filter and bytes.
-  std::map<std::tuple<int, int, Filter, std::vector<std::byte>>, int> constants_;
+  // Accessors of data, by component, type, filter and checksum of the bytes.
+  std::map<std::tuple<int, int, Filter, std::uint64_t>, int> known_;
   std::map<std::pair<int, int>, int> samplers_;  // of the animation, by times and values
   std::uint64_t size_ = 0;                       // bytes of the parts and the streamed data
   std::uint64_t promised_ = 0;                   // bytes of the streamed data

@@ -65,6 +65,11 @@ std::span<const std::byte> Document::bytes_from(std::size_t offset) const {
   return {};
 }
 
+std::span<const std::byte> Document::bytes_of(const tinygltf::Accessor& accessor) const {
+  const auto& view = gltf.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+  return bytes_from(view.byteOffset).first(view.byteLength);
+}
+
 void Document::find_bounds(tinygltf::Accessor& accessor) const {
   const auto& view = gltf.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
   const auto size = static_cast<std::size_t>(

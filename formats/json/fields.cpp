@@ -529,7 +529,10 @@ Status Table::read_field(const Given& object, const Step& step, void* to) const 
                : Status();
   }
   if (!step.required || !is_used(step, word)) return {};
-  return object.structure(fmt::format("{} is missing \"{}\"", object.what, step.key));
+  Error error = object.structure(fmt::format("{} is missing \"{}\"", object.what, step.key));
+  if (step.key == "schema")
+    error.hint = fmt::format("add \"schema\": {}", step.kind.write(nullptr));
+  return error;
 }
 
 Status Table::read(const Given& given, void* to) const {

@@ -120,6 +120,19 @@ Status check_inputs(std::span<const BlendInput> inputs) {
   return {};
 }
 
+// ", here 0.3 and 0.7", of constant weights.
+std::string in_shares(std::span<const BlendInput> inputs, double sum) {
+  std::string text = ", here ";
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    text += fmt::format("{}{}",
+                        i == 0                   ? ""
+                        : i + 1 == inputs.size() ? " and "
+                                                 : ", ",
+                        readable(inputs[i].weight.at(0) / sum, 3));
+  }
+  return text;
+}
+
 // The sum is linear between the points of all curves, so checking at the points suffices.
 Status check_sum(std::span<const BlendInput> inputs) {
   std::set<double> points = {0};
@@ -134,7 +147,9 @@ Status check_sum(std::span<const BlendInput> inputs) {
     return Error("blend-sum",
                  fmt::format("the weights sum to {}{}, not to 1", readable(sum),
                              constant ? "" : fmt::format(" at generic time {}", readable(point))),
-                 "use --modifier for motions that are added on top of another");
+                 fmt::format("give each its share of 1{}; --modifier is for motions that are added "
+                             "on top of another",
+                             constant && sum > 0 ? in_shares(inputs, sum) : ""));
   }
   return {};
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <span>
 
@@ -53,6 +54,12 @@ Result<double> parse_with(std::string_view text, std::span<const NamedUnit> unit
                fmt::format("use one of {}", known));
 }
 
+Error without_unit(std::string_view text, std::string_view usual) {
+  return {"quantity-no-unit", fmt::format("'{}' has no unit", text),
+          usual == "m" ? fmt::format("write {}m", text)
+                       : fmt::format("write {}{}, or {}m if metres are meant", text, usual, text)};
+}
+
 constexpr std::array kLengths = {
     NamedUnit{"m", 1.0},   NamedUnit{"dm", 0.1},    NamedUnit{"cm", 0.01},  NamedUnit{"mm", 0.001},
     NamedUnit{"um", 1e-6}, NamedUnit{"in", 0.0254}, NamedUnit{"ft", 0.3048}};
@@ -64,17 +71,15 @@ constexpr std::array kTimes = {NamedUnit{"s", 1.0}, NamedUnit{"ms", 0.001}, Name
 }  // namespace
 
 Result<double> parse_length(std::string_view text) {
+  constexpr double kMaxBare = 50;  // metres
+  const auto bare = parse_finite(text);
+  if (bare && std::abs(*bare) >= kMaxBare) return without_unit(text, "cm");
   return parse_with(text, kLengths, 1.0);
 }
 
 Result<double> parse_length_with_unit(std::string_view text, std::string_view usual) {
   const auto bare = parse_finite(text);
-  if (bare && *bare != 0) {
-    return Error("quantity-no-unit", fmt::format("'{}' has no unit", text),
-                 usual == "m"
-                     ? fmt::format("write {}m", text)
-                     : fmt::format("write {}{}, or {}m if metres are meant", text, usual, text));
-  }
+  if (bare && *bare != 0) return without_unit(text, usual);
   return parse_length(text);
 }
 

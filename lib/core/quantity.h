@@ -9,7 +9,8 @@
 
 namespace krok {
 
-// Metres from "0.1mm", "5 cm", "1.7m", "3in", "1ft"; without a unit, metres.
+// Metres from "0.1mm", "5 cm", "1.7m", "3in", "1ft"; without a unit, metres. From 50 on a unit is
+// needed: a bare number of that size is hardly ever metres. Code also: quantity-no-unit.
 Result<double> parse_length(std::string_view text);
 
 // Metres for what needs a unit, such as a tolerance or a person's height: a bare number would be

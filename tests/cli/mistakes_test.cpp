@@ -72,6 +72,46 @@ TEST_F(Mistakes, UnknownJointsToo) {
               HasSubstr("did you mean 'front'?"));
 }
 
+// Would fail if a number of another unit, or words of another form, were taken as they are.
+TEST_F(Mistakes, ValuesThatMeanSomethingElse) {
+  struct Row {
+    std::string tool;
+    std::vector<std::string> arguments;
+    std::string hint;
+  };
+  const Row rows[] = {
+      {"krok-edit", {"--move", "100,0,0", "-o", "a.anim"}, "write 100cm, or 100m"},
+      {"krok-edit", {"--move", "1m,0", "-o", "a.anim"}, "write X,Y,Z"},
+      {"krok-edit", {"--loop", "--loop-blend", "10", "-o", "a.anim"}, "write 10f for frames"},
+      {"krok-edit", {"-from", "1s", "-o", "a.anim"}, "did you mean '--from'?"},
+      {"krok-edit", {"--from", "1", "s", "-o", "a.anim"}, "as one word: 1s"},
+      {"krok-edit", {"in.bvh", "-o", "a.anim"}, "--append"},
+      {"krok-edit", {"--mirror", "--out-dir", "a.anim"}, "--out-dir DIR one for each input"},
+      {"krok-cam", {"--follow", "hips", "--fov", "0.7", "-o", "a.cam"}, "write 0.7rad"},
+      {"krok-cam", {"--orbit", "1", "-o", "a.cam"}, "1.5turns or 540deg"},
+      {"krok-info", {"-json"}, "did you mean '--json'?"},
+      {"krok-plot", {"--sheet", "s.png", "--show", "angles"}, "add -o OUT.svg"},
+      {"krok-view", {"-o", "page"}, "use the extension .html"},
+      {"krok-view", {"--out-dir", "pages"}, "-o OUT.html"},
+      {"krok-import", {"--skeleton", "smpl24", "-o", "a.anim"}, "a BVH file has its skeleton"}};
+  for (const Row& row : rows) {
+    std::vector<std::string> arguments = row.arguments;
+    arguments.insert(arguments.begin(), "in.bvh");
+    EXPECT_THAT(refused(row.tool, arguments), HasSubstr(row.hint));
+  }
+  EXPECT_THAT(refused("krok-blend", {"in.bvh:30", "in.bvh:70", "-o", "a.anim"}),
+              HasSubstr("here 0.3 and 0.7"));
+  EXPECT_THAT(refused("krok-blend", {"in.bvh", "0.5", "-o", "a.anim"}),
+              HasSubstr("a weight without a motion"));
+  EXPECT_THAT(refused("krok-morph", {"hero.glb", "-o", "a.exr"}), HasSubstr("is not pack, unpack"));
+  EXPECT_THAT(refused("krok", {"gaze", "in.bvh"}), HasSubstr("--look-at"));
+  put("list.tsv", "in.bvh a.anim\n");
+  EXPECT_THAT(refused("krok-edit", {"--mirror", "--manifest", "list.tsv", "--out-dir", "o"}),
+              HasSubstr("by tabs"));
+  put("cut.bvh", "HIERARCHY\nROOT Hips\n");
+  EXPECT_THAT(refused("krok-import", {"cut.bvh", "-o", "a.anim"}), HasSubstr("is truncated"));
+}
+
 TEST_F(Mistakes, UnknownVerbsToo) {
   EXPECT_THAT(refused("krok", {"improt", "in.bvh"}),
               AllOf(HasSubstr("unknown verb 'improt'"), HasSubstr("did you mean 'import'?")));

@@ -15,6 +15,7 @@
 #include "tools/batch/check.h"
 #include "tools/cli/folder_inputs.h"
 #include "tools/cli/paths.h"
+#include "tools/cli/usage.h"
 
 namespace krok::cli::batch {
 
@@ -108,7 +109,14 @@ class Lister {
   void from_arguments() {
     const auto set = sets_.find({});
     if (!set) return fail(set.error());
-    if (!sets_.all()[*set].ending) return fail(sets_.all()[*set].ending.error());
+    const auto& ending = sets_.all()[*set].ending;
+    if (!ending) return fail(ending.error());
+    std::error_code unknown;
+    if (extension(line_.out_dir) == *ending && !fs::exists(line_.out_dir, unknown)) {
+      return fail(usage(fmt::format("--out-dir is for a folder, not {}", shown(line_.out_dir)),
+                        fmt::format("-o {} writes one file, --out-dir DIR one for each input",
+                                    shown(line_.out_dir))));
+    }
     if (line_.inputs.empty()) {
       return fail(Error("usage", "no input given", "give files, folders or patterns"));
     }
@@ -184,8 +192,10 @@ class Lister {
   void check_exists(const ManifestWord& input) {
     std::error_code missing;
     if (line_.keep_going || input.text == "-" || fs::exists(input.text, missing)) return;
+    const bool blanks = input.text.find(' ') != std::string::npos;
     Error error("file-missing", fmt::format("no such file: {}", shown(input.text)),
-                "check the path, or convert the other files with --keep-going");
+                blanks ? "separate input, output and options by tabs, not blanks"
+                       : "check the path, or convert the other files with --keep-going");
     error.where = input.where;
     error.where.file = line_.manifest;
     fail(std::move(error));

@@ -386,6 +386,7 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   given_.clear();
   fixed_positionals.clear();
   if (auto bare = option_without_value(arguments)) return *std::move(bare);
+  if (auto dashed = option_with_one_dash(arguments)) return *std::move(dashed);
   try {
     app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
@@ -403,6 +404,11 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
         return Error("usage", fmt::format("{} is missing", option->get_name()),
                      fmt::format("{} is an argument too many; perhaps it is the value of {}",
                                  shown_list(left), option->get_name()));
+      }
+      constexpr std::string_view kUnits = " m cm mm in ft s ms f deg rad fps Hz ";
+      if (kUnits.find(" " + left.front() + " ") != std::string_view::npos) {
+        return usage(fmt::format("unexpected argument {}", shown_list(left)),
+                     "write a number and its unit as one word: 1s");
       }
       return Error(
           "usage",
@@ -469,6 +475,20 @@ std::optional<Error> CommandLine::option_without_value(
     return usage(fmt::format("{} has no value", arguments[i]),
                  fmt::format("write {} {}; '{}' is the next option", arguments[i],
                              option->get_type_name(), next));
+  }
+  return std::nullopt;
+}
+
+// "-json" would be -j with the value "son".
+std::optional<Error> CommandLine::option_with_one_dash(
+    const std::vector<std::string>& arguments) const {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (argument.size() < 3 || argument[0] != '-' || argument[1] == '-') continue;
+    const std::string name = "-" + argument.substr(0, argument.find('='));
+    if (app_.get_option_no_throw(name) == nullptr) continue;
+    return usage(fmt::format("unknown option '{}'", name.substr(1)),
+                 fmt::format("did you mean '{}'?", name));
   }
   return std::nullopt;
 }

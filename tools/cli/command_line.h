@@ -100,6 +100,7 @@ class CommandLine {
   Status open_folders();
   Status check_use_of_batch_options() const;
   std::optional<Error> option_without_value(const std::vector<std::string>& arguments) const;
+  std::optional<Error> option_with_one_dash(const std::vector<std::string>& arguments) const;
   std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
 
   Form form_;

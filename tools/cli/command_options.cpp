@@ -161,7 +161,11 @@ Status CommandOptions::take_values() const {
     if (status) continue;
     Error error = std::move(status).error();
     error.message = fmt::format("{}: {}", name_of(*declared.option), error.message);
-    if (error.hint.empty()) error.hint = declared.option->get_description();
+    const CLI::Option& option = *declared.option;
+    if (error.hint.empty()) {
+      if (declared.kind == "list") error.hint = fmt::format("write {}: ", option.get_type_name());
+      error.hint += option.get_description();
+    }
     return error;
   }
   return {};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string_view>
 
 #include "core/file.h"
@@ -52,8 +53,13 @@ ValueKind<double> quantity(const Quantity& what, Result<double> (*parse)(std::st
     const double shown_value = *value / what.size;
     if (holds(range, shown_value) || holds(range, std::round(shown_value * 1e9) / 1e9))
       return *value;
-    return usage(
+    Error error = usage(
         fmt::format("'{}' is not {} {}", shown(text), what.article, described(range, what.unit)));
+    if (what.size == kRadiansPerDegree && parse_finite(text) &&
+        holds(range, *value / (what.size * what.size))) {
+      error.hint = fmt::format("without a unit, angles are degrees: write {}rad", text);
+    }
+    return error;
   };
   return {what.name, what.value_name, read, {}};
 }
@@ -150,10 +156,18 @@ ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kin
       if (more) rest.remove_prefix(end + 1);
     }
     if (!more && values.size() >= least) return values;
-    return usage(fmt::format("'{}' has {} values", shown(text), more ? "too many" : "too few"),
-                 fmt::format("separate them by '{}'", between));
+    const auto given = 1 + std::ranges::count(text, between);
+    return usage(fmt::format("'{}' has too {} values, {}, separated by '{}'", shown(text),
+                             more ? "many" : "few", given, between));
   };
   return {"list", "LIST", read, {}};
+}
+
+bool is_device(const std::string& path) {
+  std::error_code unknown;
+  return path.empty() || path == "-" ||
+         (std::filesystem::exists(path, unknown) &&
+          !std::filesystem::is_regular_file(path, unknown));
 }
 
 std::string written(const ClipTime& time) {
@@ -164,8 +178,8 @@ ValueKind<std::string> output(const std::vector<std::string>& endings) {
   const auto read = [endings](const std::string& text) -> Result<std::string> {
     const std::string ending = extension(text);
     const auto ends_so = [&](const std::string& one) { return ascii_lower(text).ends_with(one); };
-    // Devices and names without an extension are taken as they are.
-    if (ending.empty() || std::ranges::any_of(endings, ends_so)) return text;
+    if (std::ranges::any_of(endings, ends_so)) return text;
+    if (ending.empty() && (endings.empty() || is_device(text))) return text;
     if (endings.empty()) {
       return usage(fmt::format("the output is a folder, not {}", shown(text)),
                    "give the name of a folder, without an extension");

@@ -70,6 +70,9 @@ ValueKind<T> lengths(char between = ',') {
 // "1.5s" or "120f".
 std::string written(const ClipTime& time);
 
+// Of which no extension is asked: none, standard output, /dev/null, a pipe.
+bool is_device(const std::string& path);
+
 // A file to write, of one of these extensions: ".svg". Code usage.
 ValueKind<std::string> output(const std::vector<std::string>& endings);
 

@@ -160,6 +160,8 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-synth", "--length", "--set length=VALUE"},
     {"krok-synth", "--table", "--points"},
     {"krok-synth", "--turn", "--set turn=VALUE"},
+    {"krok-view", "--output-dir", "-o OUT.html: one page with all inputs"},
+    {"krok-view", "--out-dir", "-o OUT.html: one page with all inputs"},
     {"krok-view", "--keys", "--contacts"},
     {"krok-view", "--camera", "krok-render --cam; a page is turned with the mouse"},
     {"krok-view", "--port", "-o OUT.html: the page is a file"},
@@ -177,6 +179,10 @@ inline std::string too_many_hint(std::string_view tool) {
     return "the clips are named in a description (.json, formats/library/SPEC.md): {\"schema\": "
            "\"krok.library/1\", \"steps\": \"auto\", \"parameters\": [...], \"examples\": "
            "[{\"clip\": \"takes/*.bvh\"}]}";
+  }
+  if (tool == "krok-edit") {
+    return "a file to be written is given with -o, a motion to go on with --append; for several "
+           "inputs, use --out-dir DIR";
   }
   if (tool != "krok-mix") return {};
   return "a timeline is JSON that names its motions (formats/timeline/SPEC.md); krok-blend A B "

@@ -78,6 +78,7 @@ Result<WeightedInput> parse_weighted_input(const std::string& word) {
                  "walk.anim:@weights.csv");
   };
   WeightedInput input;
+  if (parse_finite(word)) return wrong(fmt::format("'{}' is a weight without a motion", word));
   if (colon == std::string::npos) {
     input.path = word;
     return input;

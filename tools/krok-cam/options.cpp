@@ -26,20 +26,21 @@ Result<double> parse_aspect(const std::string& text) {
   return usage(fmt::format("'{}' is not an aspect ratio", shown(text)), "write 16:9 or 1.78");
 }
 
-// "20s" or "1.5turns".
+// "20s", "1.5turns" or "540deg".
 Result<Orbit> parse_orbit(const std::string& text) {
+  constexpr const char* kForms = "write 20s for the time of a turn, or 1.5turns or 540deg in all";
   std::string_view number_of_turns = text;
-  for (const std::string_view unit : {"turns", "turn"}) {
+  for (const auto& [unit, per_turn] : {std::pair("turns", 1.0), {"turn", 1.0}, {"deg", 360.0}}) {
     if (!number_of_turns.ends_with(unit)) continue;
-    number_of_turns.remove_suffix(unit.size());
+    number_of_turns.remove_suffix(std::string_view(unit).size());
     const auto count = parse_finite(trimmed(number_of_turns));
-    if (count && *count > 0 && *count <= 1e4) return Orbit{.turns = *count};
-    return usage(fmt::format("'{}' is not a number of turns", shown(text)),
-                 "write 20s or 1.5turns");
+    if (count && *count > 0 && *count <= 1e4) return Orbit{.turns = *count / per_turn};
+    return usage(fmt::format("'{}' is not a number of turns", shown(text)), kForms);
   }
   const auto period = seconds({1e-3}).read(text);
-  if (!period) return period.error();
-  return Orbit{.period = *period};
+  if (period && !parse_finite(text)) return Orbit{.period = *period};
+  return usage(fmt::format("'{}' is not a time with a unit or a number of turns", shown(text)),
+               kForms);
 }
 
 void declare_subject(CommandOptions& command, Options& o) {
@@ -111,7 +112,7 @@ void declare_image(CommandOptions& command, Options& o) {
   command.add(
       "--distance", o.distance, length({0, 1e4, true}),
       "Distance from the point it looks at; default: the shortest that frames the character");
-  command.add("--fov", o.fov, angle({0.01, 179.99}), "Vertical field of view", "40deg")
+  command.add("--fov", o.fov, angle({1, 179}), "Vertical field of view", "40deg")
       .not_with("--lens");
   command.add("--lens MM", o.lens, number({0.1, 1e5}),
               "The same as a focal length in millimetres, for an image 24 mm high");

@@ -10,6 +10,7 @@
 #include "motion/join.h"
 #include "motion/mirror.h"
 #include "motion/retime.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/steps.h"
 #include "tracks/retime_on_curves.h"
@@ -340,6 +341,11 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
   }
   LoopOptions looping = options.looping;
   looping.blend = options.loop_blend.seconds(edit.clip.rate);
+  if (looping.blend > std::max(1.0, edit.clip.duration())) {
+    return usage(fmt::format("--loop-blend {}s is longer than the loop of {}s",
+                             readable(looping.blend, 3), readable(edit.clip.duration(), 3)),
+                 fmt::format("write {}f for frames", readable(options.loop_blend.value)));
+  }
   // From strike to strike the last pose is the first again.
   if (options.cycle != CycleFoot::none && looping.end == LoopEnd::automatic) {
     looping.end = LoopEnd::closed;

@@ -12,8 +12,8 @@ namespace krok::cli::ik {
 
 namespace {
 
-// Metres; who misses by more has meant another unit.
-constexpr double kFarAway = 5;
+// Metres; who misses by more has meant another place, or another unit.
+constexpr double kFarMissed = 1;
 
 std::string_view kind_name(krok::ik::Goal::Kind kind) {
   switch (kind) {
@@ -78,6 +78,17 @@ std::string holder_text(const Outcome& outcome, const krok::ik::GoalFrame& frame
                                  shown(outcome.input.skeleton.names[at(joint)]));
 }
 
+// Where the motion has the goal's joint.
+std::string place_text(const Outcome& outcome, std::size_t goal, int frame) {
+  const int joint = outcome.goals[goal].goal.joint;
+  if (joint < 0) return {};
+  const Vec3f place = outcome.input.frame_positions(frame)[at(joint)];
+  return fmt::format(
+      "'{}' is at {}m,{}m,{}m there; krok-edit --at-origin brings a motion to the origin",
+      shown(outcome.input.skeleton.names[at(joint)]), readable(place.x(), 3),
+      readable(place.y(), 3), readable(place.z(), 3));
+}
+
 Json joint_name(const Outcome& outcome, int joint) {
   return joint < 0 ? Json() : Json(outcome.input.skeleton.names[at(joint)]);
 }
@@ -139,9 +150,7 @@ Diagnostics missed_goals(const Outcome& outcome) {
                                   counted(summary.counted, "frame"),
                                   miss_text(worst.residual.distance, worst.residual.angle),
                                   worst.frame, holder_text(outcome, worst));
-    if (worst.residual.distance > kFarAway) {
-      warning.hint = "lengths without a unit are metres: 110cm, not 110";
-    }
+    if (worst.residual.distance > kFarMissed) warning.hint = place_text(outcome, g, worst.frame);
     warning.frame = worst.frame;
     if (worst.residual.held_by >= 0) {
       warning.joint = outcome.input.skeleton.names[at(worst.residual.held_by)];

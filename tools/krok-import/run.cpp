@@ -23,6 +23,7 @@
 #include "tools/cli/output_kind.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
 #include "tools/shared/keys_choice.h"
@@ -209,6 +210,9 @@ Result<int> import_capture(const InputFile& input, const Options& options, ToolC
     return Error("import-missing",
                  "a capture has no animations to choose from: --clip cannot be used")
         .in_file(input.path());
+  }
+  if (kind == registry::Kind::bvh && !options.skeleton.empty()) {
+    return usage("--skeleton is for Acclaim motions and arrays: a BVH file has its skeleton");
   }
   const auto motion = motion_of_array(options, input);
   if (!motion) return motion.error();

@@ -139,8 +139,12 @@ Status set_keytimes(const Changes& changes, const Clip& clip, krok::keys::Sideca
           std::erase_if(list, [&](const MarkedKeytime& k) { return k.key.name == change.name; });
     }
     if (removed == 0) {
-      return Error("keys-none", fmt::format("no keytime '{}' to remove", change.name),
-                   "run without --remove to list the keytimes");
+      const bool known = std::ranges::any_of(
+          list, [&](const MarkedKeytime& one) { return one.key.name == change.name; });
+      return Error(
+          "keys-none",
+          fmt::format("no keytime '{}'{} to remove", change.name, known ? " near that time" : ""),
+          "run without --remove to list the keytimes");
     }
     sidecar.edited = true;
   }

@@ -112,11 +112,9 @@ void declare(CommandOptions& command, Options& o) {
            "info: describe an .exr, and with BASE how far each target moves it. bake: animate "
            "targets over time. frames: interpolate shapes at given times (key-frame mesh)")
       .required();
-  command
-      .add_option("files IN", o.files,
-                  "Files of the action. BASE and TARGETs: .obj, .glb, .gltf or .model, with the "
-                  "same vertices; pack also takes the targets in a glTF BASE")
-      .required();
+  command.add_option("files IN", o.files,
+                     "Files of the action. BASE and TARGETs: .obj, .glb, .gltf or .model, with the "
+                     "same vertices; pack also takes the targets in a glTF BASE");
   declare_shapes(command, o);
   declare_unpack(command, o);
   declare_motion(command, o);

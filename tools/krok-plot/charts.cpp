@@ -10,6 +10,7 @@
 
 #include "contacts/step_measures.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "draw/difference_chart.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
@@ -366,6 +367,10 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
     const auto frames = frames_of(file.clip, options);
     if (!frames) return Error(frames.error()).in_file(path);
     charted.frames = *frames;
+    if (options.to && options.to->seconds(file.clip.rate) > file.clip.duration() + 1e-3) {
+      context.warn("plot-range", fmt::format("{} ends at {} s, before --to", shown(charted.name),
+                                             readable(file.clip.duration(), 4)));
+    }
     auto keys = read_keys(options.keys, file, of_cycles, context);
     if (!keys) return keys.error();
     charted.keys = std::move(*keys);

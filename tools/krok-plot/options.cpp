@@ -206,6 +206,14 @@ Status check_inputs(const Options& o) {
                              table ? "motions" : "tables", table ? "a table" : "a motion"),
                  table ? "see krok-plot --help" : "--as-table reads the input as a table");
   }
+  if (o.sheet.wanted() && !o.given("--output")) {
+    for (const char* option :
+         {"--show", "--joint", "--euler", "--difference", "--log-y", "--panel"}) {
+      if (!o.given(option)) continue;
+      return usage(fmt::format("{} is for a chart, and none is written", option),
+                   "add -o OUT.svg, beside --sheet or --strip");
+    }
+  }
   if (table && o.sheet.wanted()) {
     return usage("--sheet and --strip show characters, but the input is a table");
   }

@@ -164,6 +164,21 @@ Status check_outputs(const Options& options, const ToolContext& context) {
   return Error("usage", "--ground is for a motion that is written", "give its name with -o");
 }
 
+// A scale that no body has: per cent, or centimetres in a metre.
+void warn_of_scale(const Options& options, const krok::retarget::Report& report,
+                   ToolContext& context) {
+  constexpr double kFar = 3;  // metres
+  double most = 0;
+  for (const auto& foot : {report.left_foot, report.right_foot}) {
+    if (foot) most = std::max(most, foot->largest_correction);
+  }
+  if (!options.scale || most < kFar) return;
+  context.warn("retarget-scale",
+               fmt::format("--scale {} moves the feet by up to {} m from where the legs reach",
+                           readable(*options.scale), readable(most, 3)),
+               "it is a factor, 1.1 for 110 %; without it, the length of the legs decides");
+}
+
 constexpr const char* kOrder = "IN is whose motion is wanted, --onto whose body";
 
 // `whole` is the same as `source`, or null for a long take.
@@ -241,6 +256,7 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
                                 outcome, context);
       !status)
     return status;
+  warn_of_scale(options, outcome.report, context);
 
   context.report.result = to_json(outcome);
   if (followed) context.report.result["ground"] = ground_json(*followed);

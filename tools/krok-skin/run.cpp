@@ -4,8 +4,10 @@
 
 #include <algorithm>
 
+#include "core/file.h"
 #include "core/numbers.h"
 #include "tools/cli/file_name.h"
+#include "tools/cli/usage.h"
 #include "tools/krok-skin/outputs.h"
 #include "tools/krok-skin/small_rig.h"
 #include "tools/krok-skin/subject.h"
@@ -114,6 +116,9 @@ Result<int> run(const Options& given, ToolContext& context) {
   }
   const As as = what_to_write(options, context.output);
   if (Status status = check_for(as, options); !status) return status.error();
+  if (options.up == pc2::Up::z && extension(context.output) != ".pc2") {
+    return usage("--up z is for a point cache", "OBJ and glTF have y up; write OUT.pc2");
+  }
   if (Status status = check_output(as, context.output); !status) return status.error();
   auto subject = load(options, context);
   if (!subject) return subject.error();

@@ -13,6 +13,7 @@
 #include "formats/steps/parameter_names.h"
 #include "math/types.h"
 #include "parametric/bounds.h"
+#include "tools/cli/usage.h"
 
 namespace krok::cli::synth {
 
@@ -82,6 +83,10 @@ Result<std::vector<double>> parse_settings(const std::vector<std::string>& words
     const std::size_t sign = word.rfind('=');
     if (sign == std::string::npos) {
       return misfit(fmt::format("--set: '{}' is not NAME=VALUE", shown(word)), parameters);
+    }
+    if (word.find('=') != sign) {
+      return usage(fmt::format("--set: '{}' sets several parameters", shown(word)),
+                   "repeat the option for each: --set length=70cm --set turn=15deg");
     }
     const auto d = find(word.substr(0, sign), parameters);
     if (!d) {

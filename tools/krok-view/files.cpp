@@ -296,7 +296,8 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
   return {};
 }
 
-void share_models(Files& files) {
+void share_models(Files& files, ToolContext& context) {
+  const bool moves = !files.motions.empty();
   for (Files::Character& character : files.models) {
     for (Files::Motion& motion : files.motions) {
       if (motion.body != nullptr || !character.actor.has_mesh()) continue;
@@ -307,8 +308,23 @@ void share_models(Files& files) {
       character.used = true;
     }
   }
+  for (const Files::Glb& glb : files.glbs) {
+    if (!moves || !glb.animations.empty()) continue;
+    context.warn("view-still",
+                 fmt::format("{} is shown without motion: it has no animation", glb.name),
+                 fmt::format("krok-skin {} IN.anim --retarget -o OUT.glb makes one of a motion",
+                             shown(glb.path)));
+  }
   for (Files::Character& character : files.models) {
     if (character.used) continue;
+    if (moves) {
+      context.warn(
+          "view-still",
+          fmt::format("{} is shown without motion: no motion here is of its "
+                      "skeleton",
+                      character.name),
+          fmt::format("krok-retarget IN --onto {} makes one of it", shown(character.path)));
+    }
     Files::Motion still{character.path, character.name, {}, nullptr, {}, {}, {}};
     still.clip.skeleton = character.actor.model.skeleton;
     if (character.actor.has_mesh()) {
@@ -408,7 +424,7 @@ Result<Files> read_files(const Options& options, ToolContext& context) {
     }
   }
   if (context.left_out.size() == options.inputs.size()) return none_can_be_used();
-  share_models(files);
+  share_models(files, context);
   if (Status status = show_ragdoll_bodies(options.bodies, context, files); !status) {
     return status.error();
   }

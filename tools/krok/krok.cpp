@@ -85,7 +85,8 @@ std::string hint_for(const std::string& verb) {
        "krok skin hero.character IN... -o OUT.glb"},
       {" join concat append sequence layer ",
        "krok mix TIMELINE.json, or krok edit IN --append NEXT.anim"},
-      {" reach look ", "krok ik IN --reach or --look-at"},
+      {" reach look gaze eyes ", "krok ik IN --reach or --look-at"},
+      {" talk speak speech lipsync visemes face ", "krok mix TIMELINE.json"},
       {" camera follow orbit ", "krok cam IN --follow hips"},
       {" remap map ", "krok retarget IN --onto hero.character"},
       {" fall push shove physics ", "krok ragdoll IN"}};
