@@ -143,7 +143,7 @@ coverage: test-deps
 
 # Which tests those are, by their times in `make test`.
 sanitize-list:
-	python3 tests/sanitizers/slow_tests.py $(BUILD)/test_results > tests/sanitizers/slow_tests.tmp
+	python3 tests/sanitizers/slow_tests.py $(BUILD) build-asan > tests/sanitizers/slow_tests.tmp
 	mv tests/sanitizers/slow_tests.tmp tests/sanitizers/slow_tests.txt
 
 tsan: test-deps

@@ -27,11 +27,12 @@ constexpr double kWholeTurn = 2.0 * kPi * 1.001;
 // The values of rotation channels, in the file's unit.
 struct Rotations {
   double largest = 0;
-  int turning = 0;  // channels with more than kTurns
+  int turning = 0;   // channels with more than kTurns
+  int spinning = 0;  // with more than kSpins, in radians four turns
 };
 
 Rotations rotations_of(const Hierarchy& hierarchy, const SampleRows& rows) {
-  constexpr double kTurns = 0.1;
+  constexpr double kTurns = 0.1, kSpins = 4 * kWholeTurn;
   Rotations rotations;
   for (std::size_t c = 0; c < hierarchy.channels.size(); ++c) {
     if (hierarchy.channels[c].kind != ChannelKind::rotation) continue;
@@ -41,6 +42,7 @@ Rotations rotations_of(const Hierarchy& hierarchy, const SampleRows& rows) {
     }
     rotations.largest = std::max(rotations.largest, most);
     if (most > kTurns) ++rotations.turning;
+    if (most > kSpins) ++rotations.spinning;
   }
   return rotations;
 }
@@ -192,12 +194,12 @@ class ConventionChooser {
 
   void choose_angles(const SampleRows& samples) {
     // A character that moves turns some joint by more than half a radian, and many a little.
-    constexpr double kMoves = 0.5, kManyTurns = 10;
+    constexpr double kMoves = 0.5;
     constexpr int kMinChannels = 6;
     const Rotations rotations = rotations_of(hierarchy_, samples);
     if (file_.options.angles == Angles::radians) {
       hierarchy_.degrees_per_angle = 1.0 / kRadiansPerDegree;
-      if (rotations.largest < kManyTurns * kWholeTurn) return;
+      if (rotations.spinning < kMinChannels) return;  // few are damaged
       return report(
           Severity::warning, "bvh-angles",
           fmt::format("the angles may be degrees: one is {}, {} turns in radians",

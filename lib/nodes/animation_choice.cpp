@@ -35,6 +35,14 @@ Result<int> find_animation(const Scene& scene, const std::string& wanted, const 
   for (std::size_t i = 0; i < count; ++i) {
     if (animation_name(scene, i) == wanted) return static_cast<int>(i);
   }
+  // Blender names an action with its armature: "Armature|Walk".
+  int named = -1, of_that_name = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!animation_name(scene, i).ends_with("|" + wanted)) continue;
+    named = static_cast<int>(i);
+    ++of_that_name;
+  }
+  if (of_that_name == 1) return named;
   const auto number = parse_integer(wanted);
   if (number && *number >= 0 && *number < static_cast<long long>(count)) {
     return static_cast<int>(*number);

@@ -17,8 +17,8 @@ std::string animation_name(const Scene& scene, std::size_t index);
 // "0 (walk), 1 (run)", of at most 20, for messages.
 std::string animation_list(const Scene& scene);
 
-// The animation of that name, else of that number. Code clip-name if there is none; `file` is for
-// the message.
+// The animation of that name, else the only one of "ARMATURE|name", else of that number. Code
+// clip-name if there is none; `file` is for the message.
 Result<int> find_animation(const Scene& scene, const std::string& wanted, const std::string& file);
 
 // An animation, and for messages why it was chosen: "the first of 3 that move any to move at least

@@ -91,7 +91,6 @@ TEST_F(Mistakes, ValuesThatMeanSomethingElse) {
       {"krok-cam", {"--orbit", "1", "-o", "a.cam"}, "1.5turns or 540deg"},
       {"krok-info", {"-json"}, "did you mean '--json'?"},
       {"krok-plot", {"--sheet", "s.png", "--show", "angles"}, "add -o OUT.svg"},
-      {"krok-view", {"-o", "page"}, "use the extension .html"},
       {"krok-view", {"--out-dir", "pages"}, "-o OUT.html"},
       {"krok-import", {"--skeleton", "smpl24", "-o", "a.anim"}, "a BVH file has its skeleton"}};
   for (const Row& row : rows) {

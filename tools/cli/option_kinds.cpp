@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string_view>
 
 #include "core/file.h"
@@ -111,6 +110,10 @@ ValueKind<double> number(Range range, const std::string& unit) {
     if (!per_hour && !unit.empty() && digits.ends_with(unit)) digits.remove_suffix(unit.size());
     auto value = parse_finite(digits);
     if (value && per_hour) *value /= 3.6;
+    if (unit.empty() && text.ends_with('%')) {
+      value = parse_finite(digits.substr(0, digits.size() - 1));
+      if (value) *value /= 100;
+    }
     if (value && holds(range, *value)) return *value;
     const bool any = !std::isfinite(range.low) && !std::isfinite(range.high);
     return usage(fmt::format("'{}' is not a number{}", shown(text),
@@ -163,11 +166,10 @@ ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kin
   return {"list", "LIST", read, {}};
 }
 
-bool is_device(const std::string& path) {
-  std::error_code unknown;
-  return path.empty() || path == "-" ||
-         (std::filesystem::exists(path, unknown) &&
-          !std::filesystem::is_regular_file(path, unknown));
+std::string frame_hint(const ClipTime& time, int frame_count) {
+  const bool frame = !time.in_frames && time.value == std::floor(time.value);
+  if (!frame || !(time.value < frame_count)) return {};
+  return fmt::format("{0}f is frame {0}", readable(time.value));
 }
 
 std::string written(const ClipTime& time) {
@@ -178,8 +180,8 @@ ValueKind<std::string> output(const std::vector<std::string>& endings) {
   const auto read = [endings](const std::string& text) -> Result<std::string> {
     const std::string ending = extension(text);
     const auto ends_so = [&](const std::string& one) { return ascii_lower(text).ends_with(one); };
-    if (std::ranges::any_of(endings, ends_so)) return text;
-    if (ending.empty() && (endings.empty() || is_device(text))) return text;
+    // Devices and names without an extension are taken as they are.
+    if (ending.empty() || std::ranges::any_of(endings, ends_so)) return text;
     if (endings.empty()) {
       return usage(fmt::format("the output is a folder, not {}", shown(text)),
                    "give the name of a folder, without an extension");

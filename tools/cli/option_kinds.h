@@ -69,9 +69,8 @@ ValueKind<T> lengths(char between = ',') {
 
 // "1.5s" or "120f".
 std::string written(const ClipTime& time);
-
-// Of which no extension is asked: none, standard output, /dev/null, a pipe.
-bool is_device(const std::string& path);
+// For a time beyond a clip that may be meant as a frame: "45f is frame 45", else nothing.
+std::string frame_hint(const ClipTime& time, int frame_count);
 
 // A file to write, of one of these extensions: ".svg". Code usage.
 ValueKind<std::string> output(const std::vector<std::string>& endings);

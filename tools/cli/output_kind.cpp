@@ -4,7 +4,6 @@
 
 #include "core/file.h"
 #include "core/text.h"
-#include "tools/cli/option_kinds.h"
 #include "tools/cli/usage.h"
 
 namespace krok::cli {
@@ -45,7 +44,8 @@ Status check_output_kind(const std::string& path, const std::string& option, Kin
 ValueKind<std::string> output_of(Kind written) {
   const auto read = [written](const std::string& path) -> Result<std::string> {
     const Kind named = registry::kind_of_name(path);
-    if (named == written || is_device(path)) return path;
+    // Devices and names without an extension are taken as they are.
+    if (named == written || (named == Kind::unknown && extension(path).empty())) return path;
     const std::string_view own = registry::kind_name(written);
     const std::string maker = named == Kind::unknown ? std::string() : maker_of(named, written);
     return usage(fmt::format("the output is a .{} file, not {}", own, shown(path)),

@@ -37,10 +37,11 @@ Result<Orbit> parse_orbit(const std::string& text) {
     if (count && *count > 0 && *count <= 1e4) return Orbit{.turns = *count / per_turn};
     return usage(fmt::format("'{}' is not a number of turns", shown(text)), kForms);
   }
-  const auto period = seconds({1e-3}).read(text);
+  auto period = seconds({1e-3}).read(text);
   if (period && !parse_finite(text)) return Orbit{.period = *period};
-  return usage(fmt::format("'{}' is not a time with a unit or a number of turns", shown(text)),
-               kForms);
+  Error error = period ? usage(fmt::format("'{}' has no unit", shown(text))) : period.error();
+  error.hint = kForms;
+  return error;
 }
 
 void declare_subject(CommandOptions& command, Options& o) {
@@ -114,7 +115,7 @@ void declare_image(CommandOptions& command, Options& o) {
       "Distance from the point it looks at; default: the shortest that frames the character");
   command.add("--fov", o.fov, angle({1, 179}), "Vertical field of view", "40deg")
       .not_with("--lens");
-  command.add("--lens MM", o.lens, number({0.1, 1e5}),
+  command.add("--lens MM", o.lens, number({0.1, 1e5}, "mm"),
               "The same as a focal length in millimetres, for an image 24 mm high");
   command.only_with({});
   command.add("--aspect", o.aspect, ValueKind<double>{"ratio", "W:H", parse_aspect, {}},

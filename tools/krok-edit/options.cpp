@@ -193,7 +193,7 @@ void declare_place(CommandOptions& command, Options& o) {
   command.group("8. Size");
   command
       .add("--scale TIMES", o.scale, number(kPositive),
-           "Scale factor for the skeleton and its motion")
+           "Scale factor for the skeleton and its motion; --height sets a stature")
       .not_with("--height");
   command.add("--height", o.height, ValueKind<double>{"length", "LENGTH", parse_height, {}},
               "Scale to this height of the reference pose, lowest to highest joint: 1.8m, with a "

@@ -10,6 +10,7 @@
 #include "motion/join.h"
 #include "motion/mirror.h"
 #include "motion/retime.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/steps.h"
@@ -88,9 +89,10 @@ Result<Range> typed_range(const Options& options, const Edit& edit) {
   }
   // A printed duration may be rounded up.
   if (range.last >= end + 1) {
+    const std::string frames = frame_hint(options.to->time, edit.clip.frame_count());
     return Error("edit-range",
                  fmt::format("--to {} is after the end", seconds(range.last / edit.clip.rate)),
-                 extent_of(edit.clip));
+                 frames.empty() ? extent_of(edit.clip) : extent_of(edit.clip) + "; " + frames);
   }
   return range;
 }

@@ -42,10 +42,13 @@ Result<PointGoal> parse_point(const std::string& option, krok::ik::Goal::Kind ki
     return wrong("it has no time");
   }
   const auto target = lengths<Vec3>().read(std::string(place));
-  if (!target) return wrong("a place has three lengths: " + target.error().message);
+  if (!target) {
+    Error error = wrong("a place has three lengths: " + target.error().message);
+    if (target.error().code == "quantity-no-unit") error.hint = target.error().hint;
+    return error;
+  }
   if (!(target->cwiseAbs().maxCoeff() <= 1e6)) return wrong("it is farther away than 1000 km");
   goal.target = *target;
-  goal.has_unit = place.find_first_of("mincft") != std::string_view::npos;
   std::string_view begin = times, end = times;
   split(times, "..", begin, end);
   const auto from = parse_clip_time(begin), to = parse_clip_time(end);

@@ -19,7 +19,6 @@ struct PointGoal {
   Vec3 target = Vec3::Zero();  // metres
   double from = 0, to = 0;     // seconds, or frames
   bool in_frames = false;
-  bool has_unit = false;  // one of the lengths has
 };
 
 struct Stiffness {

@@ -199,7 +199,6 @@ class Run {
   Status read_limits();
   Status learn();
   Status read_goals();
-  void warn_of_unit(const PointGoal& point) const;
   Status add_points();
   Status raise_goals();
   Status set_stiffness();
@@ -373,22 +372,10 @@ Status Run::raise_goals() {
   return {};
 }
 
-// A look goes towards a place however far it is: nothing else shows that centimetres were meant.
-void Run::warn_of_unit(const PointGoal& point) const {
-  constexpr double kFar = 50;  // metres
-  const double away = (point.target - clip_.skeleton.reference[0].position).norm();
-  if (point.kind != Goal::Kind::look_at || point.has_unit || away < kFar) return;
-  context_.warn("ik-unit",
-                fmt::format("{} {}: the place is {} m away", point.option, shown(point.joint),
-                            readable(away, 3)),
-                "lengths without a unit are metres: 160cm, not 160");
-}
-
 Status Run::add_points() {
   std::vector<PointGoal> points = options_.points;
   points.insert(points.end(), options_.looks.begin(), options_.looks.end());
   for (const PointGoal& point : points) {
-    warn_of_unit(point);
     if (is_gaze(point)) continue;
     const auto socket =
         std::ranges::find(character_.sockets, point.joint, &Character::Socket::name);

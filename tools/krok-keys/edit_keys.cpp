@@ -1,4 +1,5 @@
 #include "tools/krok-keys/edit_keys.h"
+#include "tools/cli/option_kinds.h"
 
 #include <fmt/format.h>
 
@@ -85,8 +86,10 @@ std::vector<MarkedKeytime>::iterator nearest(std::vector<MarkedKeytime>& list,
 Result<double> seconds_of(const ClipTime& time, const Clip& clip) {
   const double seconds = time.seconds(clip.rate);
   if (seconds >= 0 && seconds <= clip.duration() + 1e-9) return std::min(seconds, clip.duration());
-  return Error("keys-time", fmt::format("{} s is outside the motion, 0 to {} s", readable(seconds),
-                                        readable(clip.duration())));
+  return Error("keys-time",
+               fmt::format("{} s is outside the motion, 0 to {} s", readable(seconds),
+                           readable(clip.duration(), 4)),
+               frame_hint(time, clip.frame_count()));
 }
 
 Result<int> joint_of(const std::string& name, const Clip& clip) {

@@ -118,8 +118,10 @@ Status Run::begin_at(const ClipTime& at, const std::string& shown_time, Plan& pl
   const Clip& clip = subject_.clip;
   plan.fall.at = at.seconds(clip.rate);
   if (plan.fall.at > clip.duration() + 1e-9) {
-    return Error("ragdoll-time", fmt::format("{} is after the motion's end, {} s", shown_time,
-                                             readable(clip.duration())))
+    return Error("ragdoll-time",
+                 fmt::format("{} is after the motion's end, {} s", shown_time,
+                             readable(clip.duration(), 4)),
+                 frame_hint(at, clip.frame_count()))
         .in_file(options_.input);
   }
   const Status status =

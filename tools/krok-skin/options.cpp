@@ -22,7 +22,8 @@ Result<int> frame_at(const char* option, const std::optional<ClipTime>& time, co
   if (!(frame >= 0 && frame < clip.frame_count())) {
     return Error("skin-time",
                  fmt::format("{} {} is outside the motion, which has frames 0 to {} ({} s)", option,
-                             written(*time), clip.frame_count() - 1, readable(clip.duration())));
+                             written(*time), clip.frame_count() - 1, readable(clip.duration(), 4)),
+                 frame_hint(*time, clip.frame_count()));
   }
   return static_cast<int>(frame);
 }
@@ -212,8 +213,10 @@ Result<double> pose_time(const Options& options, const Clip& clip) {
   if (!options.time) return 0.0;
   const double seconds = options.time->seconds(clip.rate);
   if (seconds > clip.duration() * (1 + 1e-9)) {
-    return Error("skin-time", fmt::format("--time {} is outside the motion, which is {} s long",
-                                          written(*options.time), readable(clip.duration())))
+    return Error("skin-time",
+                 fmt::format("--time {} is outside the motion, which is {} s long",
+                             written(*options.time), readable(clip.duration(), 4)),
+                 frame_hint(*options.time, clip.frame_count()))
         .in_file(options.motions.empty() ? options.subject : options.motions.front());
   }
   return seconds;

@@ -122,8 +122,9 @@ TEST(FarValues, StrictRefusesThem) {
 TEST(FarValues, RadiansAreMeasuredInDegrees) {
   ReadOptions options = plain_options();
   options.angles = Angles::radians;
-  EXPECT_EQ(warnings(read_ok(damaged_rows(9, {{3, 3, "17000"}}), options)), 0);
-  EXPECT_EQ(warnings(read_ok(damaged_rows(9, {{3, 3, "18000"}}), options)), 1);
+  // One says that the rows are degrees.
+  EXPECT_EQ(warnings(read_ok(damaged_rows(9, {{3, 3, "17000"}}), options)), 1);
+  EXPECT_EQ(warnings(read_ok(damaged_rows(9, {{3, 3, "18000"}}), options)), 2);
 }
 
 // Rows that are left out are no frames, and have no say.

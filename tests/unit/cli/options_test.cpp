@@ -88,7 +88,8 @@ TEST_F(OptionKinds, MistakesNameOptionValueAndRange) {
   EXPECT_EQ(parse({"--width", "0mm"}), "--width: '0mm' is not a length greater than 0");
   EXPECT_EQ(parse({"--width", "3"}), "--width: '3' has no unit");
   EXPECT_EQ(parse({"--at", "-1s"}), "--at: '-1s' is not a time of 0 or more");
-  EXPECT_EQ(parse({"--at", "0", "--place", "1,2"}), "--place: '1,2' has too few values");
+  EXPECT_EQ(parse({"--at", "0", "--place", "1,2"}),
+            "--place: '1,2' has too few values, 2, separated by ','");
   EXPECT_EQ(parse({"--every", "010x"}), "--every: '010x' is not an integer from 1 to 9");
   EXPECT_EQ(parse({"--chart", "a.png"}), "--chart: the output is a .svg file, not a.png");
 }
