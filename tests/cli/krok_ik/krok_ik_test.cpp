@@ -103,8 +103,8 @@ TEST_F(KrokIk, WhatIsMissedIsToldWithTheJointThatHoldsBack) {
       ik({"walk.anim", "--reach", reach(Vec3(5, 0, 0)), "-o", "far.anim", "--strict"}).exit_code,
       1);
   EXPECT_TRUE(std::filesystem::exists(path("far.anim")));
-  const auto metres = ik({"walk.anim", "--reach", "RightHand=40,110,30@1s", "-o", "far.anim"});
-  EXPECT_THAT(metres.err, HasSubstr("lengths without a unit are metres"));
+  const auto metres = ik({"walk.anim", "--reach", "RightHand=40,11,30@1s", "-o", "far.anim"});
+  EXPECT_THAT(metres.err, HasSubstr("'RightHand' is at "));
 
   put("stiff.limits.json",
       R"({"schema": "krok.limits/1", "joints": {
