@@ -56,7 +56,7 @@ def slope(chance):
     longest = min(0.75, 0.26 / max(1e-3, math.tan(math.radians(abs(angle)))))
     prints = prints_along(chance, chance.randint(3, 12), (0.6 * longest, longest), (0.1, 0.2),
                           (-10, 10), (0.0, 4.0), chance.uniform(-180, 180))
-    return prints, f"slope:{angle:.3f}deg,begin=-100"
+    return prints, f"slope:{angle:.3f}deg,begin=-100m"
 
 
 def stairs(chance, sign):
