@@ -141,7 +141,7 @@ coverage: test-deps
 	ctest --preset coverage -j $(JOBS)
 	python3 tests/sanitizers/line_coverage.py . build-coverage
 
-# Which tests those are, by their times in `make test`.
+# Which tests those are, by their times in `make sanitize`, or in `make test` where they are left out.
 sanitize-list:
 	python3 tests/sanitizers/slow_tests.py $(BUILD) build-asan > tests/sanitizers/slow_tests.tmp
 	mv tests/sanitizers/slow_tests.tmp tests/sanitizers/slow_tests.txt

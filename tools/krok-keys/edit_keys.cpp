@@ -1,5 +1,4 @@
 #include "tools/krok-keys/edit_keys.h"
-#include "tools/cli/option_kinds.h"
 
 #include <fmt/format.h>
 
@@ -11,6 +10,7 @@
 #include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "tools/cli/option_kinds.h"
 
 namespace krok::cli::keys {
 
