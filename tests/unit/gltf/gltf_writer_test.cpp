@@ -11,6 +11,7 @@
 #include <set>
 
 #include "formats/gltf/baked_writer.h"
+#include "formats/gltf/joint_tracks.h"
 #include "support/mesh_motions.h"
 #include "support/test_scenes.h"
 #include "unit/gltf/glb.h"
@@ -67,6 +68,26 @@ TEST(GltfWriter, ASkeletonWithoutFramesHasNoAnimation) {
 TEST(GltfWriter, TheSameInputGivesTheSameBytes) {
   const Model model = test::tube_model(turned_human());
   EXPECT_EQ(rig(model, motion()).bytes, rig(model, motion()).bytes);
+}
+
+// Would fail if a compressed file held the keys of equal tracks once for each clip, or gave a clip
+// the keys of another.
+TEST(GltfWriter, EqualTracksShareTheirKeysWhereCompressed) {
+  const Model model = test::tube_model(turned_human());
+  const auto one = gltf::joint_tracks(model.skeleton, motion());
+  Clip back = motion();
+  for (Quatf& orientation : back.orientations) orientation = orientation.conjugate();
+  const auto other = gltf::joint_tracks(model.skeleton, back);
+  ASSERT_TRUE(one && other);
+  const gltf::NamedTracks clips[] = {{"a", &*one}, {"again", &*one}, {"other", &*other}};
+  gltf::WriteOptions options;
+  options.compressed = true;
+  const auto glb =
+      test::written([&](OutputFile& file) { return gltf::write_rig(model, clips, options, file); });
+  const auto& animations = glb.json["animations"];
+  ASSERT_EQ(animations.size(), 3u);
+  EXPECT_EQ(animations[0]["samplers"], animations[1]["samplers"]);
+  EXPECT_NE(animations[0]["samplers"], animations[2]["samplers"]);
 }
 
 // Loaders upload the vertices of each primitive: with shared ones, a character of many parts takes
