@@ -102,9 +102,11 @@ class FrameTransfer {
 
   // Moves the anchor and its descendants, and takes along what hangs beside them.
   void place(std::span<const Transform> source_pose, std::span<Transform> pose) const {
-    const Vec3 goal =
-        plan_.scale * middle(source_pose, plan_.source_sides) + plan_.rise * Vec3::UnitY();
-    const Vec3 shift = goal - middle(pose, plan_.target_sides);
+    const Vec3 goal = plan_.scale * middle(source_pose, plan_.source_sides);
+    // Who lies or sits on the ground is no higher for the height of his ankles.
+    const double upright =
+        smooth_step(0.25 * plan_.leg_length, 0.6 * plan_.leg_length, goal.y() - plan_.floor);
+    const Vec3 shift = goal + upright * plan_.rise * kUp - middle(pose, plan_.target_sides);
     for (std::size_t k = 0; k < pose.size(); ++k) {
       if (below_anchor_[k] != 0) pose[k].position += shift;
     }

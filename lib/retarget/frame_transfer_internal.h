@@ -31,6 +31,7 @@ struct TransferPlan {
   std::array<int, 2> target_sides = {0, 0};
   double scale = 1;             // lengths of the target over those of the source
   double rise = 0;              // metres the target's hips are raised for the height of its ankles
+  double floor = 0;             // height of the floor in the result, metres
   std::vector<PlacedLeg> legs;  // empty with Feet::free
   GroundStays stays;            // of all frames
   std::vector<KeptContact> kept;  // likewise

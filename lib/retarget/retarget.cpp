@@ -283,7 +283,7 @@ class Transfer {
       source_floor_.motion = standing;
     }
     target_floor_.motion = report_->scale * source_floor_.motion;
-    report_->floor = target_floor_.motion;
+    report_->floor = plan_.floor = target_floor_.motion;
     for (const Role foot : {Role::left_foot, Role::right_foot}) {
       plan_.rise += 0.5 * (ankle_over_floor(onto(), foot, target_floor_) -
                            report_->scale * ankle_over_floor(from(), foot, source_floor_));

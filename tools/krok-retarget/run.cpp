@@ -238,8 +238,6 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
   }
   const Outcome outcome{source.skeleton, *source_roles, target->clip.skeleton, *target_roles,
                         *result->report};
-  const bool pose_is_given = how.source_frame || !how.source_pose.empty();
-  for (Diagnostic& choice : choices_of(outcome, pose_is_given)) context.diagnose(std::move(choice));
 
   const auto made_by = [&] {
     std::vector<std::string> conversions = provenance().conversions;
@@ -256,6 +254,9 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
                                 outcome, context);
       !status)
     return status;
+  // Contacts are known once all frames were read.
+  const bool pose_is_given = how.source_frame || !how.source_pose.empty();
+  for (Diagnostic& choice : choices_of(outcome, pose_is_given)) context.diagnose(std::move(choice));
   warn_of_scale(options, outcome.report, context);
 
   context.report.result = to_json(outcome);

@@ -201,6 +201,32 @@ Json to_json(const Outcome& outcome) {
   return json;
 }
 
+namespace {
+
+// Contacts of the input that the result misses, as where an arm is too short for them.
+std::optional<Diagnostic> missed_contacts(const krok::retarget::Report& report) {
+  constexpr double kHigh = 0.05, kFast = 0.2, kLong = 0.05;  // metres, metres per second, seconds
+  int missed = 0;
+  const krok::retarget::ContactReport* worst = nullptr;
+  for (const krok::retarget::ContactReport& contact : report.contacts) {
+    const double faster = contact.slide - report.scale * contact.source_slide;
+    if (contact.end - contact.start < kLong || (contact.height < kHigh && faster < kFast)) continue;
+    ++missed;
+    if (worst == nullptr || contact.height > worst->height) worst = &contact;
+  }
+  if (worst == nullptr) return std::nullopt;
+  return make_warning(
+      "retarget-contact",
+      fmt::format("{} of {} missed; worst: {} on {} from {} to {} s, height off by {} mm, slides "
+                  "{} mm/s",
+                  missed, counted(report.contacts.size(), "contact"), worst->part, worst->on,
+                  readable(worst->start, 3), readable(worst->end, 3),
+                  readable(1e3 * worst->height, 3), readable(1e3 * worst->slide, 3)),
+      "other proportions, or --scale, leave limbs too short; krok-retarget -v lists all contacts");
+}
+
+}  // namespace
+
 Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
   Diagnostics choices;
   const krok::retarget::Report& report = outcome.report;
@@ -241,6 +267,7 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
         "do the toes have the right roles? krok-info -v shows them, --map and --onto-map of "
         "krok-retarget set them"));
   }
+  if (auto missed = missed_contacts(report)) choices.push_back(*std::move(missed));
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
     note("retarget-fingers",
          "the input's fingers never move; the target's fingers keep their reference pose");

@@ -190,6 +190,18 @@ TEST_F(KrokRetarget, EveryContactIsReported) {
   EXPECT_TRUE(json::parse(free.out)["result"]["contacts"].empty());
 }
 
+// Would fail if contacts that limbs do not reach were a figure of the last line alone.
+TEST_F(KrokRetarget, MissedContactsAreWarnedOf) {
+  write("hero.model", test::tube_model(test::human_skeleton(1.2)));
+  std::vector<std::string> arguments = {"walk.anim", "--onto", "hero.model", "-o", "out.anim"};
+  EXPECT_EQ(retarget(arguments).err.find("retarget-contact"), std::string::npos);
+  arguments.insert(arguments.end(), {"--scale", "1.5"});
+  const auto run = retarget(arguments);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("contacts missed; worst: "));
+  EXPECT_THAT(run.err, HasSubstr("[retarget-contact]"));
+}
+
 // The alignment of one take for another whose own would be another: each joint keeps the same
 // offset from its source in both, and what was saved gives the same bytes for the take itself.
 TEST_F(KrokRetarget, ASavedAlignmentIsThatOfTheTake) {

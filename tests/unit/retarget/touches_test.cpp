@@ -130,6 +130,26 @@ TEST(Touches, HandsOfAHandstandNeitherSlideNorHover) {
   EXPECT_GT(kept->report.largest_shift, 0.05);
 }
 
+// Would fail if a body that lies hovered by as much as its ankles are higher than the source's.
+TEST(Touches, WhoLiesIsNotRaisedForTheAnkles) {
+  constexpr double kHigher = 0.08;
+  Skeleton high = human_skeleton();
+  for (int j = 0; j < high.joint_count(); ++j) {
+    if (high.names[at(j)].find("Toe") == std::string::npos) {
+      high.reference[at(j)].position.y() += kHigher;
+    }
+  }
+  const Clip source = into_pose({}, Vec3(-1.5, 0, 0));
+  const auto result = transfer(source, with_other_axes(high, 5));
+  ASSERT_TRUE(result.ok());
+  const auto higher = [&](int frame) {
+    return place(result->clip, frame, "rig:Hips").y() -
+           result->report.scale * place(source, frame, "Hips").y();
+  };
+  EXPECT_NEAR(higher(0), kHigher, 0.02);
+  for (int f = 62; f < 118; ++f) EXPECT_NEAR(higher(f), 0, 0.01) << f;
+}
+
 TEST(Touches, AMotionThatTouchesNothingKeepsItsRotations) {
   const Clip source =
       into_pose({{"LeftArm", Vec3(0, 0, 0.8)}, {"Spine1", Vec3(0.2, 0.3, 0)}}, Vec3::Zero());
