@@ -19,18 +19,32 @@ constexpr int kShiftRounds = 2;
 class FrameTransfer {
  public:
   FrameTransfer(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
-                const TouchKeeping* touches)
-      : run_(run), source_(run.clip), target_(target), plan_(plan), jobs_(jobs), touches_(touches) {
+                const TouchKeeping* touches, FramePoses& poses)
+      : run_(run),
+        source_(run.clip),
+        target_(target),
+        plan_(plan),
+        jobs_(jobs),
+        touches_(touches),
+        poses_(poses) {
     find_below_anchor();
   }
 
-  void note(TouchKeeping& touches) const {
-    for_frames([&](std::size_t f, std::span<const Transform>, std::span<Transform> pose) {
-      touches.note(static_cast<int>(f), pose);
+  void note(TouchKeeping& touches, bool again) const {
+    in_parallel([&](std::size_t begin, std::size_t end) {
+      std::vector<Transform> source_pose(source_.skeleton.names.size());
+      std::vector<Transform> pose(target_.names.size());
+      for (std::size_t f = begin; f < end; ++f) {
+        const int frame = static_cast<int>(f);
+        if (!touches.needs(frame, again)) continue;
+        make_pose(frame, source_pose, pose);
+        touches.note(frame, pose);
+      }
     });
   }
 
   Clip run(Report& report) {
+    make_poses();
     Clip clip;
     clip.skeleton = target_;
     clip.rate = source_.rate;
@@ -86,8 +100,10 @@ class FrameTransfer {
       const int parent = target_.parents[at(k)];
       if (parent < 0) {
         pose[at(k)] = target_.reference[at(k)];
-      } else {
+      } else if (from.first < 0) {
         pose[at(k)] = pose[at(parent)] * plan_.local[at(k)];
+      } else {
+        pose[at(k)].position = pose[at(parent)] * plan_.local[at(k)].position;
       }
       if (from.first < 0) continue;
       Quat turn = turn_of(source_pose, from.first);
@@ -137,19 +153,47 @@ class FrameTransfer {
     }
   }
 
-  // Calls body(frame, source_pose, pose) for all frames, with the target's pose as given by
-  // rotations and hips.
+  // Both poses, the target's as given by rotations and hips.
+  void make_pose(int frame, std::span<Transform> source_pose, std::span<Transform> pose) const {
+    source_.get_pose(frame, source_pose);
+    pose_of(source_pose, pose);
+    place(source_pose, pose);
+  }
+
+  template <typename Body>
+  void in_parallel(const Body& body) const {
+    parallel_for(at(source_.frame_count()), kFramesATime, jobs_, body);
+  }
+
+  std::span<Transform> source_pose(std::size_t frame) const {
+    const std::size_t joints = source_.skeleton.names.size();
+    return std::span(poses_.source).subspan(frame * joints, joints);
+  }
+
+  std::span<Transform> target_pose(std::size_t frame) const {
+    const std::size_t joints = target_.names.size();
+    return std::span(poses_.target).subspan(frame * joints, joints);
+  }
+
+  void make_poses() const {
+    const auto frames = at(source_.frame_count());
+    poses_.source.resize(frames * source_.skeleton.names.size());
+    poses_.target.resize(frames * target_.names.size());
+    in_parallel([&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) {
+        make_pose(static_cast<int>(f), source_pose(f), target_pose(f));
+      }
+    });
+  }
+
+  // Calls body(frame, source_pose, pose) for all frames, with a copy of the target's pose.
   template <typename Body>
   void for_frames(const Body& body) const {
-    const auto frames = at(source_.frame_count());
-    parallel_for(frames, kFramesATime, jobs_, [&](std::size_t begin, std::size_t end) {
-      std::vector<Transform> source_pose(source_.skeleton.names.size());
+    in_parallel([&](std::size_t begin, std::size_t end) {
       std::vector<Transform> pose(target_.names.size());
       for (std::size_t f = begin; f < end; ++f) {
-        source_.get_pose(static_cast<int>(f), source_pose);
-        pose_of(source_pose, pose);
-        place(source_pose, pose);
-        body(f, source_pose, pose);
+        std::ranges::copy(target_pose(f), pose.begin());
+        body(f, source_pose(f), pose);
       }
     });
   }
@@ -251,7 +295,8 @@ class FrameTransfer {
   const Skeleton& target_;
   const TransferPlan& plan_;
   int jobs_;
-  const TouchKeeping* touches_;                     // of the run
+  const TouchKeeping* touches_;  // of the run
+  FramePoses& poses_;
   std::vector<BodyShift> shifts_;                   // [frames] or empty
   std::vector<char> below_anchor_, beside_anchor_;  // [target joints]
 };
@@ -259,13 +304,14 @@ class FrameTransfer {
 }  // namespace
 
 void note_touches(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
-                  TouchKeeping& touches) {
-  FrameTransfer(run, target, plan, jobs, nullptr).note(touches);
+                  bool again, TouchKeeping& touches) {
+  FramePoses none;
+  FrameTransfer(run, target, plan, jobs, nullptr, none).note(touches, again);
 }
 
 Clip transfer_frames(const FrameRun& run, const Skeleton& target, const TransferPlan& plan,
-                     int jobs, const TouchKeeping* touches, Report& report) {
-  return FrameTransfer(run, target, plan, jobs, touches).run(report);
+                     int jobs, const TouchKeeping* touches, FramePoses& poses, Report& report) {
+  return FrameTransfer(run, target, plan, jobs, touches, poses).run(report);
 }
 
 }  // namespace krok::retarget

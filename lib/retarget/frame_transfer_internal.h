@@ -38,14 +38,21 @@ struct TransferPlan {
   double leg_length = 0;          // metres, of the target; unused without legs and touches
 };
 
-// Notes in `touches`, which are those of `run`, where the target is by rotations alone.
+// Notes in `touches`, which are those of `run`, where the target is by rotations alone, as far as
+// they need it: `again` for settle() alone.
 void note_touches(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
-                  TouchKeeping& touches);
+                  bool again, TouchKeeping& touches);
+
+// Memory that is used again from block to block: joint_to_world before feet and touches, of each
+// frame. Shape [frames x joints].
+struct FramePoses {
+  std::vector<Transform> source, target;
+};
 
 // The frames of `run` on the skeleton `target`. Adds to `report` what the legs needed in the frames
 // that are kept: the two feet, largest_drop and what touches. `touches` are settled; null: none are
 // kept.
 Clip transfer_frames(const FrameRun& run, const Skeleton& target, const TransferPlan& plan,
-                     int jobs, const TouchKeeping* touches, Report& report);
+                     int jobs, const TouchKeeping* touches, FramePoses& poses, Report& report);
 
 }  // namespace krok::retarget

@@ -181,16 +181,16 @@ class Transfer {
   }
 
   // What the source touches in some frames of it, or none if that does not matter.
-  std::optional<TouchKeeping> find_touches(const FrameRun& frames) const {
+  std::optional<TouchKeeping> find_touches(const FrameRun& frames, bool again) const {
     if (report_->method != Method::roles || options_.touches == Touches::free) return {};
     TouchKeeping touches(frames.clip, from(), onto(), plan_.scale, source_floor_.motion,
                          leg_length(source_.skeleton, source_roles_), options_.feet == Feet::keep);
-    note_touches(frames, target_, plan_, options_.jobs, touches);
+    note_touches(frames, target_, plan_, options_.jobs, again, touches);
     return touches;
   }
 
   Status transfer(FrameRun& frames) {
-    auto touches = touches_ ? std::exchange(touches_, {}) : find_touches(frames);
+    auto touches = touches_ ? std::exchange(touches_, {}) : find_touches(frames, true);
     if (touches) {
       touches->settle(plan_.stays, stances(), frames.first);
       touches->find_on_body(frames.clip, from(), onto(),
@@ -200,8 +200,9 @@ class Transfer {
     const bool again = end <= reported_;
     Report of_before;
     if (again) of_before = *report_;
-    frames.clip = transfer_frames(frames, target_, plan_, options_.jobs,
-                                  touches ? &*touches : nullptr, again ? of_before : *report_);
+    frames.clip =
+        transfer_frames(frames, target_, plan_, options_.jobs, touches ? &*touches : nullptr,
+                        poses_, again ? of_before : *report_);
     if (again) return {};
     reported_ = end;
     advance(frames);
@@ -322,7 +323,7 @@ class Transfer {
       for (std::size_t i = 0; i < tracks.size(); ++i) {
         plan_.legs[i].placement.add(frames.clip, frames.kept_begin, frames.kept_end, tracks[i]);
       }
-      touches_ = find_touches(frames);
+      touches_ = find_touches(frames, false);
       if (touches_) touches_->add_stays(frames, plan_.stays);
       if (source_.frame_count > size_.frames) touches_.reset();
       advance(frames);
@@ -406,6 +407,7 @@ class Transfer {
   Floor source_floor_, target_floor_;
   std::optional<TouchKeeping> touches_;  // those of a take that is one block
   TransferPlan plan_;
+  FramePoses poses_;
   std::shared_ptr<Report> report_ = std::make_shared<Report>();
   int reported_ = 0;  // frames that report_ is of
 };

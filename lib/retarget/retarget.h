@@ -142,6 +142,6 @@ struct RetargetedFrames {
 // take. The frames are read four times beforehand. The arguments must outlive the result.
 Result<RetargetedFrames> transfer(const FrameSource& source, const RoleMap& source_roles,
                                   const Clip& target, const RoleMap& target_roles,
-                                  const Options& options, int block_frames = 8192);
+                                  const Options& options, int block_frames = 4096);
 
 }  // namespace krok::retarget

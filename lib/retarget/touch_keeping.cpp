@@ -51,9 +51,9 @@ std::vector<double> speeds_of(std::span<const Vec3> places, double rate) {
 }
 
 Vec3 place_of(const BodyPoint& point, const Clip& clip, int frame) {
-  const Transform joint{clip.frame_positions(frame)[at(point.joint)].cast<double>(),
-                        clip.frame_orientations(frame)[at(point.joint)].cast<double>()};
-  return joint * point.offset;
+  const Vec3 joint = clip.frame_positions(frame)[at(point.joint)].cast<double>();
+  if (point.offset.isZero(0)) return joint;
+  return clip.frame_orientations(frame)[at(point.joint)].cast<double>() * point.offset + joint;
 }
 
 // In the frames of `stay`.
@@ -216,6 +216,12 @@ void TouchKeeping::find_on_body(const Clip& clip, const Actor& source, const Act
       if (!touch.stays.empty()) on_body_.push_back({side, bone, std::move(touch)});
     }
   }
+}
+
+bool TouchKeeping::needs(int frame, bool again) const {
+  return std::ranges::any_of(ground_, [&](const OnGround& entry) {
+    return entry.touch.weight[at(frame)] > 0 && (!again || entry.part == BodyPart::hips);
+  });
 }
 
 void TouchKeeping::note(int frame, std::span<const Transform> target_pose) {

@@ -78,11 +78,14 @@ class TouchKeeping {
 
   bool empty() const { return ground_.empty() && on_body_.empty() && !hands_; }
 
+  // Whether a frame is to be noted: for add_stays() and settle(), or `again`, for settle() alone,
+  // which takes only the hips from it.
+  bool needs(int frame, bool again) const;
   // Keeps where the target's points are by rotations alone. One frame each, on any thread.
   void note(int frame, std::span<const Transform> target_pose);
 
-  // After all frames were noted: adds the kept frames of `run`, the clip of which this is, to the
-  // stays of the take. The runs come in order.
+  // After all needed frames were noted: adds the kept frames of `run`, the clip of which this is,
+  // to the stays of the take. The runs come in order.
   void add_stays(const FrameRun& run, GroundStays& stays) const;
 
   // Where on the ground the target touches it, from the stays of the take. Feet that stand, as
