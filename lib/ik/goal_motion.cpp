@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/index.h"
@@ -10,6 +12,7 @@
 #include "ik/goal.h"
 #include "math/quaternion.h"
 #include "motion/sample.h"
+#include "scene/frame_blocks.h"
 #include "scene/skeleton.h"
 
 namespace krok::ik {
@@ -212,12 +215,28 @@ Goal goal_in_frame(const KeyedGoal& goal, const Clip& clip, int frame) {
 
 namespace {
 
-// Solves one frame after the other; one for each thread.
+// Of the frame before, for each goal: what it turned in the joints' frames, all of them together,
+// or, as it fades, what it alone turns at full strength.
+struct TurnsBefore {
+  std::vector<std::vector<Vec3>> turns;  // [goals][joints]
+  std::vector<double> strengths;         // [goals]
+};
+
+// Solves one frame after the other; one for each thread. `run` is of a take that lasts `duration`
+// seconds; its frames are numbered as in the take.
 class FrameSolver {
  public:
-  FrameSolver(const Clip& clip, std::span<const KeyedGoal> goals, std::span<const int> upright,
-              Solver solver)
-      : clip_(clip), goals_(goals), upright_(upright), solver_(std::move(solver)) {
+  FrameSolver(const FrameRun& run, double duration, std::span<const KeyedGoal> goals,
+              std::span<const int> upright, Solver solver, TurnsBefore before)
+      : clip_(run.clip),
+        first_(run.first),
+        duration_(duration),
+        goals_(goals),
+        upright_(upright),
+        solver_(std::move(solver)),
+        turns_(std::move(before.turns)),
+        strengths_before_(std::move(before.strengths)) {
+    const Clip& clip = run.clip;
     const std::size_t joints = clip.skeleton.names.size();
     given_.resize(joints);
     solved_.resize(joints);
@@ -230,6 +249,7 @@ class FrameSolver {
   }
 
   Status solve(int frame, std::span<GoalFrame> report, Clip& result, double& excess);
+  TurnsBefore before() && { return {std::move(turns_), std::move(strengths_before_)}; }
 
  private:
   Transform anchor(const KeyedGoal& goal, double time);
@@ -246,17 +266,17 @@ class FrameSolver {
   double excess_of_chains() const;
 
   const Clip& clip_;
+  int first_;  // number of its first frame
+  double duration_;
   std::span<const KeyedGoal> goals_;
   std::span<const int> upright_;
   Solver solver_;
   std::vector<Transform> given_, solved_, other_, scratch_, local_, before_solving_;
   std::vector<Goal> active_;
   std::vector<double> strengths_;
-  std::vector<std::uint8_t> in_chain_;  // [joints], of the frame's goals
-  // What each goal turned in the frame before, in the joints' frames: all of them together, or, as
-  // it fades, what it alone turns in this one at full strength. How much of it is in the start.
-  std::vector<std::vector<Vec3>> turns_;  // [goals]
-  std::vector<double> strengths_before_, parts_;
+  std::vector<std::uint8_t> in_chain_;            // [joints], of the frame's goals
+  std::vector<std::vector<Vec3>> turns_;          // see TurnsBefore
+  std::vector<double> strengths_before_, parts_;  // how much of the turns is in the start
   std::vector<Vec3> mean_;
 };
 
@@ -469,14 +489,14 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
   strengths_.clear();
   double strength = 0;
   for (const KeyedGoal& goal : goals_) {
-    strengths_.push_back(strength_at(goal, time, clip_.duration()));
+    strengths_.push_back(strength_at(goal, time, duration_));
     strength = std::max(strength, strengths_.back());
   }
   if (!(strength > 0)) {
     std::ranges::fill(strengths_before_, 0.0);
     return {};
   }
-  clip_.get_pose(frame, given_);
+  clip_.get_pose(frame - first_, given_);
   if (Status status = list_goals(time); !status) return status;
   mark_chains();
   start_from_before();
@@ -499,7 +519,7 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
       if (!missed[i].reached) missed[i].held_by = held_by;
     }
   }
-  result.set_pose(frame, solved_);
+  result.set_pose(frame - first_, solved_);
   std::size_t next = 0;
   for (std::size_t g = 0; g < goals_.size(); ++g) {
     report[g] = {frame, strengths_[g], {}};
@@ -513,114 +533,177 @@ struct Stretch {
   int first = 0, last = 0;
 };
 
-std::vector<Stretch> stretches_of(const Clip& clip, std::span<const KeyedGoal> goals) {
-  std::vector<Stretch> stretches;
-  for (int f = 0; f < clip.frame_count(); ++f) {
-    const bool active = std::ranges::any_of(goals, [&](const KeyedGoal& goal) {
-      return strength_at(goal, f / clip.rate, clip.duration()) > 0;
-    });
-    if (!active) continue;
-    if (stretches.empty() || stretches.back().last + 1 < f) stretches.push_back({f, f});
-    stretches.back().last = f;
-  }
-  return stretches;
-}
+// Of a joint relative to its parent, over the frames so far.
+struct JointTurns {
+  double largest = 0, before = 0;  // radians a frame, of the result and of the input
+  int frame = -1;
+  bool changed = false;
+  Quat last = Quat::Identity(), last_before = Quat::Identity();  // in the last frame
+};
 
-// `given` are the frames of the stretches as they were.
-void measure_turns(const Clip& given, std::span<const Stretch> stretches, GoalMotion& made) {
-  const auto& parents = made.clip.skeleton.parents;
-  const int frames = made.clip.frame_count();
-  std::vector<int> kept(at(frames), -1);  // the frame of `given`, of those in a stretch
-  for (int next = 0; const Stretch& stretch : stretches) {
-    for (int f = stretch.first; f <= stretch.last; ++f) kept[at(f)] = next++;
+// Solves a take block by block.
+class BlockSolver {
+ public:
+  BlockSolver(const FrameSource& source, std::span<const KeyedGoal> goals, Limits limits,
+              GoalMotionOptions options, int block_frames)
+      : parents_(source.skeleton.parents),
+        rate_(source.rate),
+        duration_(source.duration()),
+        goals_(goals),
+        limits_(std::move(limits)),
+        options_(std::move(options)),
+        block_frames_(block_frames),
+        joints_(parents_.size()) {
+    motion_->goals.resize(goals.size());
   }
-  const auto relative = [&](const Clip& of, int f, std::size_t j) -> Quat {
-    const Quat own = of.frame_orientations(f)[j].cast<double>();
-    return parents[j] < 0
-               ? own
-               : Quat(of.frame_orientations(f)[at(parents[j])].cast<double>().conjugate() * own);
-  };
-  const auto relative_before = [&](int f, std::size_t j) {
-    return kept[at(f)] < 0 ? relative(made.clip, f, j) : relative(given, kept[at(f)], j);
-  };
-  for (std::size_t j = 0; j < parents.size(); ++j) {
-    double most = 0, before = 0;
-    int frame = -1;
-    bool changed = false;
-    for (int f = 1; f < frames; ++f) {
-      const Quat now = relative(made.clip, f, j), was = relative_before(f, j);
-      changed = changed || angle_between(now, was) > 1e-6;
-      before = std::max(before, angle_between(relative_before(f - 1, j), was));
-      const double turn = angle_between(relative(made.clip, f - 1, j), now);
-      if (turn > most) most = turn, frame = f;
+
+  const std::shared_ptr<GoalMotion>& motion() const { return motion_; }
+
+  // Blocks have no overlap; each comes first after those before it.
+  Status change(FrameRun& run) {
+    const int first = run.first, end = run.first + run.clip.frame_count();
+    const auto number = at(first / block_frames_);
+    before_.resize(std::max(before_.size(), number + 2));
+    const std::vector<Stretch> stretches = stretches_of(first, end);
+    const std::size_t count = goals_.size();
+    std::vector<GoalFrame> report(at(end - first) * count);
+    std::vector<Status> failed(stretches.size());
+    std::vector<double> excesses(stretches.size(), 0.0);
+    Clip made = run.clip;
+    parallel_for(stretches.size(), 1, options_.jobs, [&](std::size_t from, std::size_t to) {
+      for (std::size_t s = from; s < to; ++s) {
+        const Stretch& stretch = stretches[s];
+        FrameSolver solver(run, duration_, goals_, options_.upright,
+                           *Solver::create(parents_, limits_, options_.solver),
+                           stretch.first == first ? before_[number] : TurnsBefore());
+        for (int f = stretch.first; f <= stretch.last && failed[s].ok(); ++f) {
+          failed[s] = solver.solve(f, std::span(report).subspan(at(f - first) * count, count), made,
+                                   excesses[s]);
+        }
+        if (stretch.last + 1 == end) before_[number + 1] = std::move(solver).before();
+      }
+    });
+    for (Status& status : failed) {
+      if (!status) return std::move(status);
     }
-    if (!changed) continue;
-    made.input_turn = std::max(made.input_turn, before);
-    if (most <= made.largest_turn) continue;
-    made.largest_turn = most;
-    made.turning_joint = static_cast<int>(j);
-    made.turning_frame = frame;
+    if (end > reported_) {
+      reported_ = end;
+      for (const double excess : excesses) {
+        motion_->largest_excess = std::max(motion_->largest_excess, excess);
+      }
+      add(report);
+      measure_turns(run, made);
+    }
+    run.clip = std::move(made);
+    return {};
   }
-}
+
+ private:
+  std::vector<Stretch> stretches_of(int first, int end) const {
+    std::vector<Stretch> stretches;
+    for (int f = first; f < end; ++f) {
+      const bool active = std::ranges::any_of(goals_, [&](const KeyedGoal& goal) {
+        return strength_at(goal, f / rate_, duration_) > 0;
+      });
+      if (!active) continue;
+      if (stretches.empty() || stretches.back().last + 1 < f) stretches.push_back({f, f});
+      stretches.back().last = f;
+    }
+    return stretches;
+  }
+
+  void add(std::span<const GoalFrame> report) {
+    const std::size_t count = goals_.size();
+    for (std::size_t i = 0; i < report.size(); i += count) {
+      bool changed = false;
+      for (std::size_t g = 0; g < count; ++g) {
+        if (!(report[i + g].strength > 0)) continue;
+        changed = true;
+        motion_->goals[g].push_back(report[i + g]);
+      }
+      motion_->changed_frames += changed ? 1 : 0;
+    }
+  }
+
+  void measure_turns(const FrameRun& given, const Clip& made) {
+    parallel_for(parents_.size(), 1, options_.jobs, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t j = begin; j < end; ++j) measure_turns(given, made, j);
+    });
+    GoalMotion& motion = *motion_;
+    motion.largest_turn = motion.input_turn = 0;
+    for (std::size_t j = 0; j < joints_.size(); ++j) {
+      if (!joints_[j].changed) continue;
+      motion.input_turn = std::max(motion.input_turn, joints_[j].before);
+      if (joints_[j].largest <= motion.largest_turn) continue;
+      motion.largest_turn = joints_[j].largest;
+      motion.turning_joint = static_cast<int>(j);
+      motion.turning_frame = joints_[j].frame;
+    }
+  }
+
+  void measure_turns(const FrameRun& given, const Clip& made, std::size_t j) {
+    JointTurns& joint = joints_[j];
+    const auto relative = [&](const Clip& of, int f) -> Quat {
+      const Quat own = of.frame_orientations(f)[j].cast<double>();
+      if (parents_[j] < 0) return own;
+      return of.frame_orientations(f)[at(parents_[j])].cast<double>().conjugate() * own;
+    };
+    for (int f = 0; f < made.frame_count(); ++f) {
+      const Quat was = relative(given.clip, f), now = relative(made, f);
+      const Quat before = std::exchange(joint.last_before, was);
+      const Quat made_before = std::exchange(joint.last, now);
+      if (given.first + f == 0) continue;
+      const bool is_given = now.coeffs() == was.coeffs();
+      const double turn_before = angle_between(before, was);
+      const double turn = is_given && made_before.coeffs() == before.coeffs()
+                              ? turn_before
+                              : angle_between(made_before, now);
+      joint.changed = joint.changed || (!is_given && angle_between(now, was) > 1e-6);
+      joint.before = std::max(joint.before, turn_before);
+      if (turn > joint.largest) joint.largest = turn, joint.frame = given.first + f;
+    }
+  }
+
+  const std::vector<int> parents_;
+  double rate_, duration_;
+  std::span<const KeyedGoal> goals_;
+  const Limits limits_;
+  const GoalMotionOptions options_;
+  int block_frames_;
+  std::vector<TurnsBefore> before_;  // at the beginning of each block
+  std::vector<JointTurns> joints_;
+  int reported_ = 0;  // frames that motion_ is of
+  std::shared_ptr<GoalMotion> motion_ = std::make_shared<GoalMotion>();
+};
 
 }  // namespace
 
-Result<GoalMotion> apply_goals(Clip motion, std::span<const KeyedGoal> goals, const Limits& limits,
-                               const GoalMotionOptions& options) {
-  GoalMotion result;
-  result.clip = std::move(motion);
-  const Clip& clip = result.clip;
+Result<GoalFrames> apply_goals(const FrameSource& source, std::span<const KeyedGoal> goals,
+                               const Limits& limits, const GoalMotionOptions& options,
+                               int block_frames) {
+  const BlockSize size{std::max(block_frames, 1)};
   for (const KeyedGoal& goal : goals) {
-    if (Status status = check_goal(goal, clip.skeleton); !status) return status.error();
+    if (Status status = check_goal(goal, source.skeleton); !status) return status.error();
   }
   // Says now what is wrong with limits and options.
-  if (auto solver = Solver::create(clip.skeleton.parents, limits, options.solver); !solver) {
-    return solver.error();
+  if (auto made = Solver::create(source.skeleton.parents, limits, options.solver); !made) {
+    return made.error();
   }
-  const std::size_t frames = at(clip.frame_count());
-  std::vector<GoalFrame> report(frames * goals.size());
-  const std::vector<Stretch> stretches = stretches_of(clip, goals);
-  Clip given;  // what frames are solved from: each is read before it is written
-  given.skeleton = clip.skeleton;
-  for (const Stretch& stretch : stretches) {
-    const auto begin = stretch.first * std::ptrdiff_t{clip.joint_count()};
-    const auto end = (stretch.last + 1) * std::ptrdiff_t{clip.joint_count()};
-    given.orientations.insert(given.orientations.end(), clip.orientations.begin() + begin,
-                              clip.orientations.begin() + end);
-  }
-  std::vector<Status> failed(stretches.size());
-  std::vector<double> excesses(stretches.size(), 0.0);
-  parallel_for(stretches.size(), 1, options.jobs, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      FrameSolver solver(clip, goals, options.upright,
-                         *Solver::create(clip.skeleton.parents, limits, options.solver));
-      for (int f = stretches[s].first; f <= stretches[s].last && failed[s].ok(); ++f) {
-        failed[s] = solver.solve(f, std::span(report).subspan(at(f) * goals.size(), goals.size()),
-                                 result.clip, excesses[s]);
-      }
-    }
-  });
-  for (const Status& status : failed) {
-    if (!status) {
-      Status copy = status;
-      return copy.error();
-    }
-  }
-  for (const double excess : excesses) {
-    result.largest_excess = std::max(result.largest_excess, excess);
-  }
-  result.goals.resize(goals.size());
-  for (std::size_t f = 0; f < frames; ++f) {
-    bool changed = false;
-    for (std::size_t g = 0; g < goals.size(); ++g) {
-      const GoalFrame& one = report[f * goals.size() + g];
-      if (!(one.strength > 0)) continue;
-      changed = true;
-      result.goals[g].push_back(one);
-    }
-    result.changed_frames += changed ? 1 : 0;
-  }
-  measure_turns(given, stretches, result);
+  const auto solver = std::make_shared<BlockSolver>(source, goals, limits, options, size.frames);
+  return GoalFrames{changed_in_blocks(source, size, options.jobs,
+                                      [solver](FrameRun& run) { return solver->change(run); }),
+                    solver->motion()};
+}
+
+Result<GoalMotion> apply_goals(const Clip& motion, std::span<const KeyedGoal> goals,
+                               const Limits& limits, const GoalMotionOptions& options) {
+  const auto made = apply_goals(frames_of(motion), goals, limits, options);
+  if (!made) return made.error();
+  auto clip = load(made->frames, options.jobs);
+  if (!clip) return clip.error();
+  GoalMotion result = std::move(*made->motion);
+  result.clip = *std::move(clip);
+  result.clip.provenance = motion.provenance;
   return result;
 }
 

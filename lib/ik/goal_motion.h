@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 #include "core/result.h"
 #include "ik/solver.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "timeline/easing.h"
 
 // Goals over time, brought about in every frame of a motion.
@@ -89,8 +91,20 @@ struct GoalMotionOptions {
 //
 // Codes: ik-goal for a goal that Solver refuses, keys whose times do not increase, no keys; those
 // of Solver::create.
-Result<GoalMotion> apply_goals(Clip clip, std::span<const KeyedGoal> goals, const Limits& limits,
-                               const GoalMotionOptions& options = {});
+Result<GoalMotion> apply_goals(const Clip& clip, std::span<const KeyedGoal> goals,
+                               const Limits& limits, const GoalMotionOptions& options = {});
+
+struct GoalFrames {
+  FrameSource frames;                  // to be read about in order
+  std::shared_ptr<GoalMotion> motion;  // complete, but for its clip, once all frames were read
+};
+
+// The same of frames generated on demand, in blocks, in memory that hardly grows with their number
+// (40 bytes for each goal that is active in a frame): the result does not depend on `block_frames`.
+// The goals must outlive the result.
+Result<GoalFrames> apply_goals(const FrameSource& source, std::span<const KeyedGoal> goals,
+                               const Limits& limits, const GoalMotionOptions& options,
+                               int block_frames = 4096);
 
 // A goal as it stands in a frame of a motion, whatever its strength: target and orientation in the
 // world, the support where its joints stand. The goal is one that apply_goals() takes.

@@ -7,6 +7,7 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "scene/frame_blocks.h"
 
 namespace krok::cli::ik {
 
@@ -82,7 +83,9 @@ std::string holder_text(const Outcome& outcome, const krok::ik::GoalFrame& frame
 std::string place_text(const Outcome& outcome, std::size_t goal, int frame) {
   const int joint = outcome.goals[goal].goal.joint;
   if (joint < 0) return {};
-  const Vec3f place = outcome.input.frame_positions(frame)[at(joint)];
+  const auto clip = load(part_of(outcome.input, frame, 1), 1);
+  if (!clip) return {};
+  const Vec3f place = clip->positions[at(joint)];
   return fmt::format(
       "'{}' is at {}m,{}m,{}m there; krok-edit --at-origin brings a motion to the origin",
       shown(outcome.input.skeleton.names[at(joint)]), readable(place.x(), 3),
@@ -110,7 +113,7 @@ std::string summary(const Outcome& outcome) {
   }
   return fmt::format("{} in {} of {}, reached in {} of {} at full strength",
                      counted(static_cast<long long>(outcome.goals.size()), "goal"),
-                     outcome.motion.changed_frames, counted(outcome.input.frame_count(), "frame"),
+                     outcome.motion.changed_frames, counted(outcome.input.frame_count, "frame"),
                      reached, total);
 }
 
@@ -160,9 +163,9 @@ Diagnostics missed_goals(const Outcome& outcome) {
   return list;
 }
 
-Json to_json(const Outcome& outcome) {
+Json to_json(const Outcome& outcome, bool with_frames) {
   Json json;
-  json["frames"] = outcome.input.frame_count();
+  json["frames"] = outcome.input.frame_count;
   json["changed_frames"] = outcome.motion.changed_frames;
   json["largest_turn"] = {
       {"angle", to_degrees(outcome.motion.largest_turn)},
@@ -189,6 +192,7 @@ Json to_json(const Outcome& outcome) {
         summary.worst != nullptr ? joint_name(outcome, summary.worst->residual.held_by) : Json();
     entry["frames"] = Json::array();
     for (const krok::ik::GoalFrame& frame : frames) {
+      if (!with_frames) break;
       entry["frames"].push_back({{"frame", frame.frame},
                                  {"strength", frame.strength},
                                  {"distance", frame.residual.distance},

@@ -9,10 +9,10 @@
 namespace krok::cli::ik {
 
 struct Outcome {
-  const Clip& input;
+  const FrameSource& input;
   const std::vector<krok::ik::KeyedGoal>& goals;
   const krok::ik::Limits& limits;
-  const krok::ik::GoalMotion& motion;
+  const krok::ik::GoalMotion& motion;  // its clip is not used
 };
 
 // One line for display.
@@ -25,8 +25,8 @@ std::string table(const Outcome& outcome);
 // joint that holds it back; ik-never for goals that are active in no frame.
 Diagnostics missed_goals(const Outcome& outcome);
 
-// Goals with their residuals in each frame, and the limits.
-Json to_json(const Outcome& outcome);
+// Goals, `with_frames` with their residuals in each frame, and the limits.
+Json to_json(const Outcome& outcome, bool with_frames);
 
 std::string limits_summary(const krok::ik::Limits& limits);
 Json limits_json(const krok::ik::Limits& limits, const Skeleton& skeleton);

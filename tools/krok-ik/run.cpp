@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/index.h"
 #include "core/nearest_name.h"
@@ -26,6 +29,7 @@
 #include "ik/learn_limits.h"
 #include "retarget/stance.h"
 #include "roles/body_frame.h"
+#include "scene/frame_blocks.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
@@ -50,10 +54,16 @@ bool has_angle(Goal::Kind kind) {
          kind == Goal::Kind::look_at || kind == Goal::Kind::pole;
 }
 
+bool looks_with_eyes(const Options& options) {
+  return std::ranges::any_of(options.looks,
+                             [](const PointGoal& look) { return look.joint == "eyes"; });
+}
+
 class ChartMaker {
  public:
-  explicit ChartMaker(const Outcome& outcome) : outcome_(outcome) {
-    for (int f = 0; f < outcome.input.frame_count(); ++f) times_.push_back(f / outcome.input.rate);
+  ChartMaker(const Outcome& outcome, const Clip& given, const Clip& made)
+      : outcome_(outcome), given_(given), made_(made) {
+    for (int f = 0; f < given.frame_count(); ++f) times_.push_back(f / given.rate);
   }
 
   // What is less than this is a line at 0, not a mountain range of rounding errors.
@@ -105,8 +115,8 @@ class ChartMaker {
   draw::Panel beyond_limits() const {
     draw::Panel panel =
         over_time("Rotation beyond limits, largest of all joints", "angle", "\u00B0");
-    add("input", excesses(outcome_.input), 6, panel);
-    add("result", excesses(outcome_.motion.clip), 0, panel);
+    add("input", excesses(given_), 6, panel);
+    add("result", excesses(made_), 0, panel);
     widen(kFewDegrees, panel);
     return panel;
   }
@@ -162,6 +172,7 @@ class ChartMaker {
   }
 
   const Outcome& outcome_;
+  const Clip &given_, &made_;
   std::vector<double> times_;  // [frames], seconds
 };
 
@@ -169,8 +180,9 @@ class ChartMaker {
 // goals; the joints whose limits hold a goal back, where any does; and, with limits, by how much
 // the joint that is farthest beyond its limits is beyond them, in the input and in the result.
 // Lengths are millimetres, angles degrees.
-draw::Chart chart_of(const Outcome& outcome, const std::string& title) {
-  const ChartMaker maker(outcome);
+draw::Chart chart_of(const Outcome& outcome, const Clip& given, const Clip& made,
+                     const std::string& title) {
+  const ChartMaker maker(outcome, given, made);
   draw::Chart chart;
   chart.title = title;
   for (const bool angles : {false, true}) {
@@ -190,11 +202,13 @@ class Run {
  public:
   Run(const Options& options, ToolContext& context) : options_(options), context_(context) {}
 
-  Result<int> run();
+  Result<int> run(Clip motion);
+  // `provenance` is that of the motion once all frames were read.
+  Result<int> run(const FrameSource& motion, const std::function<Provenance()>& provenance);
 
  private:
-  Status check_outputs() const;
-  Status read_motion();
+  Status prepare();
+  Status read_roles();
   Status read_character();
   Status read_limits();
   Status learn();
@@ -205,15 +219,18 @@ class Run {
   Status plant_first();
   bool is_gaze(const PointGoal& point) const;
   Status turn_eyes(Clip& clip);
-  Clip take_motion();
+  Result<int> bring_about();
   Result<int> finish_without_goals();
-  void note_provenance(Clip& clip, const std::string& line) const;
+  Provenance provenance_of(std::vector<std::string> conversions, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
-  Status write(const Clip* made, const std::string& svg = {});
+  Status write(const FrameSource* made, const std::function<Provenance()>& provenance = {},
+               const std::string& svg = {});
 
   const Options& options_;
   ToolContext& context_;
-  Clip clip_;
+  Clip clip_;           // of a long take some of the frames, evenly over it
+  FrameSource frames_;  // all of them
+  std::function<Provenance()> of_input_;
   io::FindRoles find_roles_;
   RoleMap roles_;
   krok::ik::Limits limits_;
@@ -226,10 +243,7 @@ class Run {
   std::string planting_line_;
 };
 
-Status Run::read_motion() {
-  auto clip = io::open_motion(options_.input, context_);
-  if (!clip) return clip.error();
-  clip_ = std::move(*clip);
+Status Run::read_roles() {
   const auto find = io::open_role_map(options_.map, context_);
   if (!find) return find.error();
   find_roles_ = *find;
@@ -450,22 +464,14 @@ Status Run::plant_first() {
   return {};
 }
 
-// The motion to be changed. Frames that nothing shows later are not kept, skeleton and rate are.
-Clip Run::take_motion() {
-  Clip taken = options_.plot.empty() ? std::move(clip_) : clip_;
-  clip_.skeleton = taken.skeleton;
-  clip_.rate = taken.rate;
-  return taken;
-}
-
 // What was done to the motion, after what it says of itself.
-void Run::note_provenance(Clip& clip, const std::string& line) const {
-  std::vector<std::string> conversions = std::move(clip.provenance.conversions);
-  clip.provenance = context_.provenance();
-  clip.provenance.conversions = std::move(conversions);
+Provenance Run::provenance_of(std::vector<std::string> conversions, const std::string& line) const {
+  Provenance provenance = context_.provenance();
+  provenance.conversions = std::move(conversions);
   for (const std::string& done : {planting_line_, line}) {
-    if (!done.empty()) clip.provenance.conversions.push_back(done);
+    if (!done.empty()) provenance.conversions.push_back(done);
   }
+  return provenance;
 }
 
 Result<int> Run::finish_without_goals() {
@@ -475,10 +481,15 @@ Result<int> Run::finish_without_goals() {
     context_.log(fmt::format("{}: {}", options_.write_limits, limits_summary(limits_)));
     return kExitDone;
   }
-  Clip planted = take_motion();
+  Clip planted = std::move(clip_);
+  clip_.skeleton = planted.skeleton;
+  clip_.rate = planted.rate;
   if (Status status = turn_eyes(planted); !status) return status.error();
-  note_provenance(planted, gaze_.empty() ? "" : kTurnedEyes);
-  if (Status status = write(&planted); !status) return status.error();
+  const auto provenance = [&] {
+    return provenance_of(planted.provenance.conversions, gaze_.empty() ? "" : kTurnedEyes);
+  };
+  const FrameSource frames = frames_of(planted);
+  if (Status status = write(&frames, provenance); !status) return status.error();
   context_.report.result["frames"] = planted.frame_count();
   if (options_.plant) context_.report.result["plant"] = std::move(planting_);
   if (!gaze_.empty()) context_.report.result["gaze"] = std::move(gaze_);
@@ -487,7 +498,8 @@ Result<int> Run::finish_without_goals() {
   return kExitDone;
 }
 
-Status Run::write(const Clip* made, const std::string& svg) {
+Status Run::write(const FrameSource* made, const std::function<Provenance()>& provenance,
+                  const std::string& svg) {
   OutputSet outputs(context_);
   if (!options_.write_limits.empty()) {
     const std::string text = limits::write(limits_, clip_.skeleton);
@@ -503,7 +515,8 @@ Status Run::write(const Clip* made, const std::string& svg) {
     writing.orientation = options_.orientation;
     writing.jobs = context_.jobs;
     if (Status status = outputs.add(
-            context_.output, [&](OutputFile& file) { return anim::write(*made, writing, file); });
+            context_.output,
+            [&](OutputFile& file) { return anim::write(*made, provenance, writing, file); });
         !status) {
       return status;
     }
@@ -519,76 +532,147 @@ Status Run::write(const Clip* made, const std::string& svg) {
   return outputs.finish();
 }
 
-Status Run::check_outputs() const {
-  if (!options_.plot.empty() && context_.one_of_many != nullptr) {
+Status check_outputs(const Options& options, const ToolContext& context) {
+  if (!options.plot.empty() && context.one_of_many != nullptr) {
     return Error("usage", "--plot cannot be used in batch mode");
   }
-  if (options_.changes_motion() && context_.output.empty()) {
-    return no_output_for(options_.input);
+  if (options.changes_motion() && context.output.empty()) {
+    return no_output_for(options.input);
   }
-  if (!options_.changes_motion() && !context_.output.empty()) {
+  if (!options.changes_motion() && !context.output.empty()) {
     return Error("usage", "-o is given, but no goals",
                  "use --goals, --reach, --look-at or --plant");
   }
   return {};
 }
 
-Result<int> Run::run() {
-  if (Status status = check_outputs(); !status) return status.error();
+Status Run::prepare() {
   solver_ = options_.solver;
   for (const auto step :
-       {&Run::read_motion, &Run::read_character, &Run::read_limits, &Run::read_goals,
+       {&Run::read_roles, &Run::read_character, &Run::read_limits, &Run::read_goals,
         &Run::add_points, &Run::raise_goals, &Run::set_stiffness, &Run::plant_first}) {
-    if (Status status = (this->*step)(); !status) return status.error();
+    if (Status status = (this->*step)(); !status) return status;
   }
+  return {};
+}
+
+Result<int> Run::run(Clip motion) {
+  clip_ = std::move(motion);
+  if (Status status = prepare(); !status) return status.error();
   if (goals_.empty()) {
     if (!options_.plot.empty()) return usage("--plot shows goals, of which eyes are none");
     return finish_without_goals();
   }
+  frames_ = frames_of(clip_);
+  of_input_ = [this] { return clip_.provenance; };
+  return bring_about();
+}
+
+Result<int> Run::run(const FrameSource& motion, const std::function<Provenance()>& provenance) {
+  // As many as facing_skeleton() looks at.
+  const int step = std::max(1, motion.frame_count / 200);
+  clip_.skeleton = motion.skeleton;
+  clip_.rate = motion.rate;
+  for (int f = 0; f < motion.frame_count; f += step) {
+    const auto frame = load(part_of(motion, f, 1), 1);
+    if (!frame) return frame.error();
+    std::ranges::copy(frame->positions, std::back_inserter(clip_.positions));
+    std::ranges::copy(frame->orientations, std::back_inserter(clip_.orientations));
+  }
+  if (Status status = prepare(); !status) return status.error();
+  frames_ = motion;
+  of_input_ = provenance;
+  return bring_about();
+}
+
+Result<int> Run::bring_about() {
   krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
   if (roles_.humanoid) how.upright = roles_.joints(Role::head);
-  auto made = krok::ik::apply_goals(take_motion(), goals_, limits_, how);
-  if (!made) {
-    return std::move(made).error().in_file(options_.goals.empty() ? options_.input
-                                                                  : options_.goals);
-  }
-  const Outcome outcome{options_.plot.empty() ? made->clip : clip_, goals_, limits_, *made};
-  Diagnostics missed_ones = missed_goals(outcome);
-  const bool all_reached = missed_ones.empty();
-  for (Diagnostic& missed : missed_ones) {
-    missed.where.file = options_.input;
-    context_.diagnose(std::move(missed));
-  }
-  const std::string line = "inverse kinematics: " + summary(outcome);
+  const std::string& asked = options_.goals.empty() ? options_.input : options_.goals;
+  auto made = krok::ik::apply_goals(frames_, goals_, limits_, how);
+  if (!made) return std::move(made).error().in_file(asked);
+  made->frames.read = [read = made->frames.read, &asked](auto... block) -> Status {
+    Status status = read(block...);
+    if (status || !status.error().code.starts_with("ik-")) return status;
+    return std::move(status).error().in_file(asked);
+  };
+  const Outcome outcome{frames_, goals_, limits_, *made->motion};
+  bool all_reached = true, diagnosed = false;
+  const auto diagnose = [&] {
+    if (std::exchange(diagnosed, true)) return;
+    for (Diagnostic& missed : missed_goals(outcome)) {
+      all_reached = false;
+      missed.where.file = options_.input;
+      context_.diagnose(std::move(missed));
+    }
+  };
   std::string chart;
+  std::optional<Clip> whole;  // where more is to be done than to write it
+  if (looks_with_eyes(options_) || !options_.plot.empty()) {
+    auto clip = load(made->frames, context_.jobs);
+    if (!clip) return clip.error();
+    whole = *std::move(clip);
+    diagnose();
+  }
   if (!options_.plot.empty()) {
-    auto svg = draw::to_svg(chart_of(outcome, name_of_input(options_.input)));
+    auto svg = draw::to_svg(chart_of(outcome, clip_, *whole, name_of_input(options_.input)));
     if (!svg) return svg.error();
     chart = std::move(*svg);
   }
-  Json result = to_json(outcome);
-  const std::string joints = context_.verbose ? table(outcome) : std::string();
-  // Eyes may be added to the skeleton.
-  if (Status status = turn_eyes(made->clip); !status) return status.error();
-  note_provenance(made->clip, line);
-  if (Status status = write(&made->clip, chart); !status) return status.error();
-  context_.report.result = std::move(result);
+  if (whole) {
+    // Eyes may be added to the skeleton.
+    if (Status status = turn_eyes(*whole); !status) return status.error();
+    made->frames = frames_of(*whole);
+  }
+  const auto provenance = [&] {
+    diagnose();
+    return provenance_of(of_input_().conversions, "inverse kinematics: " + summary(outcome));
+  };
+  if (Status status = write(&made->frames, provenance, chart); !status) return status.error();
+  const bool is_reported = !context_.report_path.empty() || context_.one_of_many != nullptr;
+  context_.report.result = to_json(outcome, is_reported);
   if (!gaze_.empty()) context_.report.result["gaze"] = std::move(gaze_);
   if (options_.plant) {
     context_.report.result["plant"] = std::move(planting_);
     context_.log(fmt::format("{}: {}", context_.output, planting_line_));
   }
   context_.log(fmt::format("{}: {}", context_.output, summary(outcome)));
-  if (context_.verbose) context_.log(joints);
+  if (context_.verbose) context_.log(table(outcome));
   return options_.strict && !all_reached ? kExitNo : kExitDone;
 }
 
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  return Run(options, context).run();
+  constexpr std::size_t kLongBytes = std::size_t{16} << 20;
+  if (Status status = check_outputs(options, context); !status) return status.error();
+  const auto input = context.open_long_input(options.input);
+  if (!input) return input.error();
+  if (input->bytes().size() < kLongBytes || !options.has_goals() || options.plant ||
+      !options.plot.empty() || options.limits == "auto" || looks_with_eyes(options)) {
+    context.note_checksum(*input);
+    auto clip = io::open_motion(*input, context);
+    if (!clip) return clip.error();
+    return Run(options, context).run(*std::move(clip));
+  }
+  const io::ChecksumAtEnd checksum(*input, context);
+  std::function<Provenance()> of_input;
+  const auto provenance = [&] {
+    context.note_checksum(*input);
+    return of_input();
+  };
+  int exit_code = kExitDone;
+  const auto use = [&](const FrameSource& frames) -> Status {
+    const auto made = Run(options, context).run(frames, provenance);
+    if (!made) return made.error();
+    exit_code = *made;
+    return {};
+  };
+  const auto read = io::stream_motion(*input, context, use, {.provenance = &of_input});
+  if (!read) return read.error();
+  return exit_code;
 }
 
 }  // namespace krok::cli::ik

@@ -43,6 +43,7 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
       {"krok-edit", {"--filter", "butterworth", "-o", "out.anim"}},
       {"krok-edit", {"--spikes", "-o", "out.anim"}},
       {"krok-edit", {"--filter", "auto", "-o", "out.anim"}},
+      {"krok-ik", {"--reach", "Head=0.5m,1.5m,0m@10s..20s", "-o", "out.anim"}},
       {"krok-retarget", {"--onto", "short.bvh", "--scale", "2", "-o", "out.anim"}}};
   for (const auto& [tool, options] : rows) {
     const double few = peak(tool, "short.bvh", options), many = peak(tool, "long.bvh", options);

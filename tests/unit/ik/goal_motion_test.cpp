@@ -225,6 +225,38 @@ TEST(GoalMotion, TheSameForAnyNumberOfThreads) {
   for (int f = 0; f < 200; ++f) EXPECT_TRUE(same_frame(one->clip, four->clip, f)) << f;
 }
 
+// Where blocks meet, within fades and holds, a motion would jump, and facts would be of a block.
+TEST(GoalMotion, TheSameInBlocksOfAnySize) {
+  const Clip clip = calm_human(200);
+  std::vector<KeyedGoal> goals = {
+      reach_of(clip, "LeftHand", 0.5, place(clip, 30, "LeftHand") + Vec3(2, 0.1, 0)),
+      reach_of(clip, "RightHand", 1.5, Vec3(0, 0.02, 0)),
+      reach_of(clip, "LeftFoot", 3.1, place(clip, 30, "LeftFoot"))};
+  goals[0].to = 1.4;
+  goals[1].relative_to = clip.skeleton.find("LeftHand");
+  const GoalMotion whole = apply_goals(clip, goals, {}).value();
+  EXPECT_FALSE(same_frame(clip, whole.clip, 60));
+  for (const int size : {1, 7, 64}) {
+    const GoalFrames blocks = apply_goals(frames_of(clip), goals, {}, {}, size).value();
+    for (int pass = 0; pass < 2; ++pass) {
+      const Clip made = load(blocks.frames, 3).value();
+      EXPECT_TRUE(made.positions == whole.clip.positions) << size;
+      EXPECT_TRUE(made.orientations == whole.clip.orientations) << size;
+      const GoalMotion& facts = *blocks.motion;
+      EXPECT_EQ(facts.changed_frames, whole.changed_frames);
+      EXPECT_EQ(facts.largest_turn, whole.largest_turn);
+      EXPECT_EQ(facts.input_turn, whole.input_turn);
+      EXPECT_EQ(facts.turning_joint, whole.turning_joint);
+      EXPECT_EQ(facts.turning_frame, whole.turning_frame);
+      for (std::size_t g = 0; g < goals.size(); ++g) {
+        EXPECT_TRUE(std::ranges::equal(facts.goals[g], whole.goals[g], [](auto& a, auto& b) {
+          return a.frame == b.frame && a.residual.distance == b.residual.distance;
+        }));
+      }
+    }
+  }
+}
+
 // A hand that follows a circle about its shoulder, near or out of reach, does not flip or spin: no
 // joint turns much more in a frame than the goal does.
 TEST(GoalMotion, NothingFlipsAlongAMovingGoal) {
