@@ -120,6 +120,48 @@ std::unique_ptr<btCollisionShape> make_shape(const Shape& shape) {
 
 }  // namespace
 
+// A body as a box, of which all points are within a radius.
+struct Solid {
+  Shape shape;
+  Vec3 half = shape.kind == Shape::Kind::box ? shape.half : Vec3(0, shape.half_length, 0);
+  double radius = shape.kind == Shape::Kind::box ? 0 : shape.radius;
+  Vec3 centre = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();
+};
+
+namespace {
+
+// Whether bodies are farther apart than Bullet keeps contacts: by planes across the line of centres
+// and across the axes.
+bool are_apart(const Solid& a, const Solid& b) {
+  const Vec3 way = b.centre - a.centre;
+  const Vec3 in_a = (a.axes.transpose() * way).cwiseAbs();
+  const Vec3 in_b = (b.axes.transpose() * way).cwiseAbs();
+  const double distance = way.norm(), clear = a.radius + b.radius + static_cast<double>(kReach);
+  if (distance * (distance - clear) > in_a.dot(a.half) + in_b.dot(b.half)) return true;
+  const Mat3 turn = (a.axes.transpose() * b.axes).cwiseAbs();
+  return (in_a - a.half - turn * b.half).maxCoeff() > clear ||
+         (in_b - b.half - turn.transpose() * a.half).maxCoeff() > clear;
+}
+
+// Bullet takes long to find out that shapes do not touch.
+void look_at_pair(btBroadphasePair& pair, btCollisionDispatcher& dispatcher,
+                  const btDispatcherInfo& info) {
+  const auto solid = [](const btBroadphaseProxy* proxy) {
+    const auto* object = static_cast<const btCollisionObject*>(proxy->m_clientObject);
+    return static_cast<const Solid*>(object->getUserPointer());
+  };
+  if (!are_apart(*solid(pair.m_pProxy0), *solid(pair.m_pProxy1))) {
+    btCollisionDispatcher::defaultNearCallback(pair, dispatcher, info);
+  } else if (pair.m_algorithm != nullptr) {
+    pair.m_algorithm->~btCollisionAlgorithm();
+    dispatcher.freeCollisionAlgorithm(pair.m_algorithm);
+    pair.m_algorithm = nullptr;
+  }
+}
+
+}  // namespace
+
 // In the order in which they are made; destroyed in the reverse one.
 struct Collision::Inside {
   // Points of a shape that touch a plane first, in its own frame, and how thick it is about them.
@@ -140,7 +182,7 @@ struct Collision::Inside {
   std::vector<std::unique_ptr<btCollisionShape>> shapes;
   std::vector<std::unique_ptr<btCollisionObject>> bodies;
   std::vector<std::unique_ptr<btCollisionObject>> grounds;
-  std::vector<Shape> solids;                              // shape [bodies]
+  std::vector<Solid> solids;                              // shape [bodies]
   std::vector<Feelers> feelers;                           // shape [bodies]
   std::vector<std::vector<std::array<float, 3>>> memory;  // shape [bodies, kTouches * feelers]
   // Of what touched edges in the last step, and does so now.
@@ -153,6 +195,7 @@ struct Collision::Inside {
   std::vector<Contact> contacts;
 
   ~Inside();
+  void place(std::span<const BodyState> states);
   void add_mesh(const Surroundings& surroundings);
   void part_overlapping();
   void touch_plane(std::span<const BodyState> states, double step);
@@ -182,6 +225,15 @@ Collision::Inside::Feelers Collision::Inside::feelers_of(const Shape& shape) {
 
 Collision::Inside::~Inside() {
   for (const auto& body : bodies) world.removeCollisionObject(body.get());
+}
+
+void Collision::Inside::place(std::span<const BodyState> states) {
+  for (std::size_t b = 0; b < states.size(); ++b) {
+    solids[b].centre = states[b].to_world.position;
+    solids[b].axes = states[b].to_world.orientation.toRotationMatrix();
+    bodies[b]->setWorldTransform(placed(states[b].to_world));
+    bodies[b]->setUserPointer(&solids[b]);
+  }
 }
 
 void Collision::Inside::add_mesh(const Surroundings& surroundings) {
@@ -296,7 +348,7 @@ void Collision::Inside::touch_edges(std::size_t body, const Transform& pose,
   std::vector<EdgeTouch> touches;
   for (const int edge : near) {
     touches.clear();
-    touch_edge(solids[body], pose, edges[edge], reach, touches);
+    touch_edge(solids[body].shape, pose, edges[edge], reach, touches);
     for (const EdgeTouch& touch : touches) {
       Contact contact;
       contact.a = static_cast<int>(body);
@@ -366,6 +418,7 @@ Collision::Collision(const Surroundings& surroundings) : inside_(std::make_uniqu
   in.dispatcher.setDispatcherFlags(
       in.dispatcher.getDispatcherFlags() &
       ~btCollisionDispatcher::CD_USE_RELATIVE_CONTACT_BREAKING_THRESHOLD);
+  in.dispatcher.setNearCallback(look_at_pair);
   in.world.setForceUpdateAllAabbs(false);
   in.world.getDispatchInfo().m_deterministicOverlappingPairs = true;
   in.level = surroundings.level;
@@ -388,10 +441,11 @@ void Collision::add(std::span<const Body> bodies, std::span<const BodyState> sta
     object->setActivationState(DISABLE_DEACTIVATION);
     in.world.addCollisionObject(object.get());
     in.bodies.push_back(std::move(object));
-    in.solids.push_back(bodies[b].shape);
+    in.solids.push_back({bodies[b].shape});
     in.feelers.push_back(Inside::feelers_of(bodies[b].shape));
     in.memory.emplace_back(kTouches * in.feelers.back().points.size());
   }
+  in.place(states);
   for (const Joint& joint : joints) {
     if (joint.parent < 0) continue;
     btCollisionObject *a = in.bodies[at(joint.parent)].get(), *b = in.bodies[at(joint.child)].get();
@@ -406,9 +460,7 @@ std::span<const Contact> Collision::find(std::span<const BodyState> states, doub
   in.contacts.clear();
   if (in.level) in.touch_plane(states, step);
   if (in.bodies.size() > 1 || !in.grounds.empty()) {
-    for (std::size_t b = 0; b < states.size(); ++b) {
-      in.bodies[b]->setWorldTransform(placed(states[b].to_world));
-    }
+    in.place(states);
     if (!in.grounds.empty()) in.touch_faces(states, step);
     in.world.performDiscreteCollisionDetection();
     in.take_manifolds(states);
