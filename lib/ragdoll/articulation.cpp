@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "math/quaternion.h"
 #include "ragdoll/articulation_internal.h"
@@ -55,6 +56,8 @@ Status Articulation::build(std::span<const Body> bodies, std::span<const BodySta
   states_.assign(states.begin(), states.end());
   joints_.assign(joints.begin(), joints.end());
   ties_.resize(joints_.size());
+  limit_sides_.resize(joints_.size());
+  sides_of_pose_.assign(joints_.size(), -1);
   anchor_speeds_.assign(joints_.size(), Vec3::Zero());
   twists_.resize(bodies.size(), Vec6::Zero());
   link_of_.assign(bodies.size(), -1);
@@ -87,7 +90,10 @@ Status Articulation::build(std::span<const Body> bodies, std::span<const BodySta
     const Mat3 axes = states_[b].to_world.orientation.toRotationMatrix();
     inertias_[b] = axes * moments_[b].asDiagonal() * axes.transpose();
   }
-  responses_.assign(links_.size() * links_.size(), Mat6::Zero());
+  for (Link& link : links_) {
+    link.number = freedom_count_;
+    freedom_count_ += link.freedom == Freedom::all ? 6 : link.freedom == Freedom::none ? 0 : 3;
+  }
   return {};
 }
 
@@ -177,6 +183,46 @@ double Articulation::hinge_angle(int joint) const {
   const double angle = 2 * std::atan2(turned.x(), turned.w());
   const double middle = std::isfinite(range.min + range.max) ? 0.5 * (range.min + range.max) : 0.0;
   return angle - 2 * kPi * std::round((angle - middle) / (2 * kPi));
+}
+
+std::span<const Articulation::LimitSide> Articulation::limit_sides(int joint) const {
+  std::vector<LimitSide>& sides = limit_sides_[at(joint)];
+  if (std::exchange(sides_of_pose_[at(joint)], pose_) == pose_) return sides;
+  sides.clear();
+  const Joint& its = joints_[at(joint)];
+  const Mat3 axes =
+      (states_[at(its.child)].to_world.orientation * its.in_child.orientation).toRotationMatrix();
+  if (its.kind == JointKind::revolute) {
+    const double angle = hinge_angle(joint);
+    sides.push_back({0, axes.col(0), angle - its.range.max});
+    sides.push_back({1, -axes.col(0), its.range.min - angle});
+    return sides;
+  }
+  if ((its.kind != JointKind::spherical && its.kind != JointKind::six_dof) ||
+      its.turn.kind != ik::JointLimit::Kind::cone) {
+    return sides;
+  }
+  const Quat& turned = ties_[at(joint)].turned;
+  const ik::LimitAngles angles = ik::measure(its.turn, turned);
+  const ik::LimitGradients slopes = ik::gradients(its.turn, turned);
+  const double twist = slopes.twist.norm();
+  if (its.turn.max_twist - its.turn.min_twist < 2 * kPi && twist > 1e-6) {
+    const Vec3 axis = axes * slopes.twist / twist;
+    sides.push_back({0, axis, (angles.twist - its.turn.max_twist) / twist});
+    sides.push_back({1, -axis, (its.turn.min_twist - angles.twist) / twist});
+  }
+  double ratio = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double swing = angles.swing[k];
+    const double half = swing < 0 ? -its.turn.min_swing[k] : its.turn.max_swing[k];
+    ratio = std::hypot(ratio, swing / std::max(half, 1e-6));
+  }
+  const double swing = slopes.swing.norm();
+  // The slopes are those of the square of the ratio.
+  if (swing > 1e-6) {
+    sides.push_back({2, axes * slopes.swing / swing, 2 * ratio * (ratio - 1) / swing});
+  }
+  return sides;
 }
 
 double Articulation::slide(int joint, int axis) const {
@@ -290,7 +336,8 @@ void Articulation::eliminate(double step) {
 void Articulation::distribute() {
   for (Link& link : links_) {
     if (link.freedom == Freedom::all && !link.kinematic) {
-      link.twist = link.inertia.llt().solve(link.momentum);
+      link.free = link.inertia.llt().solve(Mat6::Identity());
+      link.twist.noalias() = link.free * link.momentum;
     } else if (!link.kinematic) {
       link.twist = link.parent < 0 ? Vec6(Vec6::Zero()) : links_[at(link.parent)].twist;
       if (link.freedom != Freedom::none) {
@@ -317,45 +364,28 @@ void Articulation::accelerate(double step, const Vec3& gravity) {
   distribute();
 }
 
-// The inverse of the inertia that joins all links (Featherstone's operational-space inertia), in
-// blocks: a link answers to an impulse elsewhere as the link above does, but for its joint.
-void Articulation::find_responses() {
-  const std::size_t count = links_.size();
-  for (std::size_t i = 0; i < count; ++i) {
+void Articulation::answer(std::span<const Vec6> wrenches, std::vector<Vec6>& twists) const {
+  std::vector<Vec6> sums(links_.size(), Vec6::Zero());  // wrenches, then twists
+  for (std::size_t b = 0; b < wrenches.size(); ++b) sums[at(link_of_[b])] = wrenches[b];
+  for (std::size_t i = links_.size(); i-- > 0;) {
     const Link& link = links_[i];
-    Mat6* row = &responses_[i * count];
-    for (std::size_t c = 0; c < i; ++c) {
-      if (links_[c].root != link.root || link.kinematic || link.parent < 0) {
-        row[c].setZero();
-      } else {
-        row[c] = responses_[at(link.parent) * count + c];
-        if (link.freedom != Freedom::none) {
-          const Mat36 held = link.gain * row[c];
-          row[c].noalias() -= link.axes * held;
-        }
-      }
-      responses_[c * count + i] = row[c].transpose();
+    if (link.kinematic || link.parent < 0) continue;
+    Vec6& above = sums[at(link.parent)];
+    above += sums[i];
+    if (link.freedom == Freedom::none) continue;
+    above.noalias() -= link.gain.transpose() * Vec3(link.axes.transpose() * sums[i]);
+  }
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    const Vec6 wrench = sums[i];
+    sums[i] = link.parent < 0 || link.kinematic ? Vec6(Vec6::Zero()) : sums[at(link.parent)];
+    if (!link.kinematic && link.freedom == Freedom::all) {
+      sums[i].noalias() = link.free * wrench;
+    } else if (!link.kinematic && link.freedom != Freedom::none) {
+      const Vec3 rate = link.inverse * Vec3(link.axes.transpose() * wrench) - link.gain * sums[i];
+      sums[i].noalias() += link.axes * rate;
     }
-    Mat6& own = row[i];
-    if (link.kinematic) {
-      own.setZero();
-    } else if (link.freedom == Freedom::all) {
-      own = link.inertia.llt().solve(Mat6::Identity());
-    } else {
-      own.setZero();
-      if (link.parent >= 0) {
-        // The answer of the link above to an impulse on this one is the transpose of the reverse.
-        own = responses_[at(link.parent) * count + i];
-        if (link.freedom != Freedom::none) {
-          const Mat36 held = link.gain * own;
-          own.noalias() -= link.axes * held;
-        }
-      }
-      if (link.freedom != Freedom::none) {
-        // Columns without an axis have the inverse 1, but no movement.
-        own.noalias() += link.axes * (link.inverse * link.axes.transpose());
-      }
-    }
+    if (link.body >= 0) twists[at(link.body)] = link.twist + sums[i];
   }
 }
 

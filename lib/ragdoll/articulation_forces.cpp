@@ -106,6 +106,7 @@ void Articulation::keep_momenta(double step, std::span<const Vec6> moving,
 
 void Articulation::move(double step, std::span<const Vec6> moving, std::span<const Vec6> left) {
   place(step, moving);
+  ++pose_;
   for (std::size_t b = 0; b < states_.size(); ++b) {
     BodyState& state = states_[b];
     const Mat3 axes = state.to_world.orientation.toRotationMatrix();
@@ -121,6 +122,7 @@ void Articulation::move(double step, std::span<const Vec6> moving, std::span<con
 }
 
 void Articulation::move_back() {
+  ++pose_;
   states_ = before_;
   inertias_ = inertias_before_;
   ties_ = ties_before_;
@@ -154,9 +156,9 @@ double Articulation::excess(int joint) const {
     return std::max({0.0, angle - its.range.max, its.range.min - angle});
   }
   if (its.kind != JointKind::spherical && its.kind != JointKind::six_dof) return 0;
-  const Frames now = frames(joint);
-  return ik::excess(its.turn,
-                    (now.parent.orientation.conjugate() * now.child.orientation).normalized());
+  const auto is_within = [](const LimitSide& side) { return side.beyond <= 0; };
+  if (std::ranges::all_of(limit_sides(joint), is_within)) return 0;
+  return ik::excess(its.turn, ties_[at(joint)].turned);
 }
 
 namespace {
@@ -254,12 +256,9 @@ void Articulation::soft_turn(Link& link, double step, Mat3& damping) const {
     spring(link, -Vec3::UnitX(), joint.range.min - angle, step, damping);
     return;
   }
-  if (joint.turn.kind != ik::JointLimit::Kind::cone) return;
-  const Quat child = parent_frame(link.joint).orientation * ties_[at(link.joint)].turned;
-  each_cone_side(joint.turn, ties_[at(link.joint)].turned,
-                 [&](int, const Vec3& axis, double beyond) {
-                   spring(link, child * axis, beyond, step, damping);
-                 });
+  for (const LimitSide& side : limit_sides(link.joint)) {
+    spring(link, side.axis, side.beyond, step, damping);
+  }
 }
 
 void Articulation::soft_slide(Link& link, double step, Mat3& damping) const {

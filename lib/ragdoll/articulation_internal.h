@@ -13,30 +13,6 @@
 
 namespace krok::ragdoll {
 
-// Calls side(number, axis, beyond) for each side of a cone that limits: the axis in the child's
-// frame, unit, about which turning leads out of the range, and how far it is out, in radians (to
-// the first order; below 0 within).
-template <typename Side>
-void each_cone_side(const ik::JointLimit& limit, const Quat& turn, const Side& side) {
-  const ik::LimitAngles angles = ik::measure(limit, turn);
-  const ik::LimitGradients slopes = ik::gradients(limit, turn);
-  const double twist = slopes.twist.norm();
-  if (limit.max_twist - limit.min_twist < 2 * kPi && twist > 1e-6) {
-    const Vec3 axis = slopes.twist / twist;
-    side(0, axis, (angles.twist - limit.max_twist) / twist);
-    side(1, Vec3(-axis), (limit.min_twist - angles.twist) / twist);
-  }
-  double ratio = 0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    const double swing = angles.swing[k];
-    const double half = swing < 0 ? -limit.min_swing[k] : limit.max_swing[k];
-    ratio = std::hypot(ratio, swing / std::max(half, 1e-6));
-  }
-  const double swing = slopes.swing.norm();
-  // The slopes are those of the square of the ratio.
-  if (swing > 1e-6) side(2, Vec3(slopes.swing / swing), 2 * ratio * (ratio - 1) / swing);
-}
-
 // Spatial vectors (Featherstone, "Rigid Body Dynamics Algorithms", 2008) about the world's origin:
 // twists are (spin, velocity of the point at the origin), wrenches (torque about it, force). In one
 // common frame inertias and wrenches of neighbours add up as they are.
@@ -103,6 +79,15 @@ class Articulation {
   double hinge_angle(int joint) const;  // of a revolute joint, nearest to the middle of its range
   double slide(int joint, int axis) const;
 
+  // A side of the range that limits a joint's turning. `axis` (world, unit) is the way out, which
+  // is exceeded by `beyond` radians, to the first order; below 0 within.
+  struct LimitSide {
+    int number = 0;
+    Vec3 axis;
+    double beyond = 0;
+  };
+  std::span<const LimitSide> limit_sides(int joint) const;  // found once for each pose
+
   // Errors of the bodies' poses: metres between anchors that should coincide, radians beyond hard
   // limits.
   double gap(int joint) const;
@@ -112,11 +97,17 @@ class Articulation {
   void accelerate(double step, const Vec3& gravity);
   const std::vector<Vec6>& twists() const { return twists_; }  // of bodies
 
-  // After accelerate(): the twists that each of 6 unit impulses on one body gives another.
-  void find_responses();
-  const Mat6& response(int of, int to) const {
-    return responses_[at(link_of_[at(of)]) * links_.size() + at(link_of_[at(to)])];
-  }
+  // After accelerate(): what a wrench of impulses on body a, and its negative on b (-1: none),
+  // gives to each freedom on the way to the roots. Calls visit(number, impulse, speed) for the 3 or
+  // 6 freedoms of a link from `number` on. The speed that a wrench gives along another is the sum
+  // over all freedoms of the speeds by the one times the impulses by the other (Featherstone's
+  // operational-space inertia, factored).
+  template <typename Visit>
+  void each_answer(int a, int b, const Vec6& wrench, const Visit& visit) const;
+  int freedom_count() const { return freedom_count_; }
+
+  // After accelerate(): the twists with a wrench of impulses on each body.
+  void answer(std::span<const Vec6> wrenches, std::vector<Vec6>& twists) const;
 
   // Moves the bodies on with the twists `moving`; their speeds are then those of `left`.
   void move(double step, std::span<const Vec6> moving, std::span<const Vec6> left);
@@ -134,6 +125,7 @@ class Articulation {
     int body = -1;    // none: without mass, between a slide and a turn of the same joint
     int joint = -1;   // none: a free body
     int root = 0;     // link
+    int number = 0;   // of its first freedom
     Freedom freedom = Freedom::all;
     bool kinematic = false;
     Mat63 axes = Mat63::Zero();      // S; unused columns are 0
@@ -142,6 +134,7 @@ class Articulation {
     Mat63 coupling = Mat63::Zero();  // U = I S
     Mat3 inverse = Mat3::Zero();     // (S^T U + dampers)^-1
     Mat36 gain = Mat36::Zero();      // inverse U^T
+    Mat6 free = Mat6::Zero();        // of a free body, the inverse of its inertia
     Vec3 impulse = Vec3::Zero();     // on the joint's coordinates, of springs and motors
     Vec6 drift = Vec6::Zero();       // against the parent, by the anchor's movement
     Vec6 twist = Vec6::Zero();
@@ -179,18 +172,46 @@ class Articulation {
   std::vector<Mat3> inertias_;  // world
   std::vector<BodyState> states_;
   std::vector<Joint> joints_;
-  std::vector<Ties> ties_;                   // shape [joints]
-  std::vector<Link> links_;                  // parents first
-  std::vector<int> link_of_;                 // shape [bodies]
-  std::vector<Vec6> twists_;                 // shape [bodies]
-  std::vector<Mat6> responses_;              // shape [links, links]
-  std::vector<Vec3> anchor_speeds_;          // shape [joints]
-  std::vector<std::pair<int, Hold>> holds_;  // bodies
-  std::vector<BodyState> before_;            // the last move()
+  std::vector<Ties> ties_;   // shape [joints]
+  std::vector<Link> links_;  // parents first
+  int freedom_count_ = 0;
+  int pose_ = 0;                                             // counts moves
+  mutable std::vector<std::vector<LimitSide>> limit_sides_;  // shape [joints]
+  mutable std::vector<int> sides_of_pose_;                   // shape [joints]
+  std::vector<int> link_of_;                                 // shape [bodies]
+  std::vector<Vec6> twists_;                                 // shape [bodies]
+  std::vector<Vec3> anchor_speeds_;                          // shape [joints]
+  std::vector<std::pair<int, Hold>> holds_;                  // bodies
+  std::vector<BodyState> before_;                            // the last move()
   std::vector<Mat3> inertias_before_;
   std::vector<Ties> ties_before_;
   Vec3 fallen_ = Vec3::Zero();  // by gravity in the step, m/s
 };
+
+template <typename Visit>
+void Articulation::each_answer(int a, int b, const Vec6& wrench, const Visit& visit) const {
+  int i = link_of_[at(a)], j = b < 0 ? -1 : link_of_[at(b)];
+  Vec6 here = wrench, there = -wrench;
+  while (i >= 0 || j >= 0) {
+    if (i == j) {
+      here += there;
+      j = -1;
+    } else if (i < j) {  // parents come first
+      std::swap(i, j);
+      std::swap(here, there);
+    }
+    const Link& link = links_[at(i)];
+    const bool ends = link.kinematic || link.freedom == Freedom::all;
+    if (!link.kinematic && ends) visit(link.number, here, Vec6(link.free * here));
+    if (!ends && link.freedom != Freedom::none) {
+      const Vec3 impulse = link.axes.transpose() * here;
+      const Vec3 speed = link.inverse * impulse;
+      visit(link.number, impulse, speed);
+      here.noalias() -= link.coupling * speed;
+    }
+    i = ends ? -1 : link.parent;
+  }
+}
 
 // Principal moments of inertia of a body.
 Vec3 moments_of_inertia(const Body& body);

@@ -146,28 +146,6 @@ void ImpulseSolver::add_limit(int joint, int side, const Vec3& axis, double beyo
   add_gap(-beyond, kFastestTurnBack);
 }
 
-// Calls side(number, axis, beyond) for the sides of a joint that limit its turning.
-template <typename Side>
-void ImpulseSolver::each_limit(int joint, const Side& side) const {
-  const Joint& its = bodies_->joint(joint);
-  const auto frames = bodies_->frames(joint);
-  if (its.kind == JointKind::revolute) {
-    const Vec3 axis = frames.child.orientation * Vec3(Vec3::UnitX());
-    const double angle = bodies_->hinge_angle(joint);
-    side(0, axis, angle - its.range.max);
-    side(1, Vec3(-axis), its.range.min - angle);
-    return;
-  }
-  if (its.kind == JointKind::prismatic || its.kind == JointKind::fixed ||
-      its.turn.kind != ik::JointLimit::Kind::cone) {
-    return;
-  }
-  each_cone_side(its.turn, frames.parent.orientation.conjugate() * frames.child.orientation,
-                 [&](int number, const Vec3& axis, double beyond) {
-                   side(number, Vec3(frames.child.orientation * axis), beyond);
-                 });
-}
-
 void ImpulseSolver::add_slide(int joint, const Vec3& axis, double beyond) {
   const Joint& its = bodies_->joint(joint);
   open_group(its.child, its.parent);
@@ -215,8 +193,8 @@ void ImpulseSolver::add_limits() {
       continue;
     }
     if (joint.kind == JointKind::prismatic || joint.kind == JointKind::six_dof) add_slides(j);
-    each_limit(
-        j, [&](int side, const Vec3& axis, double beyond) { add_limit(j, side, axis, beyond); });
+    for (const auto& side : bodies_->limit_sides(j))
+      add_limit(j, side.number, side.axis, side.beyond);
   }
 }
 
@@ -233,11 +211,11 @@ bool ImpulseSolver::aim_again(const Group& group, Row& row) {
   Vec6 wrench = row.wrench;
   if (row.joint >= 0) {
     most = kMissedAngle;
-    each_limit(row.joint, [&](int side, const Vec3& axis, double beyond) {
-      if (side != row.side) return;
-      gap = -beyond;
-      wrench = spatial(-axis, Vec3::Zero());
-    });
+    for (const auto& side : bodies_->limit_sides(row.joint)) {
+      if (side.number != row.side) continue;
+      gap = -side.beyond;
+      wrench = spatial(-side.axis, Vec3::Zero());
+    }
   } else if (row.contact >= 0) {
     most = kMissedGap;
     const Contact& contact = contacts_[at(row.contact)];

@@ -23,11 +23,8 @@ struct Contact {
 //
 // Contacts and limits act before they are reached: their gap may close, but not go below 0.
 // Existing penetration is corrected apart from the speeds: there are two sets of twists, those that
-// move the bodies on, and those that they keep. Sweeps are in single precision, with twists and
-// wrenches of eight numbers (two are 0), which fill whole registers; from their impulses the twists
-// are then found in double.
-using Vec8f = Eigen::Matrix<float, 8, 1>;
-using Mat8f = Eigen::Matrix<float, 8, 8>;
+// move the bodies on, and those that they keep. Sweeps are in single precision and know the speed
+// along each row alone; from their impulses the twists are then found in double.
 
 class ImpulseSolver {
  public:
@@ -49,11 +46,11 @@ class ImpulseSolver {
 
  private:
   struct Row {
-    Vec6 wrench = Vec6::Zero();     // on the group's first body; the other has the negative
-    double target = 0, kept = 0;    // least relative speeds: while moving, and afterwards
-    float impulse = 0, pushed = 0;  // the latter with the target
-    bool both = false;              // pulls, too
-    int joint = -1, side = 0;       // of a limit
+    Vec6 wrench = Vec6::Zero();   // on the group's first body; the other has the negative
+    double target = 0, kept = 0;  // least relative speeds: while moving, and afterwards
+    float pushed = 0;             // impulse with the target
+    bool both = false;            // pulls, too
+    int joint = -1, side = 0;     // of a limit
     int contact = -1;
     double gap = 0, asked = 0;  // metres or radians, now and where the step may end
     float* cache = nullptr;
@@ -65,16 +62,21 @@ class ImpulseSolver {
     float friction = 0;
     std::vector<float> arms;
   };
-  struct Swept {           // of a row
-    Vec8f wrench, answer;  // the relative twist's answer to an impulse of 1
-    float inverse = 0;     // 1 / (wrench . answer)
+  struct Term {
+    std::size_t row = 0;
+    float factor = 0;
+  };
+  struct Swept {                     // of a row
+    std::size_t first = 0, end = 0;  // of terms_: what an impulse of 1 gives to freedoms
+    float own = 0, inverse = 0;      // the answer of its own speed to that
     float target = 0;
+    bool both = false;
+    bool answered = false;  // whether its row of answers_ is found
   };
   struct Group {
     int a = 0, b = -1;
-    std::size_t first = 0, end = 0;     // rows
-    int patch = -1;                     // all rows are of it
-    int touched_a = 0, touched_b = -1;  // of touched_
+    std::size_t first = 0, end = 0;  // rows
+    int patch = -1;                  // all rows are of it
   };
 
   void open_group(int a, int b);
@@ -83,21 +85,22 @@ class ImpulseSolver {
   double speed_along(const Group& group, const Vec6& wrench) const;
   void add_gap(double gap, double fastest);
   void add_limit(int joint, int side, const Vec3& axis, double beyond);
-  template <typename Side>
-  void each_limit(int joint, const Side& side) const;
   bool aim_again(const Group& group, Row& row);
   void add_slides(int joint);
   void add_distance(int joint);
   void add_slide(int joint, const Vec3& axis, double beyond);
   void connect();
+  float* answer(std::size_t r);
+  void change(std::size_t r, float by);
+  float speed(std::size_t r) const;
+  void add_terms(std::span<const Term> terms, const std::vector<float>& rows, float* to) const;
   void warm_start(bool again);
   void sweep_all(int iterations);
   float sweep();
-  std::vector<Vec6> sum() const;
+  void sum(std::vector<Vec6>& all);
   void sweep_until(bool relax, int count);
-  void sweep_row(std::size_t r, Vec8f& difference, Vec8f& wrench, float& largest);
-  void sweep_friction(const Patch& patch, Vec8f& difference, Vec8f& wrench, float& largest);
-  void spread(std::size_t group, const Vec8f& wrench);
+  void sweep_row(std::size_t r, float& largest);
+  void sweep_friction(const Patch& patch, float& largest);
 
   const Articulation* bodies_ = nullptr;
   double step_ = 0;
@@ -105,12 +108,15 @@ class ImpulseSolver {
   std::vector<Row> rows_;
   std::vector<Group> groups_;
   std::vector<Patch> patches_;
-  std::vector<int> touched_;    // bodies that have rows
-  std::vector<Mat8f> answers_;  // shape [groups, touched]
-  std::vector<Vec6> moving_, left_;
+  std::vector<Vec6> moving_, left_, pushes_;
   std::vector<Swept> swept_;
-  std::vector<Vec8f> twists_, twists_before_, turns_;  // shape [touched]
-  std::vector<float> directions_, before_;             // of impulses, shape [rows]
+  std::size_t stride_ = 0;                // rows, in whole registers
+  std::vector<float> freedom_impulses_;   // by an impulse of 1 of rows, shape [freedoms, stride_]
+  std::vector<Term> terms_;               // speeds of freedoms
+  std::vector<Term> changes_;             // of impulses, not yet in speeds_
+  std::vector<float> answers_;            // of speeds to an impulse of 1, shape [rows, stride_]
+  std::vector<float> impulses_, speeds_;  // of rows, as the next
+  std::vector<float> impulses_before_, speeds_before_, impulse_turns_, speed_turns_;
 };
 
 // Finds where bodies touch: by Bullet, but for an endless plane and faces of a mesh, whose

@@ -8,128 +8,145 @@ namespace krok::ragdoll {
 namespace {
 // Sweeps end where no row's speed changes by more, m/s or rad/s.
 constexpr float kEnough = 5e-5F;
+// Numbers that are added at a time, in four registers.
+constexpr std::size_t kLanes = 16;
+using Lanes = Eigen::Array<float, static_cast<int>(kLanes), 1>;
 }  // namespace
 
-// How all bodies that have rows answer to a wrench at each group.
-void ImpulseSolver::connect() {
-  touched_.clear();
-  std::vector<int> place(moving_.size(), -1);
-  const auto touch = [&](int body) {
-    if (body >= 0 && place[at(body)] < 0) {
-      place[at(body)] = static_cast<int>(touched_.size());
-      touched_.push_back(body);
+// Adds the rows, of stride_ numbers, times their factors.
+void ImpulseSolver::add_terms(std::span<const Term> terms, const std::vector<float>& rows,
+                              float* to) const {
+  for (std::size_t i = 0; i < stride_; i += kLanes) {
+    Lanes sum = Eigen::Map<const Lanes>(to + i);
+    for (const Term& term : terms) {
+      sum += term.factor * Eigen::Map<const Lanes>(rows.data() + term.row * stride_ + i);
     }
-    return body < 0 ? -1 : place[at(body)];
-  };
-  for (Group& group : groups_) {
-    group.touched_a = touch(group.a);
-    group.touched_b = touch(group.b);
+    Eigen::Map<Lanes>(to + i) = sum;
   }
-  answers_.resize(groups_.size() * touched_.size());
-  swept_.resize(rows_.size());
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const Group& group = groups_[g];
-    for (std::size_t t = 0; t < touched_.size(); ++t) {
-      Mat6 answer = bodies_->response(touched_[t], group.a);
-      if (group.b >= 0) answer -= bodies_->response(touched_[t], group.b);
-      Mat8f& whole = answers_[g * touched_.size() + t];
-      whole.setZero();
-      whole.topLeftCorner<6, 6>() = answer.cast<float>();
-    }
-    Mat6 own = bodies_->response(group.a, group.a);
-    if (group.b >= 0) {
-      own += bodies_->response(group.b, group.b) - bodies_->response(group.a, group.b) -
-             bodies_->response(group.b, group.a);
-    }
+}
+
+// What each row's impulse gives to the freedoms of the trees.
+void ImpulseSolver::connect() {
+  stride_ = (rows_.size() + kLanes - 1) / kLanes * kLanes;
+  freedom_impulses_.assign(at(bodies_->freedom_count()) * stride_, 0);
+  answers_.resize(rows_.size() * stride_);
+  terms_.resize(rows_.size() * at(bodies_->freedom_count()));
+  std::size_t count = 0;
+  swept_.clear();
+  for (const Group& group : groups_) {
     for (std::size_t r = group.first; r < group.end; ++r) {
-      const Vec6 answer = own * rows_[r].wrench;
-      Swept& row = swept_[r];
-      row.wrench << rows_[r].wrench.cast<float>(), 0, 0;
-      row.answer << answer.cast<float>(), 0, 0;
-      row.inverse = static_cast<float>(1 / std::max(rows_[r].wrench.dot(answer), 1e-12));
+      Swept row;
+      row.first = count;
+      row.both = rows_[r].both;
+      double own = 1e-12;
+      bodies_->each_answer(group.a, group.b, rows_[r].wrench,
+                           [&](int number, const auto& impulse, const auto& speed) {
+                             own += impulse.dot(speed);
+                             for (Eigen::Index k = 0; k < impulse.size(); ++k) {
+                               const std::size_t freedom = at(number) + static_cast<std::size_t>(k);
+                               freedom_impulses_[freedom * stride_ + r] =
+                                   static_cast<float>(impulse[k]);
+                               if (speed[k] == 0) continue;
+                               terms_[count++] = {freedom, static_cast<float>(speed[k])};
+                             }
+                           });
+      row.end = count;
+      row.own = static_cast<float>(own);
+      row.inverse = static_cast<float>(1 / own);
+      swept_.push_back(row);
     }
   }
 }
 
-void ImpulseSolver::spread(std::size_t group, const Vec8f& wrench) {
-  const Mat8f* answers = &answers_[group * touched_.size()];
-  for (std::size_t t = 0; t < touched_.size(); ++t) {
-    twists_[t].noalias() += answers[t].leftCols<6>() * wrench.head<6>();
-  }
+// Found when first asked for: the impulses of most limits stay 0.
+float* ImpulseSolver::answer(std::size_t r) {
+  Swept& row = swept_[r];
+  float* answers = &answers_[r * stride_];
+  if (row.answered) return answers;
+  row.answered = true;
+  std::fill_n(answers, stride_, 0.0F);
+  add_terms(std::span(terms_).subspan(row.first, row.end - row.first), freedom_impulses_, answers);
+  return answers;
+}
+
+void ImpulseSolver::change(std::size_t r, float by) {
+  if (by == 0) return;
+  answer(r);
+  changes_.push_back({r, by});
+}
+
+float ImpulseSolver::speed(std::size_t r) const {
+  float speed = speeds_[r];
+  for (const Term& term : changes_) speed += term.factor * answers_[term.row * stride_ + r];
+  return speed;
 }
 
 void ImpulseSolver::warm_start(bool again) {
-  twists_.clear();
-  for (const int body : touched_) {
-    twists_.emplace_back();
-    twists_.back() << bodies_->twists()[at(body)].cast<float>(), 0, 0;
-  }
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    Vec8f wrench = Vec8f::Zero();
-    for (std::size_t r = groups_[g].first; r < groups_[g].end; ++r) {
-      Row& row = rows_[r];
-      row.impulse = again ? row.pushed : row.cache == nullptr ? 0 : *row.cache;
-      wrench += row.impulse * swept_[r].wrench;
+  speeds_.assign(stride_, 0);
+  impulses_.assign(stride_, 0);
+  for (const Group& group : groups_) {
+    for (std::size_t r = group.first; r < group.end; ++r) {
+      speeds_[r] = static_cast<float>(speed_along(group, rows_[r].wrench));
     }
-    if (!wrench.isZero(0)) spread(g, wrench);
   }
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    const Row& row = rows_[r];
+    impulses_[r] = again ? row.pushed : row.cache == nullptr ? 0 : *row.cache;
+    change(r, impulses_[r]);
+  }
+  add_terms(changes_, answers_, speeds_.data());
+  changes_.clear();
 }
 
-void ImpulseSolver::sweep_row(std::size_t r, Vec8f& difference, Vec8f& wrench, float& largest) {
-  const Swept& swept = swept_[r];
-  Row& row = rows_[r];
-  const float before = row.impulse;
-  row.impulse += (swept.target - swept.wrench.dot(difference)) * swept.inverse;
-  if (!row.both) row.impulse = std::max(row.impulse, 0.0F);
-  const float change = row.impulse - before;
-  if (change == 0) return;
-  largest = std::max(largest, std::abs(change) / swept.inverse);
-  wrench += change * swept.wrench;
-  difference += change * swept.answer;
+void ImpulseSolver::sweep_row(std::size_t r, float& largest) {
+  const Swept& row = swept_[r];
+  const float before = impulses_[r];
+  float now = before + (row.target - speed(r)) * row.inverse;
+  if (!row.both) now = std::max(now, 0.0F);
+  const float by = now - before;
+  if (by == 0) return;
+  impulses_[r] = now;
+  largest = std::max(largest, std::abs(by) * row.own);
+  change(r, by);
 }
 
 // Coulomb's cone: both rows across together, at most the friction times the pressure.
-void ImpulseSolver::sweep_friction(const Patch& patch, Vec8f& difference, Vec8f& wrench,
-                                   float& largest) {
+void ImpulseSolver::sweep_friction(const Patch& patch, float& largest) {
   float most = 0, most_spin = 0;
   for (std::size_t r = patch.first; r < patch.end; ++r) {
-    most += patch.friction * rows_[r].impulse;
-    most_spin += patch.friction * rows_[r].impulse * patch.arms[r - patch.first];
+    most += patch.friction * impulses_[r];
+    most_spin += patch.friction * impulses_[r] * patch.arms[r - patch.first];
   }
-  Row &u = rows_[patch.end], &v = rows_[patch.end + 1], &spin = rows_[patch.end + 2];
-  const Swept *su = &swept_[patch.end], *sv = su + 1, *ss = su + 2;
-  const float old_u = u.impulse, old_v = v.impulse, old_spin = spin.impulse;
+  const std::size_t i = patch.end, j = i + 1, k = i + 2;
+  float &u = impulses_[i], &v = impulses_[j], &spin = impulses_[k];
+  const float old_u = u, old_v = v, old_spin = spin;
   if (most == 0 && old_u == 0 && old_v == 0 && old_spin == 0) return;
-  u.impulse -= su->wrench.dot(difference) * su->inverse;
-  const float slip = sv->wrench.dot(difference) + (u.impulse - old_u) * sv->wrench.dot(su->answer);
-  v.impulse -= slip * sv->inverse;
-  const float length = std::sqrt(u.impulse * u.impulse + v.impulse * v.impulse);
+  u -= speed(i) * swept_[i].inverse;
+  const float slip = speed(j) + (u - old_u) * answer(i)[j];
+  v -= slip * swept_[j].inverse;
+  const float length = std::sqrt(u * u + v * v);
   if (length > most) {
-    u.impulse *= most / length;
-    v.impulse *= most / length;
+    u *= most / length;
+    v *= most / length;
   }
-  const float du = u.impulse - old_u, dv = v.impulse - old_v;
-  wrench += du * su->wrench + dv * sv->wrench;
-  difference += du * su->answer + dv * sv->answer;
-  spin.impulse =
-      std::clamp(old_spin - ss->wrench.dot(difference) * ss->inverse, -most_spin, most_spin);
-  const float ds = spin.impulse - old_spin;
-  wrench += ds * ss->wrench;
-  difference += ds * ss->answer;
-  largest = std::max({largest, std::abs(du) / su->inverse, std::abs(dv) / sv->inverse});
+  change(i, u - old_u);
+  change(j, v - old_v);
+  spin = std::clamp(old_spin - speed(k) * swept_[k].inverse, -most_spin, most_spin);
+  change(k, spin - old_spin);
+  largest =
+      std::max({largest, std::abs(u - old_u) * swept_[i].own, std::abs(v - old_v) * swept_[j].own});
 }
 
 float ImpulseSolver::sweep() {
   float largest = 0;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const Group& group = groups_[g];
-    Vec8f difference = twists_[at(group.touched_a)], wrench = Vec8f::Zero();
-    if (group.b >= 0) difference -= twists_[at(group.touched_b)];
+  for (const Group& group : groups_) {
     const Patch* patch = group.patch < 0 ? nullptr : &patches_[at(group.patch)];
     const std::size_t end = patch == nullptr ? group.end : patch->end;
-    for (std::size_t r = group.first; r < end; ++r) sweep_row(r, difference, wrench, largest);
-    if (patch != nullptr) sweep_friction(*patch, difference, wrench, largest);
-    if (!wrench.isZero(0)) spread(g, wrench);
+    for (std::size_t r = group.first; r < end; ++r) sweep_row(r, largest);
+    if (patch != nullptr) sweep_friction(*patch, largest);
+    if (changes_.empty()) continue;
+    add_terms(changes_, answers_, speeds_.data());
+    changes_.clear();
   }
   return largest;
 }
@@ -140,49 +157,45 @@ void ImpulseSolver::sweep_until(bool relax, int count) {
   for (std::size_t r = 0; r < rows_.size(); ++r) {
     swept_[r].target = static_cast<float>(relax ? rows_[r].kept : rows_[r].target);
   }
-  directions_.assign(rows_.size(), 0.0F);
-  turns_.assign(touched_.size(), Vec8f::Zero());
-  before_.resize(rows_.size());
+  impulse_turns_.assign(stride_, 0);
+  speed_turns_.assign(stride_, 0);
   float slope = 0;
   for (int i = 0; i < count; ++i) {
-    for (std::size_t r = 0; r < rows_.size(); ++r) before_[r] = rows_[r].impulse;
-    twists_before_ = twists_;
+    impulses_before_ = impulses_;
+    speeds_before_ = speeds_;
     if (sweep() < kEnough || i + 1 == count) return;
     const float last = slope;
     slope = 0;
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const float change = rows_[r].impulse - before_[r];
-      slope += change * change / swept_[r].inverse;
+      const float change = impulses_[r] - impulses_before_[r];
+      slope += change * change * swept_[r].own;
     }
     const float share = last > 0 && slope < last ? slope / last : 0;
-    for (std::size_t r = 0; r < rows_.size(); ++r) {
-      const float old = share * directions_[r];
-      directions_[r] = rows_[r].impulse - before_[r] + old;
-      rows_[r].impulse += old;
-    }
-    for (std::size_t t = 0; t < touched_.size(); ++t) {
-      const Vec8f old = share * turns_[t];
-      turns_[t] = twists_[t] - twists_before_[t] + old;
-      twists_[t] += old;
-    }
+    const auto go_on = [&](std::vector<float>& now, const std::vector<float>& before,
+                           std::vector<float>& turns) {
+      for (std::size_t r = 0; r < stride_; ++r) {
+        const float old = share * turns[r];
+        turns[r] = now[r] - before[r] + old;
+        now[r] += old;
+      }
+    };
+    go_on(impulses_, impulses_before_, impulse_turns_);
+    go_on(speeds_, speeds_before_, speed_turns_);
   }
 }
 
 // The twists of all bodies with the impulses that there are.
-std::vector<Vec6> ImpulseSolver::sum() const {
-  std::vector<Vec6> all = bodies_->twists();
+void ImpulseSolver::sum(std::vector<Vec6>& all) {
+  pushes_.assign(all.size(), Vec6::Zero());
   for (const Group& group : groups_) {
     Vec6 wrench = Vec6::Zero();
     for (std::size_t r = group.first; r < group.end; ++r) {
-      wrench += static_cast<double>(rows_[r].impulse) * rows_[r].wrench;
+      wrench += static_cast<double>(impulses_[r]) * rows_[r].wrench;
     }
-    if (wrench.isZero(0)) continue;
-    for (int b = 0; b < bodies_->body_count(); ++b) {
-      all[at(b)].noalias() += bodies_->response(b, group.a) * wrench;
-      if (group.b >= 0) all[at(b)].noalias() -= bodies_->response(b, group.b) * wrench;
-    }
+    pushes_[at(group.a)] += wrench;
+    if (group.b >= 0) pushes_[at(group.b)] -= wrench;
   }
-  return all;
+  bodies_->answer(pushes_, all);
 }
 
 void ImpulseSolver::solve(int iterations) {
@@ -200,16 +213,16 @@ void ImpulseSolver::solve_again(int iterations) {
 
 void ImpulseSolver::sweep_all(int iterations) {
   sweep_until(false, iterations);
-  moving_ = sum();
-  for (Row& row : rows_) row.pushed = row.impulse;
+  sum(moving_);
+  for (std::size_t r = 0; r < rows_.size(); ++r) rows_[r].pushed = impulses_[r];
   if (std::ranges::any_of(rows_, [](const Row& r) { return r.target != r.kept; })) {
     sweep_until(true, std::max(2, iterations / 2));
-    left_ = sum();
+    sum(left_);
   } else {
     left_ = moving_;
   }
-  for (const Row& row : rows_) {
-    if (row.cache != nullptr) *row.cache = row.impulse;
+  for (std::size_t r = 0; r < rows_.size(); ++r) {
+    if (rows_[r].cache != nullptr) *rows_[r].cache = impulses_[r];
   }
 }
 

@@ -163,7 +163,7 @@ void FallMaker::apply_pushes(int step) {
 
 Pose FallMaker::pose() const {
   Pose pose(start_.size()), playing(start_.size());
-  world_to_local(motion_.skeleton.parents, follower_->pose(), playing);
+  if (fall_.follows) world_to_local(motion_.skeleton.parents, follower_->pose(), playing);
   std::vector<int> own(start_.size(), -1);
   for (std::size_t b = 0; b < bodies_.size(); ++b) own[at(bodies_[b].joint)] = static_cast<int>(b);
   for (std::size_t j = 0; j < pose.size(); ++j) {

@@ -51,10 +51,7 @@ void World::Inside::advance(double step, int divided) {
   solver.begin(bodies, step);
   solver.add_contacts(contacts, options.friction, options.restitution);
   solver.add_limits();
-  if (solver.has_rows()) {
-    bodies.find_responses();
-    solver.solve(options.iterations);
-  }
+  solver.solve(options.iterations);
   bodies.move(step, solver.moving(), solver.left());
   for (int again = 0; solver.has_rows() && solver.missed(); ++again) {
     const bool divide = again == kAgain && divided < kDivided;
