@@ -591,7 +591,11 @@ class BlockSolver {
       for (const double excess : excesses) {
         motion_->largest_excess = std::max(motion_->largest_excess, excess);
       }
-      add(report);
+      for (const Stretch& stretch : stretches)
+        motion_->changed_frames += stretch.last + 1 - stretch.first;
+      for (std::size_t i = 0; i < report.size(); ++i) {
+        if (report[i].strength > 0) motion_->goals[i % count].push_back(report[i]);
+      }
       measure_turns(run, made);
     }
     run.clip = std::move(made);
@@ -610,19 +614,6 @@ class BlockSolver {
       stretches.back().last = f;
     }
     return stretches;
-  }
-
-  void add(std::span<const GoalFrame> report) {
-    const std::size_t count = goals_.size();
-    for (std::size_t i = 0; i < report.size(); i += count) {
-      bool changed = false;
-      for (std::size_t g = 0; g < count; ++g) {
-        if (!(report[i + g].strength > 0)) continue;
-        changed = true;
-        motion_->goals[g].push_back(report[i + g]);
-      }
-      motion_->changed_frames += changed ? 1 : 0;
-    }
   }
 
   void measure_turns(const FrameRun& given, const Clip& made) {

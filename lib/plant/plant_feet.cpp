@@ -415,6 +415,7 @@ Result<Pass> plant_once(const Clip& clip, const RoleMap& roles,
     if (!shown) return shown.error();
     if (planter.drift_in(planted->clip, *shown) <= max_drift) break;
     more.insert(more.end(), shown->stays.begin(), shown->stays.end());
+    planted->clip = {};  // as large as the motion, and made anew
     planted = planter.plant(*found, more);
   }
   if (!planted) return std::move(planted).error();

@@ -19,32 +19,28 @@ constexpr int kShiftRounds = 2;
 class FrameTransfer {
  public:
   FrameTransfer(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
-                const TouchKeeping* touches, FramePoses& poses)
-      : run_(run),
-        source_(run.clip),
-        target_(target),
-        plan_(plan),
-        jobs_(jobs),
-        touches_(touches),
-        poses_(poses) {
+                const TouchKeeping* touches)
+      : run_(run), source_(run.clip), target_(target), plan_(plan), jobs_(jobs), touches_(touches) {
     find_below_anchor();
   }
 
   void note(TouchKeeping& touches, bool again) const {
     in_parallel([&](std::size_t begin, std::size_t end) {
-      std::vector<Transform> source_pose(source_.skeleton.names.size());
-      std::vector<Transform> pose(target_.names.size());
-      for (std::size_t f = begin; f < end; ++f) {
-        const int frame = static_cast<int>(f);
-        if (!touches.needs(frame, again)) continue;
-        make_pose(frame, source_pose, pose);
-        touches.note(frame, pose);
+      std::vector<Transform> poses(joints());
+      for (int f = static_cast<int>(begin); f < static_cast<int>(end); ++f) {
+        if (!touches.needs(f, again)) continue;
+        make_poses(f, poses);
+        touches.note(f, std::span(poses).subspan(source_.skeleton.names.size()));
       }
     });
   }
 
-  Clip run(Report& report) {
-    make_poses();
+  Clip run(std::vector<Transform>& poses, Report& report) {
+    poses.resize(at(source_.frame_count()) * joints());
+    poses_ = poses;
+    in_parallel([&](std::size_t begin, std::size_t end) {
+      for (std::size_t f = begin; f < end; ++f) make_poses(static_cast<int>(f), poses_of(f));
+    });
     Clip clip;
     clip.skeleton = target_;
     clip.rate = source_.rate;
@@ -153,37 +149,24 @@ class FrameTransfer {
     }
   }
 
-  // Both poses, the target's as given by rotations and hips.
-  void make_pose(int frame, std::span<Transform> source_pose, std::span<Transform> pose) const {
+  std::size_t joints() const { return source_.skeleton.names.size() + target_.names.size(); }
+
+  // The source's pose, and behind it the target's, as given by rotations and hips.
+  void make_poses(int frame, std::span<Transform> poses) const {
+    const auto source_pose = poses.first(source_.skeleton.names.size());
+    const auto pose = poses.subspan(source_pose.size());
     source_.get_pose(frame, source_pose);
     pose_of(source_pose, pose);
     place(source_pose, pose);
   }
 
+  std::span<Transform> poses_of(std::size_t frame) const {
+    return poses_.subspan(frame * joints(), joints());
+  }
+
   template <typename Body>
   void in_parallel(const Body& body) const {
     parallel_for(at(source_.frame_count()), kFramesATime, jobs_, body);
-  }
-
-  std::span<Transform> source_pose(std::size_t frame) const {
-    const std::size_t joints = source_.skeleton.names.size();
-    return std::span(poses_.source).subspan(frame * joints, joints);
-  }
-
-  std::span<Transform> target_pose(std::size_t frame) const {
-    const std::size_t joints = target_.names.size();
-    return std::span(poses_.target).subspan(frame * joints, joints);
-  }
-
-  void make_poses() const {
-    const auto frames = at(source_.frame_count());
-    poses_.source.resize(frames * source_.skeleton.names.size());
-    poses_.target.resize(frames * target_.names.size());
-    in_parallel([&](std::size_t begin, std::size_t end) {
-      for (std::size_t f = begin; f < end; ++f) {
-        make_pose(static_cast<int>(f), source_pose(f), target_pose(f));
-      }
-    });
   }
 
   // Calls body(frame, source_pose, pose) for all frames, with a copy of the target's pose.
@@ -192,8 +175,8 @@ class FrameTransfer {
     in_parallel([&](std::size_t begin, std::size_t end) {
       std::vector<Transform> pose(target_.names.size());
       for (std::size_t f = begin; f < end; ++f) {
-        std::ranges::copy(target_pose(f), pose.begin());
-        body(f, source_pose(f), pose);
+        std::ranges::copy(poses_of(f).last(pose.size()), pose.begin());
+        body(f, poses_of(f).first(source_.skeleton.names.size()), pose);
       }
     });
   }
@@ -295,8 +278,8 @@ class FrameTransfer {
   const Skeleton& target_;
   const TransferPlan& plan_;
   int jobs_;
-  const TouchKeeping* touches_;  // of the run
-  FramePoses& poses_;
+  const TouchKeeping* touches_;                     // of the run
+  std::span<Transform> poses_;                      // [frames x joints()]
   std::vector<BodyShift> shifts_;                   // [frames] or empty
   std::vector<char> below_anchor_, beside_anchor_;  // [target joints]
 };
@@ -305,13 +288,13 @@ class FrameTransfer {
 
 void note_touches(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
                   bool again, TouchKeeping& touches) {
-  FramePoses none;
-  FrameTransfer(run, target, plan, jobs, nullptr, none).note(touches, again);
+  FrameTransfer(run, target, plan, jobs, nullptr).note(touches, again);
 }
 
 Clip transfer_frames(const FrameRun& run, const Skeleton& target, const TransferPlan& plan,
-                     int jobs, const TouchKeeping* touches, FramePoses& poses, Report& report) {
-  return FrameTransfer(run, target, plan, jobs, touches, poses).run(report);
+                     int jobs, const TouchKeeping* touches, std::vector<Transform>& poses,
+                     Report& report) {
+  return FrameTransfer(run, target, plan, jobs, touches).run(poses, report);
 }
 
 }  // namespace krok::retarget

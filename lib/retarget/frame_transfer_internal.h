@@ -43,16 +43,11 @@ struct TransferPlan {
 void note_touches(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
                   bool again, TouchKeeping& touches);
 
-// Memory that is used again from block to block: joint_to_world before feet and touches, of each
-// frame. Shape [frames x joints].
-struct FramePoses {
-  std::vector<Transform> source, target;
-};
-
 // The frames of `run` on the skeleton `target`. Adds to `report` what the legs needed in the frames
 // that are kept: the two feet, largest_drop and what touches. `touches` are settled; null: none are
-// kept.
+// kept. `poses` is memory to be used again for other blocks.
 Clip transfer_frames(const FrameRun& run, const Skeleton& target, const TransferPlan& plan,
-                     int jobs, const TouchKeeping* touches, FramePoses& poses, Report& report);
+                     int jobs, const TouchKeeping* touches, std::vector<Transform>& poses,
+                     Report& report);
 
 }  // namespace krok::retarget

@@ -407,7 +407,7 @@ class Transfer {
   Floor source_floor_, target_floor_;
   std::optional<TouchKeeping> touches_;  // those of a take that is one block
   TransferPlan plan_;
-  FramePoses poses_;
+  std::vector<Transform> poses_;
   std::shared_ptr<Report> report_ = std::make_shared<Report>();
   int reported_ = 0;  // frames that report_ is of
 };

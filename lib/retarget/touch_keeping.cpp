@@ -111,10 +111,12 @@ BodyShift ShiftSolver::solve() const {
 std::vector<BodyShift> smoothed(const std::vector<BodyShift>& shifts, int reach) {
   const int count = static_cast<int>(shifts.size());
   std::vector<BodyShift> result(shifts.size());
+  std::vector<double> weights;  // [2 reach + 1]
+  for (int k = -reach; k <= reach; ++k) weights.push_back(1 + std::cos(kPi * k / (reach + 1)));
   for (int i = 0; i < count; ++i) {
     double all = 0;
     for (int k = -reach; k <= reach; ++k) {
-      const double weight = 1 + std::cos(kPi * k / (reach + 1));
+      const double weight = weights[at(k + reach)];
       const BodyShift& other = shifts[at(std::clamp(i + k, 0, count - 1))];
       result[at(i)].hips += weight * other.hips;
       result[at(i)].turn += weight * other.turn;

@@ -12,7 +12,7 @@ struct Outcome {
   const FrameSource& input;
   const std::vector<krok::ik::KeyedGoal>& goals;
   const krok::ik::Limits& limits;
-  const krok::ik::GoalMotion& motion;  // its clip is not used
+  const krok::ik::GoalMotion& motion;  // its clip for charts alone
 };
 
 // One line for display.

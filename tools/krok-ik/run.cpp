@@ -8,7 +8,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -61,8 +60,7 @@ bool looks_with_eyes(const Options& options) {
 
 class ChartMaker {
  public:
-  ChartMaker(const Outcome& outcome, const Clip& given, const Clip& made)
-      : outcome_(outcome), given_(given), made_(made) {
+  ChartMaker(const Outcome& outcome, const Clip& given) : outcome_(outcome), given_(given) {
     for (int f = 0; f < given.frame_count(); ++f) times_.push_back(f / given.rate);
   }
 
@@ -116,7 +114,7 @@ class ChartMaker {
     draw::Panel panel =
         over_time("Rotation beyond limits, largest of all joints", "angle", "\u00B0");
     add("input", excesses(given_), 6, panel);
-    add("result", excesses(made_), 0, panel);
+    add("result", excesses(outcome_.motion.clip), 0, panel);
     widen(kFewDegrees, panel);
     return panel;
   }
@@ -172,7 +170,7 @@ class ChartMaker {
   }
 
   const Outcome& outcome_;
-  const Clip &given_, &made_;
+  const Clip& given_;
   std::vector<double> times_;  // [frames], seconds
 };
 
@@ -180,9 +178,8 @@ class ChartMaker {
 // goals; the joints whose limits hold a goal back, where any does; and, with limits, by how much
 // the joint that is farthest beyond its limits is beyond them, in the input and in the result.
 // Lengths are millimetres, angles degrees.
-draw::Chart chart_of(const Outcome& outcome, const Clip& given, const Clip& made,
-                     const std::string& title) {
-  const ChartMaker maker(outcome, given, made);
+draw::Chart chart_of(const Outcome& outcome, const Clip& given, const std::string& title) {
+  const ChartMaker maker(outcome, given);
   draw::Chart chart;
   chart.title = title;
   for (const bool angles : {false, true}) {
@@ -219,7 +216,7 @@ class Run {
   Status plant_first();
   bool is_gaze(const PointGoal& point) const;
   Status turn_eyes(Clip& clip);
-  Result<int> bring_about();
+  Result<int> bring_about(const FrameSource& motion, const std::function<Provenance()>& of_input);
   Result<int> finish_without_goals();
   Provenance provenance_of(std::vector<std::string> conversions, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
@@ -228,9 +225,7 @@ class Run {
 
   const Options& options_;
   ToolContext& context_;
-  Clip clip_;           // of a long take some of the frames, evenly over it
-  FrameSource frames_;  // all of them
-  std::function<Provenance()> of_input_;
+  Clip clip_;  // of a long take some of the frames, evenly over it
   io::FindRoles find_roles_;
   RoleMap roles_;
   krok::ik::Limits limits_;
@@ -563,9 +558,7 @@ Result<int> Run::run(Clip motion) {
     if (!options_.plot.empty()) return usage("--plot shows goals, of which eyes are none");
     return finish_without_goals();
   }
-  frames_ = frames_of(clip_);
-  of_input_ = [this] { return clip_.provenance; };
-  return bring_about();
+  return bring_about(frames_of(clip_), [this] { return clip_.provenance; });
 }
 
 Result<int> Run::run(const FrameSource& motion, const std::function<Provenance()>& provenance) {
@@ -580,25 +573,24 @@ Result<int> Run::run(const FrameSource& motion, const std::function<Provenance()
     std::ranges::copy(frame->orientations, std::back_inserter(clip_.orientations));
   }
   if (Status status = prepare(); !status) return status.error();
-  frames_ = motion;
-  of_input_ = provenance;
-  return bring_about();
+  return bring_about(motion, provenance);
 }
 
-Result<int> Run::bring_about() {
+Result<int> Run::bring_about(const FrameSource& motion,
+                             const std::function<Provenance()>& of_input) {
   krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
   if (roles_.humanoid) how.upright = roles_.joints(Role::head);
   const std::string& asked = options_.goals.empty() ? options_.input : options_.goals;
-  auto made = krok::ik::apply_goals(frames_, goals_, limits_, how);
+  auto made = krok::ik::apply_goals(motion, goals_, limits_, how);
   if (!made) return std::move(made).error().in_file(asked);
   made->frames.read = [read = made->frames.read, &asked](auto... block) -> Status {
     Status status = read(block...);
     if (status || !status.error().code.starts_with("ik-")) return status;
     return std::move(status).error().in_file(asked);
   };
-  const Outcome outcome{frames_, goals_, limits_, *made->motion};
+  const Outcome outcome{motion, goals_, limits_, *made->motion};
   bool all_reached = true, diagnosed = false;
   const auto diagnose = [&] {
     if (std::exchange(diagnosed, true)) return;
@@ -609,26 +601,23 @@ Result<int> Run::bring_about() {
     }
   };
   std::string chart;
-  std::optional<Clip> whole;  // where more is to be done than to write it
   if (looks_with_eyes(options_) || !options_.plot.empty()) {
-    auto clip = load(made->frames, context_.jobs);
-    if (!clip) return clip.error();
-    whole = *std::move(clip);
+    auto loaded = load(made->frames, context_.jobs);
+    if (!loaded) return loaded.error();
+    Clip& whole = made->motion->clip = *std::move(loaded);
     diagnose();
-  }
-  if (!options_.plot.empty()) {
-    auto svg = draw::to_svg(chart_of(outcome, clip_, *whole, name_of_input(options_.input)));
-    if (!svg) return svg.error();
-    chart = std::move(*svg);
-  }
-  if (whole) {
+    if (!options_.plot.empty()) {
+      auto svg = draw::to_svg(chart_of(outcome, clip_, name_of_input(options_.input)));
+      if (!svg) return svg.error();
+      chart = std::move(*svg);
+    }
     // Eyes may be added to the skeleton.
-    if (Status status = turn_eyes(*whole); !status) return status.error();
-    made->frames = frames_of(*whole);
+    if (Status status = turn_eyes(whole); !status) return status.error();
+    made->frames = frames_of(whole);
   }
   const auto provenance = [&] {
     diagnose();
-    return provenance_of(of_input_().conversions, "inverse kinematics: " + summary(outcome));
+    return provenance_of(of_input().conversions, "inverse kinematics: " + summary(outcome));
   };
   if (Status status = write(&made->frames, provenance, chart); !status) return status.error();
   const bool is_reported = !context_.report_path.empty() || context_.one_of_many != nullptr;
@@ -648,13 +637,14 @@ Result<int> Run::bring_about() {
 Result<int> run(const Options& options, ToolContext& context) {
   constexpr std::size_t kLongBytes = std::size_t{16} << 20;
   if (Status status = check_outputs(options, context); !status) return status.error();
-  const auto input = context.open_long_input(options.input);
+  auto input = context.open_long_input(options.input);
   if (!input) return input.error();
   if (input->bytes().size() < kLongBytes || !options.has_goals() || options.plant ||
       !options.plot.empty() || options.limits == "auto" || looks_with_eyes(options)) {
     context.note_checksum(*input);
     auto clip = io::open_motion(*input, context);
     if (!clip) return clip.error();
+    { const InputFile closed = *std::move(input); }  // its mapping takes memory
     return Run(options, context).run(*std::move(clip));
   }
   const io::ChecksumAtEnd checksum(*input, context);
