@@ -198,10 +198,8 @@ std::span<const Articulation::LimitSide> Articulation::limit_sides(int joint) co
     sides.push_back({1, -axes.col(0), its.range.min - angle});
     return sides;
   }
-  if ((its.kind != JointKind::spherical && its.kind != JointKind::six_dof) ||
-      its.turn.kind != ik::JointLimit::Kind::cone) {
-    return sides;
-  }
+  const bool turns = its.kind == JointKind::spherical || its.kind == JointKind::six_dof;
+  if (!turns || its.turn.kind != ik::JointLimit::Kind::cone) return sides;
   const Quat& turned = ties_[at(joint)].turned;
   const ik::LimitAngles angles = ik::measure(its.turn, turned);
   const ik::LimitGradients slopes = ik::gradients(its.turn, turned);

@@ -98,10 +98,10 @@ class Articulation {
   const std::vector<Vec6>& twists() const { return twists_; }  // of bodies
 
   // After accelerate(): what a wrench of impulses on body a, and its negative on b (-1: none),
-  // gives to each freedom on the way to the roots. Calls visit(number, impulse, speed) for the 3 or
-  // 6 freedoms of a link from `number` on. The speed that a wrench gives along another is the sum
-  // over all freedoms of the speeds by the one times the impulses by the other (Featherstone's
-  // operational-space inertia, factored).
+  // gives to each freedom up to the roots. Calls visit(number, impulse, speed) for the 3 or 6 of a
+  // link, from `number` on. The speed that one wrench gives along another is the sum of the speeds
+  // by the one times the impulses by the other (Featherstone's operational-space inertia,
+  // factored).
   template <typename Visit>
   void each_answer(int a, int b, const Vec6& wrench, const Visit& visit) const;
   int freedom_count() const { return freedom_count_; }

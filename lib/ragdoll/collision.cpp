@@ -131,8 +131,7 @@ struct Solid {
 
 namespace {
 
-// Whether bodies are farther apart than Bullet keeps contacts: by planes across the line of centres
-// and across the axes.
+// Farther than Bullet keeps contacts, by planes across the line of centres and across the axes.
 bool are_apart(const Solid& a, const Solid& b) {
   const Vec3 way = b.centre - a.centre;
   const Vec3 in_a = (a.axes.transpose() * way).cwiseAbs();

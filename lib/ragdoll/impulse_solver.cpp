@@ -127,7 +127,8 @@ void ImpulseSolver::add_patch(std::span<const Contact> contacts, double friction
   for (std::size_t k = 0; k < 2; ++k) {
     add_row(wrench_at(centre, sides[k])).cache = leader.impulses[k + 1];
   }
-  add_row(spatial(leader.normal, Vec3::Zero()));
+  // About one point, friction has no arm.
+  if (points.size() > 1) add_row(spatial(leader.normal, Vec3::Zero()));
   groups_.back().patch = static_cast<int>(patches_.size());
   patches_.push_back(std::move(patch));
 }

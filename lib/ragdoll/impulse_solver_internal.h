@@ -56,9 +56,10 @@ class ImpulseSolver {
     float* cache = nullptr;
   };
   // Contacts of two bodies in about one plane have one friction: across at the middle of their
-  // pressure, and against spinning on the spot. Friction at each point could strain against itself.
+  // pressure, and, of more than one, against spinning on the spot. Friction at each point could
+  // strain against itself.
   struct Patch {
-    std::size_t first = 0, end = 0;  // rows of the contacts; the next three are the friction
+    std::size_t first = 0, end = 0;  // rows of the contacts; the next are the friction
     float friction = 0;
     std::vector<float> arms;
   };
@@ -70,7 +71,6 @@ class ImpulseSolver {
     std::size_t first = 0, end = 0;  // of terms_: what an impulse of 1 gives to freedoms
     float own = 0, inverse = 0;      // the answer of its own speed to that
     float target = 0;
-    bool both = false;
     bool answered = false;  // whether its row of answers_ is found
   };
   struct Group {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ragdoll/impulse_solver_internal.h"
 
@@ -37,7 +38,6 @@ void ImpulseSolver::connect() {
     for (std::size_t r = group.first; r < group.end; ++r) {
       Swept row;
       row.first = count;
-      row.both = rows_[r].both;
       double own = 1e-12;
       bodies_->each_answer(group.a, group.b, rows_[r].wrench,
                            [&](int number, const auto& impulse, const auto& speed) {
@@ -62,8 +62,7 @@ void ImpulseSolver::connect() {
 float* ImpulseSolver::answer(std::size_t r) {
   Swept& row = swept_[r];
   float* answers = &answers_[r * stride_];
-  if (row.answered) return answers;
-  row.answered = true;
+  if (std::exchange(row.answered, true)) return answers;
   std::fill_n(answers, stride_, 0.0F);
   add_terms(std::span(terms_).subspan(row.first, row.end - row.first), freedom_impulses_, answers);
   return answers;
@@ -102,7 +101,7 @@ void ImpulseSolver::sweep_row(std::size_t r, float& largest) {
   const Swept& row = swept_[r];
   const float before = impulses_[r];
   float now = before + (row.target - speed(r)) * row.inverse;
-  if (!row.both) now = std::max(now, 0.0F);
+  if (!rows_[r].both) now = std::max(now, 0.0F);
   const float by = now - before;
   if (by == 0) return;
   impulses_[r] = now;
@@ -118,23 +117,26 @@ void ImpulseSolver::sweep_friction(const Patch& patch, float& largest) {
     most_spin += patch.friction * impulses_[r] * patch.arms[r - patch.first];
   }
   const std::size_t i = patch.end, j = i + 1, k = i + 2;
-  float &u = impulses_[i], &v = impulses_[j], &spin = impulses_[k];
-  const float old_u = u, old_v = v, old_spin = spin;
-  if (most == 0 && old_u == 0 && old_v == 0 && old_spin == 0) return;
-  u -= speed(i) * swept_[i].inverse;
-  const float slip = speed(j) + (u - old_u) * answer(i)[j];
-  v -= slip * swept_[j].inverse;
-  const float length = std::sqrt(u * u + v * v);
-  if (length > most) {
-    u *= most / length;
-    v *= most / length;
+  float &u = impulses_[i], &v = impulses_[j];
+  const float old_u = u, old_v = v;
+  if (most > 0 || old_u != 0 || old_v != 0) {
+    u -= speed(i) * swept_[i].inverse;
+    const float slip = speed(j) + (u - old_u) * answer(i)[j];
+    v -= slip * swept_[j].inverse;
+    const float length = std::sqrt(u * u + v * v);
+    if (length > most) {
+      u *= most / length;
+      v *= most / length;
+    }
+    change(i, u - old_u);
+    change(j, v - old_v);
+    largest = std::max(
+        {largest, std::abs(u - old_u) * swept_[i].own, std::abs(v - old_v) * swept_[j].own});
   }
-  change(i, u - old_u);
-  change(j, v - old_v);
-  spin = std::clamp(old_spin - speed(k) * swept_[k].inverse, -most_spin, most_spin);
-  change(k, spin - old_spin);
-  largest =
-      std::max({largest, std::abs(u - old_u) * swept_[i].own, std::abs(v - old_v) * swept_[j].own});
+  if (patch.arms.size() < 2 || (most_spin == 0 && impulses_[k] == 0)) return;
+  const float old = impulses_[k];
+  impulses_[k] = std::clamp(old - speed(k) * swept_[k].inverse, -most_spin, most_spin);
+  change(k, impulses_[k] - old);
 }
 
 float ImpulseSolver::sweep() {

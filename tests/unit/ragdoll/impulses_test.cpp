@@ -4,19 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 
 #include "ragdoll/articulation_internal.h"
 
 namespace krok::ragdoll {
 namespace {
 
-// The speed along one wrench by another: from the freedoms on the way to the roots, and from the
-// twists of all bodies.
+// The speed along one wrench by another: from the freedoms up to the roots, and from all twists.
 TEST(RagdollImpulses, FreedomsAddUpToTheAnswerOfTheTree) {
-  constexpr int kBodies = 5;  // four of them in a chain
-  std::vector<BodyState> states(kBodies);
-  for (int b = 0; b < kBodies; ++b) states[at(b)].to_world.position = Vec3(0.3 * b, 0.1 * b, 1);
+  std::vector<BodyState> states(5);  // the first four in a chain
+  for (int b = 0; b < 5; ++b) states[at(b)].to_world.position = Vec3(0.3 * b, 0.1 * b, 1);
   std::vector<Joint> joints(3);
   for (int j = 0; j < 3; ++j) {
     joints[at(j)].parent = j;
@@ -28,14 +25,14 @@ TEST(RagdollImpulses, FreedomsAddUpToTheAnswerOfTheTree) {
   joints[2].kind = JointKind::six_dof;
   joints[2].slide = {Range{-1, 1}, Range{0, 0}, Range{0, 0}};
   Articulation tree;
-  ASSERT_TRUE(tree.build(std::vector<Body>(kBodies), states, joints).ok());
+  ASSERT_TRUE(tree.build(std::vector<Body>(5), states, joints).ok());
   tree.accelerate(1.0 / 240, Vec3::Zero());
   Vec6 first, second;
   first << 0.2, -0.7, 0.4, 1, 0.5, -0.3;
   second << -0.1, 0.3, 0.9, -0.4, 1, 0.6;
   for (const auto& [a, b, c, d] : {std::array{3, -1, 0, -1}, std::array{3, 2, 3, 1},
                                    std::array{1, 3, 2, 4}, std::array{4, -1, 2, -1}}) {
-    std::vector<Vec6> wrenches(kBodies, Vec6::Zero()), twists = wrenches;
+    std::vector<Vec6> wrenches(5, Vec6::Zero()), twists = wrenches;
     wrenches[at(c)] = second;
     if (d >= 0) wrenches[at(d)] = -second;
     tree.answer(wrenches, twists);
