@@ -57,7 +57,7 @@ Result<FoundSkeleton> find_skeleton(const std::string& amc_path) {
     return (motion.parent_path() / skeleton.filename()).string();
   };
   if (named.size() == 1)
-    return FoundSkeleton{beside(named[0]), "the motion's name begins with its name"};
+    return FoundSkeleton{beside(named[0]), "the motion's name begins with its name", true};
   if (skeletons.size() == 1) {
     return FoundSkeleton{beside(skeletons[0]), "it is the only one in the motion's folder"};
   }

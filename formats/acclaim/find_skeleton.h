@@ -10,6 +10,7 @@ namespace krok::acclaim {
 struct FoundSkeleton {
   std::string path;
   std::string reason;  // "the motion's name begins with its name"
+  bool by_name = false;
 };
 
 // Searches the folder of the motion `amc_path` for its skeleton, a file with extension .asf

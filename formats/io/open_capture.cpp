@@ -173,6 +173,15 @@ Result<OpenedCapture> open_amc(const InputFile& file, Inputs& inputs, const Capt
     auto found = find_companion(file, inputs);
     if (!found) return found.error();
     companion = *std::move(found);
+  } else if (const auto own = acclaim::find_skeleton(file.path());
+             own && own->by_name && base_name(own->path) != base_name(reading.skeleton)) {
+    Diagnostic doubt = make_warning(
+        "acclaim-skeleton",
+        fmt::format("{} has the motion's name, and {} is used as its skeleton, as given", own->path,
+                    reading.skeleton),
+        "without --skeleton the motion's own is used");
+    doubt.where.file = file.path();
+    inputs.diagnose(std::move(doubt));
   }
   const auto skeleton = inputs.open_input(companion ? companion->path : reading.skeleton);
   if (!skeleton) return skeleton.error();

@@ -30,9 +30,14 @@ void apply_given(const GivenConventions& given, Conventions& conventions) {
     conventions.unit_reason = kGiven;
   }
   if (given.up) {
-    conventions.up = conventions.reference_up = *given.up;
+    const Confidence detected = conventions.up_confidence;
+    const bool doubted =
+        axes_reason == kGiven && conventions.up != *given.up && detected != Confidence::guess;
     conventions.up_confidence = given.axes_confidence;
-    conventions.up_reason = axes_reason;
+    conventions.up_reason = doubted ? fmt::format("{} is {}: {}", direction_name(conventions.up),
+                                                  confidence_name(detected), conventions.up_reason)
+                                    : axes_reason;
+    conventions.up = conventions.reference_up = *given.up;
   }
   if (given.forward) {
     conventions.forward = conventions.reference_forward = *given.forward;
@@ -98,15 +103,21 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
   const auto report = [&](bool is_given, const char* name, const char* subject,
                           const std::string& value, Confidence confidence,
                           const std::string& reason) {
-    if (is_given) return;
-    const bool guess = confidence == Confidence::guess;
+    const bool doubted = is_given && reason != kGiven;
+    if (is_given && !doubted) return;
+    const bool guess = doubted || confidence == Confidence::guess;
     Diagnostic diagnostic;
     diagnostic.severity = guess ? Severity::warning : Severity::note;
     diagnostic.code = fmt::format("{}-{}", code_prefix, name);
-    diagnostic.message = fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
-                         (reason.empty() ? std::string() : ": " + reason);
-    if (guess) diagnostic.hint = fmt::format("set it with --{} if that is wrong", name);
-    if (guess && name == std::string_view("up") && code_prefix != "scene") {
+    diagnostic.message =
+        doubted ? fmt::format("{} is {}, as given; {}", subject, value, reason)
+                : fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
+                      (reason.empty() ? std::string() : ": " + reason);
+    if (doubted)
+      diagnostic.hint = fmt::format("without --{} it is detected", name);
+    else if (guess)
+      diagnostic.hint = fmt::format("set it with --{} if that is wrong", name);
+    if (guess && !doubted && name == std::string_view("up") && code_prefix != "scene") {
       diagnostic.hint += ", or take the axes of a take that stands with --axes-from";
     }
     diagnostic.where.file = file_name;

@@ -155,6 +155,7 @@ class Transfer {
       plan_.local.push_back(target_.reference_local(k));
       plan_.aligned.push_back(turns_[at(k)] * target_rest_[at(k)].orientation);
     }
+    take_face_from_motion();
     for (const Transform& joint : rest_) plan_.rest_back.push_back(joint.orientation.conjugate());
     plan_.scale = report_->scale;
     if (by_roles) {
@@ -174,6 +175,21 @@ class Transfer {
  private:
   Actor from() const { return {source_.skeleton, source_roles_, rest_}; }
   Actor onto() const { return {target_, target_roles_, target_rest_}; }
+
+  // Exporters whose reference pose does not stand keep no face in it, either: eyes and jaw sit on
+  // the head as in the target's own motion.
+  void take_face_from_motion() {
+    const int head = target_roles_.joint(Role::head);
+    if (head < 0 || target_clip_.frame_count() == 0) return;
+    if (stands({target_, target_roles_, target_.reference})) return;
+    const auto turns = target_clip_.frame_orientations(0);
+    for (const int joint : joints_below(target_, head)) {
+      const int parent = target_.parents[at(joint)];
+      if (joint == head || plan_.mapping[at(joint)].first >= 0) continue;
+      plan_.local[at(joint)].orientation =
+          (turns[at(parent)].conjugate() * turns[at(joint)]).cast<double>().normalized();
+    }
+  }
 
   void advance(const FrameRun& frames) const {
     if (options_.progress == nullptr) return;

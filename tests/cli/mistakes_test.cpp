@@ -148,6 +148,11 @@ TEST_F(Mistakes, WordsOfOtherToolsLeadOn) {
   EXPECT_THAT(refused("krok-diff", {"a.glb", "b.glb", "-o", "d.xml"}), HasSubstr("use --summary"));
   EXPECT_THAT(refused("krok-import", {"in.bvh", "--framerate", "30"}), HasSubstr("use --fps"));
   EXPECT_THAT(refused("krok-skin", {"a.glb", "--tolerance", "1mm"}), HasSubstr("use --reduce"));
+  EXPECT_THAT(refused("krok-render", {"in.bvh", "--start", "1s"}), HasSubstr("use --from"));
+  EXPECT_THAT(refused("krok-export", {"in.bvh", "--from", "1s"}), HasSubstr("krok-edit --from"));
+  EXPECT_THAT(refused("krok-export", {"in.bvh", "--up", "z"}), Not(HasSubstr("krok-import")));
+  EXPECT_THAT(refused("krok-import", {"in.bvh", "-o", "a.fbx"}), HasSubstr("krok-export writes"));
+  EXPECT_THAT(refused("krok-export", {"in.bvh", "-o", "a.obj"}), HasSubstr("krok-skin writes"));
   // Not where the tool has no such option.
   EXPECT_THAT(refused("krok-info", {"in.bvh", "--fps", "30"}), Not(HasSubstr("--rate")));
 }

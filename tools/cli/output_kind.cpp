@@ -29,7 +29,9 @@ std::string maker_of(Kind kind, Kind from) {
     case Kind::anim:
       return "krok-import converts captures to .anim files";
     default:
-      return {};
+      return registry::is_read_through_assimp(kind)
+                 ? "that is only read; krok-export writes .glb and .bvh for other programs"
+                 : "";
   }
 }
 

@@ -196,8 +196,8 @@ void declare_place(CommandOptions& command, Options& o) {
            "Scale factor for the skeleton and its motion; --height sets a stature")
       .not_with("--height");
   command.add("--height", o.height, ValueKind<double>{"length", "LENGTH", parse_height, {}},
-              "Scale to this height of the reference pose, lowest to highest joint: 1.8m, with a "
-              "unit");
+              "Scale to this stature: 1.8m, with a unit; what is no person, to this height of the "
+              "reference pose, lowest to highest joint");
   command.group("9. Position");
   command.add_flag("--at-origin", o.at_origin, "Start above the origin");
   command.add_flag("--re-orient", o.re_orient, "Start facing +Z, the same as --heading 0")

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "motion/ground_frame.h"
 #include "motion/place.h"
+#include "roles/stature.h"
 #include "scene/frame_blocks.h"
 #include "tools/krok-edit/steps.h"
 
@@ -38,6 +39,13 @@ std::string velocity_text(const RootMotion& removed) {
                                  readable(v.y(), 4), readable(v.z(), 4));
   if (removed.turn_rate != 0) text += fmt::format(", {}/s", in_degrees(removed.turn_rate));
   return text;
+}
+
+// A person's stature, which no pose changes; of other skeletons the reference pose's height.
+double height_of(const Skeleton& skeleton) {
+  const RoleMap roles = find_roles(skeleton);
+  const auto stature = roles.humanoid ? stature_of(skeleton, roles) : std::nullopt;
+  return stature ? stature->metres : reference_height(skeleton);
 }
 
 }  // namespace
@@ -88,7 +96,7 @@ Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
 
 Status change_size(const Options& options, ToolContext& context, Edit& edit) {
   if (!options.scale && !options.height) return {};
-  const double height = reference_height(edit.clip.skeleton);
+  const double height = height_of(edit.clip.skeleton);
   if (options.height && !(height > 0)) {
     return Error("motion-scale", "the reference pose has no height to scale", "use --scale")
         .in_file(options.input);
@@ -100,7 +108,7 @@ Status change_size(const Options& options, ToolContext& context, Edit& edit) {
     edit.frames->skeleton = edit.clip.skeleton;
   }
   if (auto& removed = edit.clip.provenance.removed_root_motion) removed->velocity *= factor;
-  const double made = reference_height(edit.clip.skeleton);
+  const double made = height_of(edit.clip.skeleton);
   if (character::is_plausible_size(height) && !character::is_plausible_size(made)) {
     context.warn("motion-scale",
                  fmt::format("{} is {} m high now", options.input, readable(made, 3)),

@@ -207,7 +207,8 @@ Result<ExportFormat> format_of(const Options& options, const std::string& output
   return Error("export-format",
                end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
                            : fmt::format("unknown extension {}", end),
-               "use .bvh, .glb, .gltf, .csv, .npz, .mot or .sto; or --format")
+               end == ".obj" ? "krok-skin writes meshes as .obj"
+                             : "use .bvh, .glb, .gltf, .csv, .npz, .mot or .sto; or --format")
       .in_file(output);
 }
 

@@ -24,10 +24,11 @@ constexpr double kOnePerson = 0.06;  // metres: captures of one person in one mo
 constexpr double kNaming = 0.7;      // F1 score of a word as a name
 constexpr std::size_t kShownGroups = 8, kShownOfGroup = 2;
 
+// Of a file's name, without its ending.
 std::set<std::string> words_in(const std::string& name) {
   std::set<std::string> words;
   std::string word;
-  for (const char c : name + " ") {
+  for (const char c : name.substr(0, name.size() - extension(name).size()) + " ") {
     const auto byte = static_cast<unsigned char>(c);
     if (std::isalnum(byte) != 0 || byte >= 0x80) {
       word += c;

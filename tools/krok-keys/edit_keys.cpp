@@ -120,12 +120,15 @@ Vec3 place_of(const Clip& clip, int joint, double from, double to) {
 // Fails for a name that no keytime has, which may be misspelt, unless such names are wanted.
 Status check_name(const std::string& name, const std::vector<MarkedKeytime>& list, bool new_names) {
   std::vector<std::string> known = {"left_strike", "left_off", "right_strike", "right_off"};
-  for (const MarkedKeytime& one : list) known.push_back(one.key.name);
+  for (const MarkedKeytime& one : list) {
+    if (std::ranges::find(known, one.key.name) == known.end()) known.push_back(one.key.name);
+  }
   if (new_names || std::ranges::find(known, name) != known.end()) return {};
   const std::string near = nearest_name(name, known);
   return Error("keys-name", fmt::format("there is no keytime '{}'", shown(name)),
-               fmt::format("{}--new adds one of a new name",
-                           near.empty() ? "" : fmt::format("did you mean '{}'? ", near)));
+               near.empty()
+                   ? fmt::format("there are {}; --new adds one of a new name", either_of(known))
+                   : fmt::format("did you mean '{}'? --new adds one of a new name", near));
 }
 
 Status set_keytimes(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {

@@ -12,6 +12,7 @@
 #include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
+#include "roles/stature.h"
 #include "samples/generator/walk.h"
 
 namespace krok::test {
@@ -278,7 +279,7 @@ TEST_F(KrokEdit, PlacesScalesAndGrounds) {
   write("walk.anim", walk());
   const Clip clip = edited({"--height", "1m", "--at-origin", "--heading", "90deg", "--turn", "-30",
                             "--move", "1m, 0,-20cm", "--on-ground"});
-  EXPECT_NEAR(reference_height(clip.skeleton), 1, 1e-6);
+  EXPECT_NEAR(stature_of(clip.skeleton, find_roles(clip.skeleton))->metres, 1, 1e-6);
   const GroundFrame start = ground_frame(clip, 0, 0);
   EXPECT_NEAR(start.x, 1, 1e-5);
   EXPECT_NEAR(start.z, -0.2, 1e-5);

@@ -43,6 +43,21 @@ TEST_F(AcclaimImport, ASkeletonAloneHasNoFrames) {
   EXPECT_TRUE(std::filesystem::exists(path("leg.model")));
 }
 
+// Would fail if a motion on another person's skeleton were a slip that nobody sees.
+TEST_F(AcclaimImport, AnotherSkeletonThanItsOwnIsWarnedOf) {
+  put("01.asf", small_files::kAsf);
+  put("02.asf", small_files::kAsf);
+  put("01_03.amc", small_files::kAmc);
+  const auto warned = [&](const char* skeleton) {
+    const ToolRun run = run_tool(
+        "krok-import", {path("01_03.amc"), "--skeleton", path(skeleton), "-o", path("o.anim")});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return has_code(run.err, "acclaim-skeleton");
+  };
+  EXPECT_TRUE(warned("02.asf"));
+  EXPECT_FALSE(warned("01.asf"));
+}
+
 TEST_F(AcclaimImport, TheSkeletonBesideIsFoundAndNamed) {
   put("01.asf", small_files::kAsf);
   put("02.asf", small_files::kAsf);

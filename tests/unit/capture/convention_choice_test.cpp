@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 namespace krok {
@@ -43,6 +44,26 @@ TEST(ApplyGiven, ReplacesWhatWasDetected) {
   EXPECT_EQ(conventions.forward, Direction::minus_z);
   EXPECT_EQ(conventions.reference_forward, Direction::minus_z);
   EXPECT_EQ(conventions.up_confidence, Confidence::certain);
+}
+
+// Would fail if an axis that lays a clearly standing figure down were taken without a word.
+TEST(ApplyGiven, AnUpAxisAgainstWhatIsSeenIsDoubted) {
+  for (const Confidence seen : {Confidence::guess, Confidence::likely}) {
+    Conventions conventions = conventions_of(Direction::plus_y, Direction::plus_z);
+    conventions.up_confidence = seen;
+    conventions.up_reason = "it stands";
+    GivenConventions given;
+    given.up = Direction::plus_z;
+    apply_given(given, conventions);
+    EXPECT_EQ(conventions.up, Direction::plus_z);
+    Diagnostics diagnostics;
+    report_conventions(conventions, given, "bvh", "a.bvh", diagnostics);
+    const bool doubted = std::ranges::any_of(diagnostics, [](const Diagnostic& diagnostic) {
+      return diagnostic.severity == Severity::warning &&
+             diagnostic.message == "up is z, as given; y is likely: it stands";
+    });
+    EXPECT_EQ(doubted, seen == Confidence::likely);
+  }
 }
 
 TEST(ApplyGiven, NothingGivenChangesNothing) {

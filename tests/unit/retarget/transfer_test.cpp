@@ -600,6 +600,30 @@ TEST(Retarget, TakesTogetherGiveOneStance) {
   EXPECT_EQ(retarget::TakePool(100'000, roles).clip().frame_count(), 0);
 }
 
+// Would fail if eyes of a target whose reference pose keeps no face came out beside the head.
+TEST(Retarget, AFaceIsThatOfTheTargetsMotion) {
+  const Clip walk = lively_clip(human_skeleton());
+  Skeleton rig = human_skeleton();
+  const int head = rig.find("Head"), eye = rig.joint_count();
+  Transform of_eye = rig.reference[at(head)];
+  of_eye.position.z() += 0.1;
+  rig.add("Eye", head, of_eye);
+  const Clip own = lively_clip(rig);
+  // The same motion, on a reference pose that is folded and has the face turned.
+  Clip target = own;
+  for (const char* name : {"LeftUpLeg", "RightUpLeg", "LeftLeg", "RightLeg"}) {
+    target.skeleton = posed(target.skeleton, name, from_rotation_vector(Vec3(1.6, 0, 0)));
+  }
+  target.skeleton = posed(target.skeleton, "Eye", from_rotation_vector(Vec3(0, 1.5, 0)));
+  const auto result = transfer(walk, target);
+  ASSERT_TRUE(result.ok());
+  const auto turn = [&](const Clip& clip) {
+    return Quat(clip.frame_orientations(0)[at(head)].conjugate().cast<double>() *
+                clip.frame_orientations(0)[at(eye)].cast<double>());
+  };
+  EXPECT_LT(angle_between(turn(result->clip), turn(own)), 1e-3);
+}
+
 // Would fail if feet of a body that lies, which are low in any pose, were taken for feet that
 // stand: a take that ends in a fall had bodies whose toes pointed down.
 TEST(Retarget, AFallAfterAWalkLeavesTheStance) {
