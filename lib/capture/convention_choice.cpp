@@ -30,14 +30,15 @@ void apply_given(const GivenConventions& given, Conventions& conventions) {
     conventions.unit_reason = kGiven;
   }
   if (given.up) {
-    const Confidence detected = conventions.up_confidence;
-    const bool doubted =
-        axes_reason == kGiven && conventions.up != *given.up && detected != Confidence::guess;
-    conventions.up_confidence = given.axes_confidence;
-    conventions.up_reason = doubted ? fmt::format("{} is {}: {}", direction_name(conventions.up),
-                                                  confidence_name(detected), conventions.up_reason)
-                                    : axes_reason;
+    if (given.axes_given(given.up) && conventions.up != *given.up &&
+        conventions.up_confidence != Confidence::guess) {
+      conventions.up_doubt =
+          fmt::format("{} is {}: {}", direction_name(conventions.up),
+                      confidence_name(conventions.up_confidence), conventions.up_reason);
+    }
     conventions.up = conventions.reference_up = *given.up;
+    conventions.up_confidence = given.axes_confidence;
+    conventions.up_reason = axes_reason;
   }
   if (given.forward) {
     conventions.forward = conventions.reference_forward = *given.forward;
@@ -103,21 +104,15 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
   const auto report = [&](bool is_given, const char* name, const char* subject,
                           const std::string& value, Confidence confidence,
                           const std::string& reason) {
-    const bool doubted = is_given && reason != kGiven;
-    if (is_given && !doubted) return;
-    const bool guess = doubted || confidence == Confidence::guess;
+    if (is_given) return;
+    const bool guess = confidence == Confidence::guess;
     Diagnostic diagnostic;
     diagnostic.severity = guess ? Severity::warning : Severity::note;
     diagnostic.code = fmt::format("{}-{}", code_prefix, name);
-    diagnostic.message =
-        doubted ? fmt::format("{} is {}, as given; {}", subject, value, reason)
-                : fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
-                      (reason.empty() ? std::string() : ": " + reason);
-    if (doubted)
-      diagnostic.hint = fmt::format("without --{} it is detected", name);
-    else if (guess)
-      diagnostic.hint = fmt::format("set it with --{} if that is wrong", name);
-    if (guess && !doubted && name == std::string_view("up") && code_prefix != "scene") {
+    diagnostic.message = fmt::format("{} is {} ({})", subject, value, confidence_name(confidence)) +
+                         (reason.empty() ? std::string() : ": " + reason);
+    if (guess) diagnostic.hint = fmt::format("set it with --{} if that is wrong", name);
+    if (guess && name == std::string_view("up") && code_prefix != "scene") {
       diagnostic.hint += ", or take the axes of a take that stands with --axes-from";
     }
     diagnostic.where.file = file_name;
@@ -125,6 +120,14 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
   };
   report(given.unit.has_value(), "unit", "the unit", conventions.unit.name,
          conventions.unit_confidence, conventions.unit_reason);
+  if (!conventions.up_doubt.empty()) {
+    Diagnostic doubt = make_warning(
+        code_prefix + "-up",
+        fmt::format("up is {}, as given; {}", direction_name(conventions.up), conventions.up_doubt),
+        "without --up it is detected");
+    doubt.where.file = file_name;
+    diagnostics.push_back(std::move(doubt));
+  }
   report(given.axes_given(given.up), "up", "up", std::string(direction_name(conventions.up)),
          conventions.up_confidence, conventions.up_reason);
   report(given.axes_given(given.forward), "forward", "forward",

@@ -54,6 +54,7 @@ struct Conventions {
   Confidence forward_confidence = Confidence::guess;
   // One sentence each on the evidence, for the report.
   std::string unit_reason, up_reason, forward_reason;
+  std::string up_doubt;  // what the data say against a given up axis; empty: nothing
 };
 
 // Detects the conventions from the skeleton (reference pose in the file's unit and axes) and up to

@@ -72,7 +72,10 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
   const bool up_from_file = space.up_is_y && !given.up && !space.file_to_krok;
   if (up_from_file) known.up = Direction::plus_y;
   apply_given(known, found);
-  if (up_from_file) found.up_reason = kFromFile;
+  if (up_from_file) {
+    found.up_reason = kFromFile;
+    found.up_doubt.clear();
+  }
   return found;
 }
 

@@ -372,9 +372,9 @@ Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
   ContactFinder(clip, options, found).find();
   take_contacts(clip, found);
   if (found.contacts.empty()) {
-    found.warnings.push_back(
-        make_warning("contacts-none", "no foot contact was found",
-                     "the character may walk in place, as on a treadmill, or float"));
+    found.warnings.push_back(make_warning(
+        "contacts-none", "no foot contact was found",
+        "the feet never rest: in place, as on a treadmill, floating, or sliding as in some runs"));
   }
   return found;
 }

@@ -251,7 +251,8 @@ WalkDetails Walk::details() const {
       warn("walk-ankle",
            fmt::format("an ankle bends by {}°, more than people's",
                        readable(made.ankle / kRadiansPerDegree, 3)),
-           "lead the way across the slope, or over flatter ground");
+           "on steep ground lead the way across the slope; on the level another --pace, "
+           "--style or library bends it less");
     }
   }
   return details;

@@ -66,6 +66,8 @@ struct CutOptions {
   double outlier = 5;
 };
 
+inline constexpr const char* kOfARun = "it is of a run";  // begins such steps' reason
+
 // A step that was found but not used.
 struct DroppedStep {
   std::string walk;

@@ -78,9 +78,10 @@ std::vector<FoundStep> steps_between_strikes(const MotionKeys& keys, const CutOp
     if (strikes[i].side == step.swing) {
       step.fault = fmt::format("the {} foot strikes twice in a row", name_of(step.swing));
     } else if (offs != 1) {
-      step.fault = offs == 0 && flies ? R"(it is of a run ("steps": "runs" takes such steps))"
-                                      : fmt::format("{} {} between the strikes",
-                                                    offs == 0 ? "no" : "more than one", off);
+      step.fault =
+          offs == 0 && flies
+              ? fmt::format(R"({} ("steps": "runs" takes such steps))", kOfARun)
+              : fmt::format("{} {} between the strikes", offs == 0 ? "no" : "more than one", off);
     } else if (lasts < options.shortest || lasts > options.longest) {
       step.fault = fmt::format("{} s is too {}", readable(lasts, 3),
                                lasts < options.shortest ? "short" : "long");

@@ -98,10 +98,16 @@ class Reader {
     Status status = find_description();
     if (status) status = read_motions();
     if (status) status = make_library();
-    if (!status && path_.empty() && status.error().code == "parametric-none") {
-      // Motions without a step of a walk may be runs.
+    // Motions with no step of a walk, or few, may be runs.
+    const bool rather_runs = status ? mostly_runs() : status.error().code == "parametric-none";
+    if (path_.empty() && rather_runs) {
       input_.description.kind = library::StepKind::runs;
-      if (make_library()) status = {};
+      if (make_library()) {
+        status = {};
+      } else if (status) {
+        input_.description.kind = library::StepKind::walks;
+        status = make_library();
+      }
     }
     if (status && path_.empty()) status = leave_out_what_hardly_varies();
     if (status) status = choose();
@@ -114,6 +120,14 @@ class Reader {
   const LibraryDescription& description() const { return input_.description; }
   FootSide swing() const {
     return description().swing == library::Side::left ? FootSide::left : FootSide::right;
+  }
+
+  // Whether more steps were left out as those of runs than were taken.
+  bool mostly_runs() const {
+    const auto runs = std::ranges::count_if(input_.dropped, [](const auto& step) {
+      return step.reason.starts_with(parametric::kOfARun);
+    });
+    return runs > static_cast<std::ptrdiff_t>(input_.library.examples.size());
   }
 
   Status find_description() {

@@ -407,6 +407,9 @@ TEST_F(StepLibrary, AFolderOfRunsNeedsNoDescription) {
     keys["keytimes"] = times;
     write("runs/" + length + ".keys.json", keys.dump());
   }
+  // A walk among them does not make walks of them all.
+  make_walk("60", "0");
+  std::filesystem::rename(path("walk_60_0.bvh"), path("runs/60.bvh"));
   const ToolRun fitted = run_tool("krok-fit", {path("runs"), "-o", path("runs.steps"), "--json"});
   ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
   const json info = json::parse(run_tool("krok-info", {path("runs.steps"), "--json"}).out);
