@@ -15,6 +15,18 @@ here = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(here.parent / "minutes"))
 from build_times import test_seconds  # noqa: E402
 
+# Stay although they are slow: what they alone reach is 1.5 % of the lines (make coverage).
+KEPT = {
+    ("unit", "CleanWalk.SpikesInBlocksAsInOne"),
+    ("unit", "GeneratedWalks.OnEveryRig"),
+    ("unit", "Grounds/Settle.LiesAndCrawlsWithoutHoverOrDepth/1"),
+    ("unit", "HumanBody.AReferencePoseThatIsNoneGivesWayToATPose"),
+    ("unit", "HumanBody.IsBoundToBonesOfItsOwnSide"),
+    ("unit", "NoiseFilter.TheSameBytesForAnyNumberOfThreads"),
+    ("unit", "Runs.AWalkBecomesARunAndAWalkAgain"),
+    ("unit", "Settle.StandsUprightOnASlope"),
+    ("unit", "StepStyle.IsTheLabelledOneWithItsDurations"),
+}
 KINDS = ("unit", "property", "fuzz", "cli")
 FACTOR = 6
 
@@ -27,5 +39,7 @@ left, most = sum(tests.values()), float(sys.argv[3]) if len(sys.argv) > 3 else 8
 for (kind, test), time in sorted(tests.items(), key=lambda item: (-item[1], item[0])):
     if left <= most:
         break
+    if (kind, test) in KEPT:
+        continue
     left -= time
     print(f"{kind} {test} {time:.2f}")
