@@ -33,7 +33,7 @@ constexpr int kSamples = 8, kOfSample = 2048;  // frames
 RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
                          const SameSkeleton& same) {
   const auto copy = [target, same](Clip& frames) {
-    const Clip before = std::move(frames);
+    const Clip before = std::exchange(frames, {});
     frames.skeleton = target;
     frames.rate = before.rate;
     frames.resize(before.frame_count());
