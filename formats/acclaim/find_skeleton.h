@@ -9,8 +9,8 @@ namespace krok::acclaim {
 // The skeleton file of a motion, and why it was chosen.
 struct FoundSkeleton {
   std::string path;
-  std::string reason;  // "the motion's name begins with its name"
-  bool by_name = false;
+  std::string reason;    // "the motion's name begins with its name"
+  bool by_name = false;  // not because it is the only one
 };
 
 // Searches the folder of the motion `amc_path` for its skeleton, a file with extension .asf

@@ -176,12 +176,12 @@ class Transfer {
   Actor from() const { return {source_.skeleton, source_roles_, rest_}; }
   Actor onto() const { return {target_, target_roles_, target_rest_}; }
 
-  // Exporters whose reference pose does not stand keep no face in it, either: eyes and jaw sit on
-  // the head as in the target's own motion.
+  // Exporters whose reference pose is no body's keep no face in it, either: eyes and jaw sit on the
+  // head as in the first frame of the target's own motion.
   void take_face_from_motion() {
     const int head = target_roles_.joint(Role::head);
-    if (head < 0 || target_clip_.frame_count() == 0) return;
-    if (stands({target_, target_roles_, target_.reference})) return;
+    if (head < 0 || !target_roles_.humanoid || target_clip_.frame_count() == 0) return;
+    if (is_straight({target_, target_roles_, target_.reference})) return;
     const auto turns = target_clip_.frame_orientations(0);
     for (const int joint : joints_below(target_, head)) {
       const int parent = target_.parents[at(joint)];

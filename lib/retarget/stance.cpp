@@ -55,6 +55,10 @@ bool stands(const Actor& actor) {
   return Posture(actor).least_along(Vec3::UnitY()) > 0.5;
 }
 
+bool is_straight(const Actor& actor) {
+  return Posture(actor).in_line();
+}
+
 Result<Stance> stance_of_frame(const FrameSource& source, int frame) {
   if (frame < 0 || frame >= source.frame_count) {
     return Error("retarget-frame",

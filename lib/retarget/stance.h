@@ -20,6 +20,9 @@ struct Stance {
 // reference poses of exporters whose bones all lie along one axis it does not.
 bool stands(const Actor& actor);
 
+// Whether trunk, thighs and shanks of a humanoid lie within 60 degrees of one line, whichever way.
+bool is_straight(const Actor& actor);
+
 // The reference pose of a clip's skeleton. If that does not stand, it is turned upright where
 // trunk, thighs and shanks lie within 60 degrees of one line; else a T-pose is built from the
 // skeleton, in which the turn about the limbs is that with which knees and elbows bend as they do

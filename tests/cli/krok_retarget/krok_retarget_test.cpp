@@ -190,7 +190,7 @@ TEST_F(KrokRetarget, EveryContactIsReported) {
   EXPECT_TRUE(json::parse(free.out)["result"]["contacts"].empty());
 }
 
-// Would fail if contacts that limbs do not reach were a figure of the last line alone.
+// Would fail if contacts that limbs do not reach were a number in the last line alone.
 TEST_F(KrokRetarget, MissedContactsAreWarnedOf) {
   write("hero.model", test::tube_model(test::human_skeleton(1.2)));
   std::vector<std::string> arguments = {"walk.anim", "--onto", "hero.model", "-o", "out.anim"};

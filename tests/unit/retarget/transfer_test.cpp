@@ -622,6 +622,14 @@ TEST(Retarget, AFaceIsThatOfTheTargetsMotion) {
                 clip.frame_orientations(0)[at(eye)].cast<double>());
   };
   EXPECT_LT(angle_between(turn(result->clip), turn(own)), 1e-3);
+  // One that only lies has its face: a wink in the first frame is not taken for it.
+  Clip lying = own;
+  lying.skeleton = posed(rig, "Hips", from_rotation_vector(Vec3(-1.6, 0, 0)));
+  lying.orientations[at(eye)] =
+      lying.orientations[at(eye)] * from_rotation_vector(Vec3(0, 1.0, 0)).cast<float>();
+  const auto kept = transfer(walk, lying);
+  ASSERT_TRUE(kept.ok());
+  EXPECT_LT(angle_between(turn(kept->clip), Quat::Identity()), 1e-3);
 }
 
 // Would fail if feet of a body that lies, which are low in any pose, were taken for feet that
