@@ -19,8 +19,8 @@ constexpr double kRising = 0.3, kShortest = 0.06;
 constexpr double kSoft = 0.06, kFade = 0.2, kTread = 0.04;  // seconds
 constexpr double kStep = 0.02;                              // metres, from one tread to another
 // A motion follows the ground that touches it about as long and as closely as a level floor, or
-// longer and is not in it.
-constexpr double kLittle = 0.003, kAlike = 0.9, kClearly = 0.2;
+// longer and is not in it, or for some time and is not in it where it is in the level floor.
+constexpr double kLittle = 0.003, kAlike = 0.9, kClearly = 0.2, kSome = 0.25;
 
 }  // namespace
 
@@ -216,9 +216,14 @@ Status Settler::find_ground() {
   const double level_misfit = misfit(on_level);
   const bool closely = misfit(fit_) <= level_misfit + kLittle * scale_;
   const bool longer = kAlike * on_it > on_level_floor && fit_.depth <= kTolerated;
-  follows_ground_ = !options_.floor && std::abs(ground_height) <= kNear * scale_ &&
+  // What settle() made of a roll is over the ground more often than on it; the level floor that it
+  // would usually touch is above its lowest parts.
+  const bool kept_out = on_it > 0 && on_it >= kSome * on_level_floor && fit_.depth <= kTolerated &&
+                        on_level.depth > 2 * kTolerated;
+  const bool near = std::abs(ground_height) <= kNear * scale_ &&
                     (misfit(fit_) < kClearly * level_misfit || longer ||
                      (closely && on_it >= kAlike * on_level_floor));
+  follows_ground_ = !options_.floor && (near || kept_out);
   lies_already_ = follows_ground_ && fit_.depth <= kNear * scale_;
   if (!follows_ground_) fit_ = fit(clear, on_ground, over_floor.touches);
   set_goals(std::move(follows_ground_ ? on_ground : over_floor));

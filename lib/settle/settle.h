@@ -66,8 +66,9 @@ struct Settled {
 // an error.
 //
 // A motion that touches `ground` as much and as closely as it does a level floor, with no part
-// deeper than 10 mm, or longer, with none deeper than 5 mm, is returned as it is: what came out
-// within 5 mm is not settled again. The exception are skeletons whose reference pose shows no body
+// deeper than 10 mm, or longer, with none deeper than 5 mm, or a quarter as long, where it would be
+// more than 10 mm deep in the level floor, is returned as it is: what came out within 5 mm is not
+// settled again. The exception are skeletons whose reference pose shows no body
 // (retarget::neutral_skeleton()): theirs is found from the motion, so that the second time other
 // parts may be in the ground. What would come out further off than it is (the larger of depth and
 // hover) is returned as it is, too.
