@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kFramesATime = 64;
 constexpr int kShiftRounds = 2;
+constexpr double kSeat = 0.12;  // leg lengths, of the hips over the ground that one sits or lies on
 
 class FrameTransfer {
  public:
@@ -214,12 +215,26 @@ class FrameTransfer {
         shifts[f].hips += more[f].hips;
         shifts[f].turn += more[f].turn;
       }
+      keep_seat_above_ground(shifts);
     }
     for (const BodyShift& shift : kept(shifts)) {
       report.largest_shift = std::max(report.largest_shift, shift.hips.norm());
       report.largest_turn = std::max(report.largest_turn, shift.turn.norm());
     }
     return shifts;
+  }
+
+  // Hands that lack the ground bring the hips down to where one sits, and no deeper.
+  void keep_seat_above_ground(std::vector<BodyShift>& shifts) const {
+    std::vector<double> sunk(shifts.size());
+    for (std::size_t f = 0; f < shifts.size(); ++f) {
+      const double height =
+          middle(poses_of(f).last(target_.names.size()), plan_.target_sides).y() - plan_.floor;
+      const double lowest = std::min(height, kSeat * plan_.leg_length);
+      sunk[f] = std::max(0.0, lowest - (height + shifts[f].hips.y()));
+    }
+    sunk = softened(sunk, softening_reach(source_.rate) / 2);
+    for (std::size_t f = 0; f < shifts.size(); ++f) shifts[f].hips.y() += sunk[f];
   }
 
   // How far the hips are lowered in each frame so that planted feet reach the floor.

@@ -14,17 +14,21 @@ namespace {
 
 using namespace test;
 
-// A human with long arms on broad shoulders and short legs.
-Skeleton long_armed() {
-  Skeleton skeleton = human_skeleton(1.6);
+// A human with `longer` arms on broad or narrow shoulders.
+Skeleton with_arms(double longer, double height) {
+  Skeleton skeleton = human_skeleton(height);
   for (const std::string side : {"Left", "Right"}) {
     const double outwards = side == "Left" ? 1 : -1;
     for (const std::string part : {"Arm", "ForeArm", "Hand", "Hand_end"}) {
       Vec3& place = skeleton.reference[at(skeleton.find(side + part))].position;
-      place.x() = outwards * (0.09 + 1.25 * (std::abs(place.x()) - 0.05));
+      place.x() = outwards * (0.09 + longer * (std::abs(place.x()) - 0.05));
     }
   }
   return with_other_axes(skeleton, 5);
+}
+
+Skeleton long_armed() {
+  return with_arms(1.25, 1.6);
 }
 
 // A pose of human_skeleton(): turns of joints about the axes of the world in the T-pose.
@@ -148,6 +152,31 @@ TEST(Touches, WhoLiesIsNotRaisedForTheAnkles) {
   };
   EXPECT_NEAR(higher(0), kHigher, 0.02);
   for (int f = 62; f < 118; ++f) EXPECT_NEAR(higher(f), 0, 0.01) << f;
+}
+
+// Would fail if hands of short arms pulled someone who slides over the ground on the seat into it.
+TEST(Touches, HandsDoNotPullTheSeatIntoTheGround) {
+  Clip source = into_pose({{"LeftUpLeg", Vec3(-2.35, 0, 0)},
+                           {"RightUpLeg", Vec3(-2.35, 0, 0)},
+                           {"LeftLeg", Vec3(2.35, 0, 0)},
+                           {"RightLeg", Vec3(2.35, 0, 0)},
+                           {"LeftArm", Vec3(0, 0, -1.5)},
+                           {"RightArm", Vec3(0, 0, 1.5)}},
+                          Vec3::Zero());
+  std::vector<Transform> pose(source.skeleton.names.size());
+  for (int f = 0; f < source.frame_count(); ++f) {
+    source.get_pose(f, pose);
+    for (Transform& joint : pose) joint.position.z() += 0.45 * f / source.rate;
+    source.set_pose(f, pose);
+  }
+  const auto result = transfer(source, with_arms(0.6, 1.75));
+  ASSERT_TRUE(result.ok());
+  EXPECT_TRUE(std::ranges::any_of(result->report.contacts,
+                                  [](const auto& contact) { return contact.part == "left hand"; }));
+  EXPECT_GT(result->report.largest_shift, 0.05);
+  for (int f = 62; f < 118; ++f) {
+    EXPECT_GT(place(result->clip, f, "rig:LeftUpLeg").y(), 0.1) << f;
+  }
 }
 
 TEST(Touches, AMotionThatTouchesNothingKeepsItsRotations) {
