@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "math/quaternion.h"
+#include "math/smoother_step.h"
 #include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"
@@ -51,12 +52,62 @@ Status same_skeleton(const Skeleton& first, const Skeleton& second, int carrier)
   return {};
 }
 
+// About the time of two steps, over which the turns of hips and chest add up to nothing.
+constexpr double kTwoSteps = 1.2;  // seconds
+// Radians: from the first to the second half of that time, and between joints of two poses.
+constexpr double kStraight = 8 * kRadiansPerDegree, kTurning = 20 * kRadiansPerDegree;
+constexpr double kAlike = 3 * kRadiansPerDegree, kOther = 12 * kRadiansPerDegree;
+
+// How the character faces, between hips and chest.
+double facing(const Clip& clip, int carrier, int chest, int frame) {
+  const double hips = ground_frame(clip, carrier, frame).heading;
+  return chest < 0 ? hips : hips + 0.5 * wrapped(ground_frame(clip, chest, frame).heading - hips);
+}
+
+// Likewise, over the time up to `frame` or, with `step` 1, from there on, as far as the motion
+// goes.
+double steady_facing(const Clip& clip, int carrier, int chest, int frame, int step) {
+  const int ahead = step > 0 ? clip.frame_count() - 1 - frame : frame;
+  const int count = 1 + std::min(ahead, static_cast<int>(std::lround(kTwoSteps * clip.rate)));
+  const double here = facing(clip, carrier, chest, frame);
+  double turn = 0;  // from `here`
+  std::array<double, 2> halves = {0, 0};
+  for (int k = 0; k < count; ++k) {
+    turn += wrapped(facing(clip, carrier, chest, frame + step * k) - here - turn);
+    halves[2 * k < count ? 0 : 1] += turn;
+  }
+  const int near = (count + 1) / 2;
+  const double mean = (halves[0] + halves[1]) / count;
+  const double change = count > near ? halves[1] / (count - near) - halves[0] / near : 0;
+  const double turns = smoother_step((std::abs(change) - kStraight) / (kTurning - kStraight));
+  return here + (1 - turns) * mean;
+}
+
+double largest_difference(const Clip& first, int first_frame, const Clip& second,
+                          int second_frame) {
+  double largest = 0;
+  const auto a = first.frame_orientations(first_frame), b = second.frame_orientations(second_frame);
+  for (std::size_t j = 1; j < a.size(); ++j) {
+    const std::size_t parent = at(first.skeleton.parents[j]);
+    largest = std::max<double>(
+        largest, (a[parent].conjugate() * a[j]).angularDistance(b[parent].conjugate() * b[j]));
+  }
+  return largest;
+}
+
 // Maps the character's ground frame in the second motion to that in the first.
 Transform alignment(const Clip& first, int first_frame, const Clip& second, int second_frame,
-                    int carrier, bool match_height) {
-  Transform move = ground_frame(first, carrier, first_frame).to_world() *
-                   ground_frame(second, carrier, second_frame).to_world().inverse();
-  if (match_height) {
+                    int carrier, const JoinOptions& options) {
+  GroundFrame end = ground_frame(first, carrier, first_frame);
+  GroundFrame start = ground_frame(second, carrier, second_frame);
+  const double other = smoother_step(
+      (largest_difference(first, first_frame, second, second_frame) - kAlike) / (kOther - kAlike));
+  end.heading +=
+      other * wrapped(steady_facing(first, carrier, options.chest, first_frame, -1) - end.heading);
+  start.heading += other * wrapped(steady_facing(second, carrier, options.chest, second_frame, 1) -
+                                   start.heading);
+  Transform move = end.to_world() * start.to_world().inverse();
+  if (options.match_height) {
     const auto c = static_cast<std::size_t>(carrier);
     move.position.y() = static_cast<double>(first.frame_positions(first_frame)[c].y()) -
                         second.frame_positions(second_frame)[c].y();
@@ -89,7 +140,7 @@ Result<Joined> join_rooted(const Clip& first, const Clip& second, int carrier,
   const int shared = static_cast<int>(wanted);
   const int begin = n - 1 - shared;  // the first's frame at which the second begins
   const int middle = shared / 2;
-  move_clip(alignment(first, begin + middle, next, middle, carrier, options.match_height), next);
+  move_clip(alignment(first, begin + middle, next, middle, carrier, options), next);
 
   const LocalMotion a = local_motion(first), b = local_motion(next);
   LocalMotion whole;

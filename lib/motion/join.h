@@ -13,6 +13,8 @@ struct JoinOptions {
   // Matches the second's height to the first's where they meet, as climbing needs. Otherwise both
   // keep their own floor.
   bool match_height = false;
+  // The joint of the chest, which turns against the hips as people walk; -1: there is none.
+  int chest = -1;
 };
 
 // The joined clip and its seam. `largest_angle` is the largest angle, in radians, between the two
@@ -26,7 +28,9 @@ struct Joined {
 };
 
 // The first motion and then the second, which is moved and turned on the ground so that the
-// character stands and faces as the first does in the middle of what they share. The second is
+// character stands and faces as the first does in the middle of what they share. People who walk
+// straight on turn their hips with each step: how they face is a mean over 1.2 s, unless they turn
+// there, or the two poses are alike, as those of one motion that was cut in two. The second is
 // resampled to the first's rate. Without the shared time the durations add up: n and m frames give
 // n + m - 1, less the shared steps. `carrier` is what carrying_joint() gives. Skeleton and
 // provenance are the first's. A motion without frames adds nothing. A root above the hips does what

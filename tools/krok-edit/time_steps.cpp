@@ -303,7 +303,8 @@ Status append_motions(const Options& options, ToolContext&, Edit& edit) {
   for (std::size_t i = 0; i < edit.appended.size(); ++i) {
     const std::string& path = options.append[i];
     const Clip& next = edit.appended[i];
-    const JoinOptions joining{options.append_blend.seconds(edit.clip.rate), options.match_height};
+    const JoinOptions joining{options.append_blend.seconds(edit.clip.rate), options.match_height,
+                              edit.roles.joint(Role::chest)};
     auto joined = join(edit.clip, next, edit.carrier, joining);
     if (!joined) return std::move(joined.error()).in_file(path);
     const int frames = edit.clip.frame_count();

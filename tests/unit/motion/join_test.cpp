@@ -7,12 +7,14 @@
 
 #include <cmath>
 
+#include "math/euler.h"
 #include "math/quaternion.h"
 #include "motion/cut.h"
 #include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "motion/retime.h"
+#include "support/human_skeleton.h"
 #include "support/test_scenes.h"
 #include "unit/motion/joint_place.h"
 
@@ -59,6 +61,40 @@ TEST(Join, GoesOnWhereTheFirstStandsAndFaces) {
                     joined->clip.frame_positions(30)[0].cast<double>();
   EXPECT_NEAR(Vec2(made.x(), made.z()).norm(), Vec2(step.x(), step.z()).norm(), 1e-5);
   EXPECT_NEAR(joint_place(joined->clip, 31, 0).y(), joint_place(second, 1, 0).y(), 1e-6);
+}
+
+// Would fail if the hips' turn in one frame, in the middle of a step, became a turn of the way.
+TEST(Join, WhoWalksStraightGoesOnStraight) {
+  Clip walk;
+  walk.skeleton = test::human_skeleton();
+  walk.rate = 60;
+  walk.resize(240);
+  const auto joint = [&](const char* name) {
+    return static_cast<std::size_t>(walk.skeleton.find(name));
+  };
+  std::vector<Transform> local, world(walk.skeleton.names.size());
+  for (int j = 0; j < walk.skeleton.joint_count(); ++j) {
+    local.push_back(walk.skeleton.reference_local(j));
+  }
+  for (int f = 0; f < walk.frame_count(); ++f) {
+    const double time = f / walk.rate, swing = std::sin(2 * kPi * time / 1.1);
+    local[0].position.z() = 1.3 * time;
+    local[0].orientation = axis_rotation(Axis::y, 0.17 * swing);
+    local[joint("Spine")].orientation = axis_rotation(Axis::y, -0.25 * swing);
+    local[joint("LeftUpLeg")].orientation = axis_rotation(Axis::x, 0.4 * swing);
+    local[joint("RightUpLeg")].orientation = axis_rotation(Axis::x, -0.4 * swing);
+    local_to_world(walk.skeleton.parents, local, world);
+    walk.set_pose(f, world);
+  }
+  const int chest = walk.skeleton.find("Spine2");
+  for (const int from : {20, 50, 66, 90}) {
+    const auto joined =
+        join(cut(walk, 0, 148), cut(walk, from, 239), 0, {.blend = 0.2, .chest = chest});
+    ASSERT_TRUE(joined.ok());
+    const Vec3 way = joint_place(joined->clip, joined->clip.frame_count() - 1, 0) -
+                     joint_place(joined->clip, joined->joint_frame + 10, 0);
+    EXPECT_NEAR(std::atan2(way.x(), way.z()), 0, 0.04) << from;
+  }
 }
 
 TEST(Join, OtherRatesBecomeTheFirsts) {
