@@ -250,10 +250,17 @@ Result<Parts> open_parts(std::span<const std::byte> file) {
 
 }  // namespace
 
-Result<Opened> open(std::span<const std::byte> file) {
+Result<Opened> open(std::span<const std::byte> file, std::function<void(std::size_t)> release) {
   auto parts = open_parts(file);
   if (!parts) return parts.error();
   Opened opened = parts->opened;
+  if (release) {
+    const std::size_t begin = parts->container->find("FRAMES")->offset;
+    const std::size_t of_frame = parts->info.joint_count * transform_size(parts->encoding);
+    opened.frames.release = [=, release = std::move(release)](int frame) {
+      release(begin + static_cast<std::size_t>(frame) * of_frame);
+    };
+  }
   opened.frames.read = [parts = *std::move(parts)](int first, int, std::span<Vec3f> positions,
                                                    std::span<Quatf> orientations) {
     return read_frames(parts, parts.opened.frames.skeleton, first, positions, orientations);

@@ -33,8 +33,10 @@ struct Opened {
 };
 
 // Opens a file without its frames, so that a long one need not fit in memory twice. Frames are
-// checked as they are read. Codes: those of read().
-Result<Opened> open(std::span<const std::byte> file);
+// checked as they are read. `release` is called with the offset before which bytes are no longer
+// needed, for the source's release(). Codes: those of read().
+Result<Opened> open(std::span<const std::byte> file,
+                    std::function<void(std::size_t offset)> release = {});
 
 struct WriteOptions {
   OrientationEncoding orientation = OrientationEncoding::xyz;

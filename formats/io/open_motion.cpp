@@ -140,7 +140,8 @@ Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
   }
   // A .anim file's own conversions are those of how it was made.
   if (format.kind == registry::Kind::anim) {
-    auto opened = anim::open(file.bytes());
+    auto opened =
+        anim::open(file.bytes(), [&file](std::size_t offset) { file.release_before(offset); });
     if (!opened) return Error(opened.error()).in_file(file.path());
     if (!opened->stretched) {
       // Else an error would get the name of the output that is being written.

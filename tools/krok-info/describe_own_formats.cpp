@@ -86,7 +86,8 @@ void add_mesh_size(const Model& model, Description& out) {
 
 Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how,
                                   ToolContext& context) {
-  const auto opened = anim::open(file.bytes());
+  const auto opened =
+      anim::open(file.bytes(), [&file](std::size_t offset) { file.release_before(offset); });
   if (!opened) return opened.error();
   const FrameSource& frames = opened->frames;
   Stretches stretches;

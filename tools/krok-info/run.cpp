@@ -26,30 +26,35 @@ namespace krok::cli::info {
 
 namespace {
 
-constexpr int kMaxLines = 1990;  // besides those of the header
-constexpr double kPlaces = 1e5;  // a metre, to 0.01 mm
-constexpr double kAngles = 1e3;  // a degree
+constexpr int kMaxLines = 1990;                         // besides those of the header
+constexpr double kPlaces = 1e5;                         // a metre, to 0.01 mm
+constexpr double kTurns = 2 / kRadiansPerDegree * 1e3;  // a quaternion, to 0.001 degrees
 constexpr std::string_view kPointer = "version https://git-lfs.github.com/spec/";
 
 // What a joint does in a stretch of time.
 struct Part {
-  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
+  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);  // of quaternions
   Vec3 low_place = low, high_place = high;
   std::vector<std::int32_t> values;  // rounded
 };
 
 std::int32_t rounded(double value, double scale) {
-  const double whole = std::clamp(std::round(value * scale), -2e9, 2e9);
-  return static_cast<std::int32_t>(whole);
+  return static_cast<std::int32_t>(std::lrint(std::clamp(value * scale, -2e9, 2e9)));
 }
 
-void add(const Vec3& turn, const Vec3* place, Part& part) {
-  part.low = part.low.cwiseMin(turn), part.high = part.high.cwiseMax(turn);
-  for (int axis = 0; axis < 3; ++axis) part.values.push_back(rounded(turn[axis], kAngles));
+// `turn` is a unit quaternion, x, y, z, w.
+void add(const Vec4& turn, const Vec3* place, Part& part) {
+  part.low = part.low.cwiseMin(turn.head<3>()), part.high = part.high.cwiseMax(turn.head<3>());
+  for (const double value : turn) part.values.push_back(rounded(value, kTurns));
   if (place == nullptr) return;
   part.low_place = part.low_place.cwiseMin(*place);
   part.high_place = part.high_place.cwiseMax(*place);
-  for (int axis = 0; axis < 3; ++axis) part.values.push_back(rounded((*place)[axis], kPlaces));
+  for (const double value : *place) part.values.push_back(rounded(value, kPlaces));
+}
+
+// Degrees, of the component of a quaternion: about one axis alone, the angle.
+Vec3 angles_of(const Vec3& components) {
+  return 2 / kRadiansPerDegree * components.cwiseMax(-1).cwiseMin(1).array().asin();
 }
 
 std::string range(const Vec3& low, const Vec3& high, double scale) {
@@ -124,7 +129,8 @@ class Text {
       if (frames_.skeleton.end_sites[at(j)] != 0) continue;
       const Quat own = turns[at(j)].cast<double>();
       const Quat local = parent < 0 ? own : turns[at(parent)].cast<double>().conjugate() * own;
-      const Vec3 turn = rotation_vector(normalized_or_identity(local)) / kRadiansPerDegree;
+      const double length = local.norm();
+      const Vec4 turn = local.coeffs() / (local.w() < 0 ? -length : length);
       const Vec3 place = places[at(j)].cast<double>();
       add(turn, parent < 0 ? &place : nullptr, parts[at(j)]);
     }
@@ -135,7 +141,8 @@ class Text {
       Part& part = parts[at(j)];
       if (part.values.empty()) continue;
       text_ += fmt::format("{:.2f} s {}: deg{}", first / frames_.rate,
-                           printable(frames_.skeleton.names[at(j)]), range(part.low, part.high, 1));
+                           printable(frames_.skeleton.names[at(j)]),
+                           range(angles_of(part.low), angles_of(part.high), 1));
       if (std::isfinite(part.low_place.x())) {
         text_ += " mm" + range(part.low_place, part.high_place, 1000);
       }
@@ -150,10 +157,10 @@ class Text {
 };
 
 // A motion as text for `git diff`, at most 2,000 lines: for each stretch of time (a second, or more
-// of long motions) and each joint the range of its rotation in its parent (rotation vector,
-// degrees) and a checksum of its values to 0.001 degrees, of the root also its place (mm, to
-// 0.01 mm). A change of one joint in one frame changes one line; how a file writes its numbers
-// changes none. A Git LFS pointer and a file that cannot be read are one line.
+// of long motions) and each joint the range of its rotation in its parent about x, y and z (by the
+// components of its quaternion, degrees) and a checksum of its values to 0.001 degrees, of the root
+// also its place (mm, to 0.01 mm). A change of one joint in one frame changes one line; how a file
+// writes its numbers changes none. A Git LFS pointer and a file that cannot be read are one line.
 //
 // Empty for a file that holds no motion.
 std::optional<std::string> textconv(const InputFile& file) {
