@@ -121,6 +121,45 @@ TEST_F(Krok, WorksThroughALink) {
   EXPECT_EQ(run.out, run_tool("krok-info", {"--version"}).out);
 }
 
+// If it fails, `git diff` shows nothing of a motion, or thousands of lines for one joint, or lines
+// where only the digits of a file changed; or it ends with an error on a machine where git does not
+// know who commits.
+TEST_F(Krok, GitShowsWhatChangedInAMotion) {
+  if (!std::filesystem::exists("/usr/bin/git")) GTEST_SKIP() << "skipped: there is no git";
+  const auto in_folder = [&](const std::string& command) {
+    return run({"/bin/sh", "-c",
+                "export PATH='" + tools_folder() + "':$PATH HOME=. GIT_CONFIG_NOSYSTEM=1; cd '" +
+                    folder_.string() + "' && " + command});
+  };
+  const auto changed_lines = [&] {
+    const ToolRun diff = in_folder("git diff --no-color in.bvh");
+    EXPECT_EQ(diff.exit_code, 0) << diff.err;
+    const std::string& text = diff.out;
+    int count = 0;
+    for (std::size_t i = 0; (i = text.find("\n+", i)) != std::string::npos; ++i) ++count;
+    return count - (count > 0 ? 1 : 0);  // the header's
+  };
+  put("pointer.bvh", "version https://git-lfs.github.com/spec/v1\noid sha256:12ab\nsize 99\n");
+  put("broken.bvh", "HIERARCHY\nROOT");
+  const ToolRun setup = in_folder("git init -q . && krok git-setup && git add . ");
+  ASSERT_EQ(setup.exit_code, 0) << setup.err;
+  EXPECT_EQ(changed_lines(), 0);
+  std::string text = capture(30);
+  put("in.bvh", capture(30, "0.0001"));
+  EXPECT_GE(changed_lines(), 1);
+  EXPECT_LE(changed_lines(), 5);
+  for (std::size_t i = 0; (i = text.find(" 0.4 ", i)) != std::string::npos; ++i) {
+    text.replace(i, 5, " 0.400000 ");
+  }
+  put("in.bvh", text);
+  EXPECT_EQ(changed_lines(), 0);
+  EXPECT_EQ(run_here("krok-info", {"--textconv", "pointer.bvh"}).out,
+            "Git LFS pointer: oid sha256:12ab size 99\n");
+  const ToolRun broken = run_here("krok-info", {"--textconv", "broken.bvh"});
+  EXPECT_EQ(broken.exit_code, 0);
+  EXPECT_THAT(broken.out, StartsWith("cannot be read: "));
+}
+
 TEST_F(Krok, AFullStandardOutputIsTrouble) {
   ToolOptions full;
   full.output_path = "/dev/full";

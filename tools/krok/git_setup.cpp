@@ -124,9 +124,11 @@ int git_setup(const std::vector<std::string>& arguments) {
   if (Status status = add_attributes(top.text + "/.gitattributes"); !status) {
     return fail(status.error().message);
   }
+  // git keeps texts as commits of its own; without an identity `git diff` would end with an error.
+  const bool keeps = run({"git", "var", "GIT_COMMITTER_IDENT"}).good;
   for (const auto& [key, value] : std::array<std::pair<const char*, const char*>, 4>{
            {{"diff.krok.textconv", "krok info --textconv"},
-            {"diff.krok.cachetextconv", "true"},
+            {"diff.krok.cachetextconv", keeps ? "true" : "false"},
             {"merge.krok.name", "motions are not merged"},
             {"merge.krok.driver", kMergeDriver}}}) {
     if (!run({"git", "config", key, value}).good) {
