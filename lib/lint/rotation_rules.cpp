@@ -13,9 +13,10 @@ namespace {
 
 constexpr float kTimesUsual = 8;       // of the median acceleration of a second, of kinks
 constexpr float kTimesNeighbours = 4;  // of the largest acceleration just before and after
-constexpr int kNeighbours = 4;         // frames looked at on either side
-constexpr double kSeamJoints = 0.3;    // of the joints that move
-constexpr double kMinPath = 0.03;      // metres, of a jump of the hips
+constexpr float kDoubt = 1.5F;
+constexpr int kNeighbours = 4;       // frames looked at on either side
+constexpr double kSeamJoints = 0.3;  // of the joints that move
+constexpr double kMinPath = 0.03;    // metres, of a jump of the hips
 
 enum class PopKind : std::uint8_t { spike, step, kink };
 
@@ -124,33 +125,52 @@ class PopFinder {
     return most;
   }
 
+  // How well a template fits that begins at a frame; of one that is cut off by an end of the
+  // motion, what is there.
+  Match fit(const Template& shape, int first, float usual) const {
+    const int frames = static_cast<int>(turns_.size());
+    const int last = first + shape.length - 1;
+    const int begin = std::max(first, 1), end = std::min(last, frames - 2);
+    Vec3f size = Vec3f::Zero();
+    float norm = 0;
+    for (int f = begin; f <= end; ++f) {
+      const float weight = shape.weights[at(f - first)];
+      size += weight * acceleration(f);
+      norm += weight * weight;
+    }
+    size /= norm;
+    const float value = size.norm();
+    if (value < threshold_) return {};
+    float rest = largest_beside(begin, end);
+    for (int f = begin; f <= end; ++f) {
+      rest = std::max(rest, (acceleration(f) - shape.weights[at(f - first)] * size).norm());
+    }
+    const bool cut = end - begin < shape.length - 1;
+    // Where one side is hardly known, it has to stand out more.
+    const float doubt = begin < 3 || end + 3 >= frames ? kDoubt : 1.0F;
+    const float over_rest = cut ? kTimesNeighbours : doubt * shape.over_rest;
+    const float over_usual = cut ? kTimesUsual : doubt * shape.over_usual;
+    return {{shape.kind, std::max(first, 0), std::min(last, frames - 1), first + 1, value},
+            std::min(value / (over_rest * std::max(rest, 1e-6F)),
+                     value / (over_usual * std::max(usual, 1e-6F)))};
+  }
+
   // The template that begins at a frame and fits best.
   Match best_at(int first, float usual) const {
     Match best;
     const int frames = static_cast<int>(turns_.size());
+    const auto try_at = [&](const Template& shape, int begin) {
+      const Match match = fit(shape, begin, usual);
+      if (match.score > best.score) best = match;
+    };
+    const Template& spike = kTemplates[0];
     for (const Template& shape : kTemplates) {
-      const int last = first + shape.length - 1;
-      if (first < 3 || last + 3 >= frames) continue;
-      Vec3f size = Vec3f::Zero();
-      float norm = 0;
-      for (int i = 0; i < shape.length; ++i) {
-        const float weight = shape.weights[at(i)];
-        size += weight * acceleration(first + i);
-        norm += weight * weight;
-      }
-      size /= norm;
-      float rest = largest_beside(first, last);
-      for (int i = 0; i < shape.length; ++i) {
-        rest = std::max(rest, (acceleration(first + i) - shape.weights[at(i)] * size).norm());
-      }
-      const float value = size.norm();
-      if (value < threshold_) continue;
-      const float score = std::min(value / (shape.over_rest * std::max(rest, 1e-6F)),
-                                   value / (shape.over_usual * std::max(usual, 1e-6F)));
-      if (score > best.score) {
-        best = {{shape.kind, first, last, first + 1, value}, score};
-      }
+      if (first + shape.length < frames) try_at(shape, first);
     }
+    // A first or a last frame that is off, and those beside them.
+    if (frames <= 2 * kNeighbours) return best;
+    for (int begin = -1; begin < 1 && first == 1; ++begin) try_at(spike, begin);
+    if (first + spike.length >= frames) try_at(spike, first);
     // A change of speed alone.
     const float rest = largest_beside(first, first);
     if (best.score < 1 && first >= 3 && first + 3 < frames &&

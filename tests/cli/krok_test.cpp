@@ -20,6 +20,13 @@ using Json = nlohmann::ordered_json;
 class Krok : public CliTest {
  protected:
   Krok() { put("in.bvh", capture(30)); }
+
+  // A command for the shell, where git has no settings but the folder's.
+  ToolRun in_git(const std::string& command) const {
+    return run({"/bin/sh", "-c",
+                "export PATH='" + tools_folder() + "':$PATH HOME=. GIT_CONFIG_NOSYSTEM=1; cd '" +
+                    folder_.string() + "' && " + command});
+  }
 };
 
 TEST_F(Krok, PassesArgumentsAndExitCodesThrough) {
@@ -126,13 +133,8 @@ TEST_F(Krok, WorksThroughALink) {
 // know who commits.
 TEST_F(Krok, GitShowsWhatChangedInAMotion) {
   if (!std::filesystem::exists("/usr/bin/git")) GTEST_SKIP() << "skipped: there is no git";
-  const auto in_folder = [&](const std::string& command) {
-    return run({"/bin/sh", "-c",
-                "export PATH='" + tools_folder() + "':$PATH HOME=. GIT_CONFIG_NOSYSTEM=1; cd '" +
-                    folder_.string() + "' && " + command});
-  };
   const auto changed_lines = [&] {
-    const ToolRun diff = in_folder("git diff --no-color in.bvh");
+    const ToolRun diff = in_git("git diff --no-color in.bvh");
     EXPECT_EQ(diff.exit_code, 0) << diff.err;
     const std::string& text = diff.out;
     int count = 0;
@@ -141,7 +143,7 @@ TEST_F(Krok, GitShowsWhatChangedInAMotion) {
   };
   put("pointer.bvh", "version https://git-lfs.github.com/spec/v1\noid sha256:12ab\nsize 99\n");
   put("broken.bvh", "HIERARCHY\nROOT");
-  const ToolRun setup = in_folder("git init -q . && krok git-setup && git add . ");
+  const ToolRun setup = in_git("git init -q . && krok git-setup && git add . ");
   ASSERT_EQ(setup.exit_code, 0) << setup.err;
   EXPECT_EQ(changed_lines(), 0);
   std::string text = capture(30);
@@ -158,6 +160,23 @@ TEST_F(Krok, GitShowsWhatChangedInAMotion) {
   const ToolRun broken = run_here("krok-info", {"--textconv", "broken.bvh"});
   EXPECT_EQ(broken.exit_code, 0);
   EXPECT_THAT(broken.out, StartsWith("cannot be read: "));
+}
+
+// If it fails, a commit ends without a word of why, or for faults that are known.
+TEST_F(Krok, TheHookNamesTheFaultsOfACommit) {
+  if (!std::filesystem::exists("/usr/bin/git")) GTEST_SKIP() << "skipped: there is no git";
+  put("in.bvh", capture(30, "9"));
+  ASSERT_EQ(in_git("git init -q . && git config user.name a && git config user.email a@b.c && krok "
+                   "git-setup --hook && git add .")
+                .exit_code,
+            0);
+  const ToolRun refused = in_git("git commit -m one");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.out + refused.err,
+              AllOf(HasSubstr("[pop]"), HasSubstr("git commit --no-verify")));
+  in_git("krok lint . --save-baseline krok-lint.json");
+  const ToolRun known = in_git("git commit -m one");
+  EXPECT_EQ(known.exit_code, 0) << known.out << known.err;
 }
 
 TEST_F(Krok, AFullStandardOutputIsTrouble) {

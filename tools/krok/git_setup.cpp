@@ -31,9 +31,14 @@ constexpr const char* kMergeDriver =
     "git checkout --theirs FILE, then git add FILE\\n' %P >&2; exit 1";
 
 constexpr const char* kHook = R"(#!/bin/sh
-# Written by krok git-setup: motions of a commit without new faults.
+# Written by krok git-setup: lints the motions of a commit. With the faults that are there already in
+# krok-lint.json (krok lint . --save-baseline krok-lint.json) only new ones count.
+baseline=
+[ ! -f krok-lint.json ] || baseline=--baseline=krok-lint.json
 git diff --cached --name-only -z --diff-filter=ACM -- {} |
-  xargs -0 -r krok lint -q
+  xargs -0 -r krok lint $baseline && exit 0
+echo 'krok: not committed for these faults; git commit --no-verify commits them all the same' >&2
+exit 1
 )";
 
 // What a command prints, and whether it ends with 0.

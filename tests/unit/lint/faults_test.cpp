@@ -227,6 +227,22 @@ TEST(LintFaults, LoopsAreJudgedAtTheirSeamAlone) {
   EXPECT_NE(find(faults_of(part, loop), Rule::loop_seam, 0), nullptr);
 }
 
+// Would fail if jumps were looked for only where four frames are known on either side.
+TEST(LintFaults, FirstAndLastFramesJumpToo) {
+  const int last = usual_walk().frame_count() - 1;
+  for (const int frame : {0, 1, 2, 3, last - 3, last - 2, last - 1, last}) {
+    const Clip turned = changed(usual_walk(), [&](LocalMotion& m, Clip& clip) {
+      auto all = m.joint_orientations(clip.skeleton.find("LeftForeArm"));
+      all[static_cast<std::size_t>(frame)] = all[static_cast<std::size_t>(frame)] * turn(15);
+    });
+    EXPECT_NE(find(faults_of(turned), Rule::pop, frame), nullptr) << frame;
+    const Clip moved = changed(usual_walk(), [&](LocalMotion& m, Clip&) {
+      m.joint_positions(0)[static_cast<std::size_t>(frame)] += Vec3(0.2, 0, 0);
+    });
+    EXPECT_NE(find(faults_of(moved), Rule::pop, frame), nullptr) << frame;
+  }
+}
+
 TEST(LintFaults, StairsAreNoFaultOfTheGround) {
   WalkOptions options;
   options.steps = 8;
