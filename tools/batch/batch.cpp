@@ -25,10 +25,8 @@
 #include "tools/batch/journal.h"
 #include "tools/batch/list.h"
 #include "tools/batch/option_sets.h"
-#include "tools/batch/ready_lines.h"
 #include "tools/batch/tally.h"
-#include "tools/cli/json_line.h"
-#include "tools/cli/json_object.h"
+#include "tools/cli/json.h"
 #include "tools/cli/paths.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
@@ -62,7 +60,7 @@ std::string made_with(const BatchFile& file, const BatchList& list,
       all["outputs"].push_back(expanded(value, file, ""));
     }
   }
-  const std::string text = json_line(all);
+  const std::string text = json_text(all);
   return hex(xxh3(std::as_bytes(std::span(text))));
 }
 
@@ -162,21 +160,21 @@ Status BatchReport::begin(const std::string& path, OutputFile::Options how, cons
   return file_->write(
       fmt::format("{{\n  \"schema\": \"krok.batch/1\",\n  \"tool\": {},\n  \"version\": {},\n"
                   "  \"options\": {},\n  \"files\": [",
-                  json_line(tool), json_line(version), json_line(options)));
+                  json_text(Json(tool)), json_text(Json(version)), json_text(options)));
 }
 
 // The file keeps write errors; end() returns them.
 void BatchReport::add(const Json& file) {
   if (!file_) return;
-  (void)file_->write((first_ ? "\n    " : ",\n    ") + json_line(rounded(file))).ok();
+  (void)file_->write((first_ ? "\n    " : ",\n    ") + json_text(rounded(file))).ok();
   first_ = false;
 }
 
 Status BatchReport::end(const Diagnostics& issues, const Json& result) {
   if (!file_) return {};
   const Status status = file_->write(fmt::format("{}],\n  \"issues\": {},\n  \"result\": {}\n}}\n",
-                                                 first_ ? "" : "\n  ", json_line(to_json(issues)),
-                                                 json_line(rounded(result))));
+                                                 first_ ? "" : "\n  ", json_text(to_json(issues)),
+                                                 json_text(rounded(result))));
   const Status done = file_->commit();
   file_.reset();
   return status ? done : status;
@@ -318,12 +316,12 @@ class Batch {
   }
 
   void run_file(const BatchFile& file, ToolContext& context, Outcome& outcome) {
-    auto ready = ready_lines_->take(file.options);
-    const auto parsed = ready->line.parse(arguments_for_file(options_of(file, list_, line_.out_dir),
-                                                             line_.fixed_positionals, file.input,
-                                                             file.output, line_.no_clobber));
+    auto line = ready_lines_->take(file.options);
+    const auto parsed = line->parse(arguments_for_file(options_of(file, list_, line_.out_dir),
+                                                       line_.fixed_positionals, file.input,
+                                                       file.output, line_.no_clobber));
     if (!parsed) return fail(file, parsed.error(), outcome);
-    context = ready->line.context();
+    context = line->context();
     context.jobs = jobs_of_a_file_;
     context.limits = line_.limits();
     context.quiet = line_.quiet;
@@ -346,8 +344,8 @@ class Batch {
     for (const std::string& path : context.destinations) {
       fs::create_directories(fs::path(path).parent_path(), known_later);
     }
-    const Result<int> done = run_guarded(ready->spec, context);
-    ready_lines_->put_back(file.options, std::move(ready));
+    const Result<int> done = run_guarded(line->spec(), context);
+    ready_lines_->put_back(file.options, std::move(line));
     if (!done && file.found && done.error().code == "motion-missing") {
       Error error = done.error();
       error.severity = Severity::warning;

@@ -1,4 +1,4 @@
-#include "tools/batch/check.h"
+#include "tools/batch/list.h"
 
 #include <fmt/format.h>
 

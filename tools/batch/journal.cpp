@@ -11,8 +11,7 @@
 
 #include "core/hash.h"
 #include "core/text.h"
-#include "tools/cli/json_line.h"
-#include "tools/cli/json_object.h"
+#include "tools/cli/json.h"
 #include "tools/cli/paths.h"
 
 namespace krok::cli::batch {
@@ -226,7 +225,7 @@ std::optional<Json> Journal::unchanged(const std::string& output, const std::str
 }
 
 Status Journal::add(const Json& record) {
-  std::string text = json_line(record) + "\n";
+  std::string text = json_text(record) + "\n";
   const std::uint64_t sum = checksum_of_line(std::string_view(text).substr(0, text.size() - 1));
   const std::lock_guard lock(adding_);
   const auto fail = [&] { return unwritable_error(std::strerror(errno), path_); };

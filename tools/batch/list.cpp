@@ -12,8 +12,8 @@
 #include "core/hash.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/batch/check.h"
 #include "tools/cli/folder_inputs.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 
@@ -149,7 +149,7 @@ class Lister {
         const Diagnostics others = keep_inputs(argument, spec_.batch->reads, *paths);
         list_.left_out.insert(list_.left_out.end(), others.begin(), others.end());
       }
-      nothing = fmt::format("the folder has no {} file", any_of_words(spec_.batch->reads));
+      nothing = fmt::format("the folder has no {} file", either_of(spec_.batch->reads));
     } else if (has_wildcards(argument) && !fs::exists(argument, missing)) {
       paths = find_files(argument);
       base = fixed_part(argument);

@@ -44,4 +44,9 @@ std::vector<GivenOption> options_of(const BatchFile& file, const BatchList& list
 // manifest and searches for files, but opens none of them.
 BatchList list_files(const CommandLine& line, const MakeToolSpec& make_spec, Diagnostics& errors);
 
+// Checks that no two outputs of a batch (including those that options name) are the same file, and
+// that none overwrites an input, the manifest or the report. Adds problems to `errors` (code
+// usage). Fills in list.read_files.
+void check_batch(const CommandLine& line, BatchList& list, Diagnostics& errors);
+
 }  // namespace krok::cli::batch

@@ -35,8 +35,8 @@ Result<OptionSet> OptionSets::parse(const std::vector<std::string>& words) const
   set.options.insert(set.options.end(), line.given().begin(), line.given().end());
 
   // Merged, as they will be parsed for each file.
-  const ToolSpec spec = make_spec_();
-  CommandLine file(spec, CommandLine::Form::one_file);
+  CommandLine file(make_spec_(), CommandLine::Form::one_file);
+  const ToolSpec& spec = file.spec();
   const auto parsed =
       file.parse(arguments_for_file(set.options, fixed_positionals_, "input", "output", false));
   if (!parsed) return parsed.error();
@@ -66,6 +66,30 @@ Result<std::size_t> OptionSets::find(const std::vector<ManifestWord>& words) {
   error.where = words[right].where;
   error.hint = "lines take the tool's own options; batch options go on the command line";
   return error;
+}
+
+std::unique_ptr<CommandLine> ReadyLines::take(std::size_t set) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::find_if(kept_.rbegin(), kept_.rend(),
+                                    [&](const Kept& kept) { return kept.set == set; });
+    if (found != kept_.rend()) {
+      std::unique_ptr<CommandLine> line = std::move(found->line);
+      kept_.erase(std::next(found).base());
+      return line;
+    }
+  }
+  return std::make_unique<CommandLine>(make_spec_(), CommandLine::Form::one_file);
+}
+
+void ReadyLines::put_back(std::size_t set, std::unique_ptr<CommandLine> line) {
+  Kept oldest;  // destroyed after the mutex is released
+  const std::lock_guard lock(mutex_);
+  if (kept_.size() >= most_) {
+    oldest = std::move(kept_.front());
+    kept_.erase(kept_.begin());
+  }
+  kept_.push_back({set, std::move(line)});
 }
 
 }  // namespace krok::cli::batch

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -45,5 +48,29 @@ std::vector<std::string> arguments_for_file(const std::vector<GivenOption>& opti
                                             const std::vector<std::string>& fixed_positionals,
                                             const std::string& input, const std::string& output,
                                             bool no_clobber);
+
+// Pool of command lines, each ready to parse one file of a batch. Declaring options is slower than
+// parsing them, so files with the same option set reuse a line. Sets must not be mixed: an option
+// that is not given keeps its previous value. Running a tool does not change its options.
+class ReadyLines {
+ public:
+  // Keeps at most `most` lines, one per thread, for any number of option sets.
+  ReadyLines(MakeToolSpec make_spec, std::size_t most)
+      : make_spec_(std::move(make_spec)), most_(most) {}
+
+  // Takes a line for an option set. Thread-safe, as is put_back().
+  std::unique_ptr<CommandLine> take(std::size_t set);
+  void put_back(std::size_t set, std::unique_ptr<CommandLine> line);
+
+ private:
+  struct Kept {
+    std::size_t set;
+    std::unique_ptr<CommandLine> line;
+  };
+  MakeToolSpec make_spec_;
+  std::size_t most_;
+  std::mutex mutex_;
+  std::vector<Kept> kept_;  // most recently returned last
+};
 
 }  // namespace krok::cli::batch

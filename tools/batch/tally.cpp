@@ -15,24 +15,11 @@ constexpr std::size_t kNamed = 10;
 // Max number of files whose messages of one code are printed.
 constexpr std::size_t kShown = 3;
 
-std::string counted_files(std::size_t count) {
-  return counted(static_cast<long long>(count), "file");
-}
-
 }  // namespace
 
 const char* name_of(FileState state) {
-  switch (state) {
-    case FileState::done:
-      return "done";
-    case FileState::unchanged:
-      return "unchanged";
-    case FileState::left_out:
-      return "left out";
-    case FileState::failed:
-      break;
-  }
-  return "failed";
+  constexpr std::array kNames = {"done", "unchanged", "left out", "failed"};  // [FileState]
+  return kNames[static_cast<std::size_t>(state)];
 }
 
 void BatchTally::add(FileState state, const std::string& name, bool warned) {
@@ -77,7 +64,7 @@ Json BatchTally::result() const {
 }
 
 std::string BatchTally::summary(const std::string& of_what) const {
-  std::string text = counted_files(files_) + of_what;
+  std::string text = counted(files_, "file") + of_what;
   const auto add = [&](std::size_t number, const char* what) {
     if (number > 0) text += fmt::format(", {} {}", number, what);
   };
@@ -100,7 +87,7 @@ Error BatchTally::failure(bool kept_going) const {
   }
   const std::size_t more = failed() - failed_.size();
   if (more > 0) names += fmt::format(" and {} more", more);
-  return Error("batch-failed", fmt::format("{} failed: {}", counted_files(failed()), names));
+  return Error("batch-failed", fmt::format("{} failed: {}", counted(failed(), "file"), names));
 }
 
 }  // namespace krok::cli::batch

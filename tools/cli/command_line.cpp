@@ -1,171 +1,25 @@
 #include "tools/cli/command_line.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
-#include <iterator>
-#include <memory>
 #include <string>
-#include <string_view>
 
 #include "core/glob.h"
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "tools/cli/folder_inputs.h"
 #include "tools/cli/option_kinds.h"
-#include "tools/cli/renamed_options.h"
-#include "tools/cli/tool.h"
 
 namespace krok::cli {
 
 namespace {
-
-constexpr std::size_t kHelpColumn = 34;
-
-std::string usage_lines(const ToolSpec& spec) {
-  std::string text = fmt::format(
-      "Usage: {} [options] {}{}\n", spec.name, spec.inputs,
-      spec.has_output ? (spec.needs_output && !spec.default_output ? " -o OUTPUT" : " [-o OUTPUT]")
-                      : "");
-  if (spec.batch) {
-    const bool ends_so = std::string_view(spec.inputs).ends_with("...");
-    text += fmt::format("       {} [options] {}{} --out-dir DIR\n", spec.name, spec.inputs,
-                        ends_so ? "" : "...");
-    text += fmt::format("       {} [options] --manifest LIST.tsv\n", spec.name);
-  }
-  return text;
-}
-
-std::string examples_of(const ToolSpec& spec) {
-  std::string text = "\nExamples:\n";
-  for (const auto& example : spec.examples) {
-    text += fmt::format("  {}\n      {}\n", example.command, example.does);
-  }
-  return text;
-}
-
-std::string footer(const ToolSpec& spec) {
-  std::string text = examples_of(spec);
-  text += fmt::format("\nExit codes:\n  0  {}\n", spec.exit_done);
-  if (!spec.exit_no.empty()) text += fmt::format("  1  {}\n", spec.exit_no);
-  text += "  2  error: usage, input or output; no partial output is left\n";
-  if (!spec.exit_partly.empty()) text += fmt::format("  3  {}\n", spec.exit_partly);
-  if (spec.batch || spec.keeps_going) {
-    text += "  3  with --keep-going: some files failed, all others were processed\n";
-  }
-  return text;
-}
-
-// The columns of the terminal that standard output is, within limits.
-std::size_t help_width() {
-  constexpr std::size_t kMinWidth = 30, kMaxWidth = 100;
-  winsize size{};
-  const bool known = isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0;
-  if (!known || size.ws_col == 0) return kMaxWidth;
-  return std::clamp<std::size_t>(size.ws_col, kMinWidth, kMaxWidth);
-}
-
-// CLI11 neither wraps long lines nor limits empty lines between groups to one.
-std::string tidy_help(const std::string& help) {
-  constexpr std::size_t kNarrow = 72;  // below it, descriptions are under their options
-  constexpr std::size_t kNarrowIndent = 6;
-  const std::size_t width = help_width();
-  std::string tidy;
-  bool empty_before = true;
-  for (std::size_t at = 0; at < help.size();) {
-    const std::size_t end = std::min(help.find('\n', at), help.size());
-    std::string line = help.substr(at, end - at);
-    at = end + 1;
-    if (line.empty() && empty_before) continue;
-    empty_before = line.empty();
-    // Option descriptions wrap to their column, all other lines to their own indentation.
-    const bool option = line.size() > kHelpColumn && line[0] == ' ' &&
-                        line.find_first_not_of(' ') == 2 && line[kHelpColumn - 1] == ' ';
-    std::size_t indent = option ? kHelpColumn : std::min(line.find_first_not_of(' '), width);
-    // A line of nothing but a description follows a name that is longer than its column.
-    const bool description = line.size() > kHelpColumn && indent == kHelpColumn;
-    if (width < kNarrow && description) {
-      const std::string name = line.substr(0, kHelpColumn);
-      const std::size_t end_of_name = name.find_last_not_of(' ');
-      if (end_of_name != std::string::npos) tidy += name.substr(0, end_of_name + 1) + "\n";
-      indent = kNarrowIndent;
-      line = std::string(indent, ' ') + line.substr(kHelpColumn);
-    }
-    while (line.size() > width) {
-      std::size_t space = line.rfind(' ', width);
-      if (space == std::string::npos || space <= indent) space = line.find(' ', width);
-      if (space == std::string::npos) break;
-      tidy += line.substr(0, space) + "\n";
-      line = std::string(indent, ' ') + line.substr(space + 1);
-    }
-    tidy += line + "\n";
-  }
-  return tidy;
-}
-
-class HelpFormatter : public CLI::Formatter {
- public:
-  explicit HelpFormatter(std::string usage) : usage_(std::move(usage)) {
-    column_width(kHelpColumn);
-    label("REQUIRED", "(required)");
-  }
-  std::string make_usage(const CLI::App*, std::string) const override { return usage_; }
-  std::string make_description(const CLI::App* app) const override {
-    return app->get_description() + "\n\n";
-  }
-  std::string make_footer(const CLI::App* app) const override { return app->get_footer(); }
-  // Removes "{false}" after a negated flag.
-  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
-    std::string name = CLI::Formatter::make_option_name(option, is_positional);
-    for (std::size_t at; (at = name.find('{')) != std::string::npos;) {
-      name.erase(at, name.find('}', at) - at + 1);
-    }
-    return name;
-  }
-  // Only the value name and the default; no types and "REQUIRED".
-  std::string make_option_opts(const CLI::Option* option) const override {
-    std::string text;
-    if (option->get_type_size() != 0) {
-      if (!option->get_type_name().empty()) text += " " + option->get_type_name();
-      if (!option->get_default_str().empty()) text += " [" + option->get_default_str() + "]";
-    }
-    return text;
-  }
-
- private:
-  std::string usage_;
-};
-
-// Sets up the layout of --help: usage, option groups, examples, exit codes.
-void shape_help(CLI::App& app, const ToolSpec& spec) {
-  app.footer(footer(spec));
-  app.formatter(std::make_shared<HelpFormatter>(usage_lines(spec)));
-}
-
-// The text of --help.
-std::string help_text(const CLI::App& app) {
-  return tidy_help(app.help());
-}
 
 constexpr const char* kCommon = "Common options";
 constexpr const char* kMany = "Batch mode";
 
 bool type_begins(const CLI::Option& option, const char* word) {
   return option.get_type_name().rfind(word, 0) == 0;
-}
-
-// "'a' 'b'", of at most three.
-std::string shown_list(const std::vector<std::string>& words) {
-  std::string list;
-  for (std::size_t i = 0; i < words.size() && i < 3; ++i) {
-    list += fmt::format("{}'{}'", i == 0 ? "" : " ", shown(words[i]));
-  }
-  return list + (words.size() > 3 ? " ..." : "");
 }
 
 bool is_flag(const CLI::Option& option) {
@@ -190,18 +44,13 @@ std::vector<std::string> arguments_of(const std::vector<GivenOption>& options) {
   return arguments;
 }
 
-CommandLine::CommandLine(const ToolSpec& spec, Form form)
+CommandLine::CommandLine(ToolSpec spec, Form form)
     : form_(form),
-      declare_(spec.declare),
-      app_(spec.details.empty() ? spec.summary : spec.summary + "\n\n" + spec.details, spec.name),
-      tool_(spec.name),
-      folder_endings_(spec.folder_endings),
-      keeps_going_(spec.keeps_going),
-      needs_output_(spec.has_output && spec.needs_output),
-      default_output_(spec.default_output),
-      takes_many_(spec.batch.has_value()) {
+      spec_(std::move(spec)),
+      app_(spec_.details.empty() ? spec_.summary : spec_.summary + "\n\n" + spec_.details,
+           spec_.name) {
   app_.set_help_flag();
-  declare_(options_);
+  spec_.declare(options_);
   options_.group("Options");
   if (form == Form::many) take_many_inputs();
   for (CLI::Option* option : app_.get_options()) {
@@ -219,13 +68,13 @@ CommandLine::CommandLine(const ToolSpec& spec, Form form)
     for (CLI::Option* option : positionals) options_.remove(option);
   }
   if (form == Form::single || form == Form::many) {
-    shape_help(app_, spec);
-    if (spec.batch) {
+    shape_help();
+    if (spec_.batch) {
       declare_for_many();
-    } else if (spec.keeps_going) {
+    } else if (spec_.keeps_going) {
       declare_keep_going("Leave out inputs that cannot be used");
     }
-    declare_common(spec);
+    declare_common();
   } else if (form == Form::one_file) {
     app_.add_option("-o,--output", output);
     app_.add_flag("--no-clobber", no_clobber);
@@ -244,18 +93,18 @@ void CommandLine::take_many_inputs() {
   inputs_option_ = app_.add_option("inputs", inputs, "")->type_name(type);
 }
 
-void CommandLine::declare_common(const ToolSpec& spec) {
+void CommandLine::declare_common() {
   app_.set_help_flag("-h,--help", "Print this help; -h a short one")->group(kCommon);
-  app_.set_version_flag("--version", fmt::format("{} {}", spec.name, version()),
+  app_.set_version_flag("--version", fmt::format("{} {}", spec_.name, version()),
                         "Print the version")
       ->group(kCommon);
-  if (spec.has_output) {
+  if (spec_.has_output) {
     app_.add_option("-o,--output", output, "Output file")->type_name("OUTPUT")->group(kCommon);
     app_.add_flag("--no-clobber", no_clobber, "Do not overwrite existing files")->group(kCommon);
   }
   app_.add_flag("-q,--quiet", quiet, "Print only errors")->group(kCommon);
   app_.add_flag("-v,--verbose", verbose, "Also print notes")->group(kCommon);
-  const std::string& more_names = spec.report_name;
+  const std::string& more_names = spec_.report_name;
   app_.add_option(more_names.empty() ? "--json" : "--json," + more_names, json_path,
                   "Write a JSON report to standard output, or to FILE with --json=FILE")
       ->type_name("[=FILE]")
@@ -305,7 +154,7 @@ void CommandLine::declare_for_many() {
   app_.add_option("--shard", shard, "Process only part I of N of the list")
       ->type_name("I/N")
       ->group(kMany);
-  declare_keep_going(keeps_going_
+  declare_keep_going(spec_.keeps_going
                          ? "Continue after a file fails, also where all files make one output; by "
                            "default, the first failure ends the run"
                          : "Continue after a file fails; by default, the first failure ends the "
@@ -340,11 +189,11 @@ void CommandLine::note_given() {
 }
 
 Status CommandLine::check_use_of_batch_options() const {
-  const char* const first = !base.empty()                 ? "--base"
-                            : !shard.empty()              ? "--shard"
-                            : keep_going && !keeps_going_ ? "--keep-going"
-                            : force                       ? "--force"
-                                                          : nullptr;
+  const char* const first = !base.empty()                      ? "--base"
+                            : !shard.empty()                   ? "--shard"
+                            : keep_going && !spec_.keeps_going ? "--keep-going"
+                            : force                            ? "--force"
+                                                               : nullptr;
   if (form_ != Form::single || first == nullptr) return {};
   return Error("usage", fmt::format("{} is for batch mode only", first),
                "add --out-dir or --manifest");
@@ -352,7 +201,7 @@ Status CommandLine::check_use_of_batch_options() const {
 
 Status CommandLine::open_folders() {
   left_out.clear();
-  if (form_ != Form::single || folder_endings_.empty()) return {};
+  if (form_ != Form::single || spec_.folder_endings.empty()) return {};
   for (CLI::Option* option : app_.get_options()) {
     if (!option->get_positional() || option->get_items_expected_max() < 2) continue;
     std::vector<std::string> files;
@@ -364,12 +213,12 @@ Status CommandLine::open_folders() {
       }
       auto found = find_files_below(value);
       if (!found) return found.error();
-      for (Diagnostic& diagnostic : keep_inputs(value, folder_endings_, *found)) {
+      for (Diagnostic& diagnostic : keep_inputs(value, spec_.folder_endings, *found)) {
         left_out.push_back(std::move(diagnostic));
       }
       if (found->empty()) {
         return Error("folder-empty",
-                     fmt::format("the folder has no {} file", any_of_words(folder_endings_)))
+                     fmt::format("the folder has no {} file", either_of(spec_.folder_endings)))
             .in_file(value);
       }
       files.insert(files.end(), found->begin(), found->end());
@@ -394,63 +243,26 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   } catch (const CLI::CallForVersion&) {
     return Wish::version;
   } catch (const CLI::ParseError& error) {
-    if (auto unknown = unknown_option(arguments)) return *std::move(unknown);
-    auto left = app_.remaining();
-    std::erase(left, "--");  // before the input of a file of a batch
-    if (!left.empty()) {
-      const bool file = form_ == Form::single && takes_many_;
-      for (const CLI::Option* option : app_.get_options()) {
-        if (!option->get_required() || !option->empty() || option->get_positional()) continue;
-        return Error("usage", fmt::format("{} is missing", option->get_name()),
-                     fmt::format("{} is an argument too many; perhaps it is the value of {}",
-                                 shown_list(left), option->get_name()));
-      }
-      constexpr std::string_view kUnits = " m cm mm in ft s ms f deg rad fps Hz ";
-      if (kUnits.find(" " + left.front() + " ") != std::string_view::npos) {
-        return usage(fmt::format("unexpected argument {}", shown_list(left)),
-                     "write a number and its unit as one word: 1s");
-      }
-      return Error(
-          "usage",
-          fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),
-          !too_many_hint(tool_).empty() ? too_many_hint(tool_)
-          : file ? fmt::format("a file to be written is given with -o; for several inputs, use "
-                               "--out-dir DIR; see {} --help",
-                               tool_)
-                 : fmt::format("see {} --help", tool_));
-    }
-    const bool too_many = form_ == Form::single && takes_many_ &&
-                          dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-    std::string missing;
-    for (const CLI::Option* option : app_.get_options()) {
-      if (!option->get_required() || !option->empty()) continue;
-      const std::string& type = option->get_type_name();
-      missing = fmt::format("give {}{}; ", option->get_positional() ? "" : option->get_name() + " ",
-                            type.empty() ? option->get_name() : type);
-      break;
-    }
-    return Error("usage", error.what(),
-                 fmt::format("{}see {} --help{}", missing, tool_,
-                             too_many ? "; for several inputs, use --out-dir DIR" : ""));
+    return parse_error(arguments, error);
   }
   if (Status status = check_use_of_batch_options(); !status) return status.error();
   note_given();
   if (Status status = options_.take_values(); !status) {
     Error error = std::move(status).error();
-    if (error.hint.empty()) error.hint = fmt::format("see {} --help", tool_);
+    if (error.hint.empty()) error.hint = fmt::format("see {} --help", spec_.name);
     return error;
   }
-  if (form_ == Form::single && default_output_ && output.empty()) {
-    output = default_output_();
+  if (form_ == Form::single && spec_.default_output && output.empty()) {
+    output = spec_.default_output();
     std::error_code unknown;
     if (!output.empty() && std::filesystem::exists(output, unknown)) {
       return usage(fmt::format("no output given, and {} exists already", shown(output)),
                    "-o OUTPUT names another, or replaces it");
     }
   }
-  if (form_ == Form::single && needs_output_ && output.empty()) {
+  if (form_ == Form::single && spec_.has_output && spec_.needs_output && output.empty()) {
     for (const CLI::Option* option : app_.get_options()) {
-      if (!takes_many_ || !option->get_positional() || option->empty()) continue;
+      if (!spec_.batch || !option->get_positional() || option->empty()) continue;
       return no_output_for(option->results().front());
     }
     return no_output();
@@ -461,69 +273,6 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     if (Status status = options_.check_conditions(); !status) return status.error();
   }
   return Wish::run;
-}
-
-// The first option whose value would be the option after it: "--size -o x.png".
-std::optional<Error> CommandLine::option_without_value(
-    const std::vector<std::string>& arguments) const {
-  for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i] != "--"; ++i) {
-    const std::string& next = arguments[i + 1];
-    if (!arguments[i].starts_with('-') || !next.starts_with('-') || next == "-") continue;
-    const CLI::Option* option = app_.get_option_no_throw(arguments[i]);
-    if (option == nullptr || option->get_items_expected_min() < 1) continue;
-    if (app_.get_option_no_throw(next.substr(0, next.find('='))) == nullptr) continue;
-    return usage(fmt::format("{} has no value", arguments[i]),
-                 fmt::format("write {} {}; '{}' is the next option", arguments[i],
-                             option->get_type_name(), next));
-  }
-  return std::nullopt;
-}
-
-// "-json" would be -j with the value "son".
-std::optional<Error> CommandLine::option_with_one_dash(
-    const std::vector<std::string>& arguments) const {
-  for (const std::string& argument : arguments) {
-    if (argument == "--") break;
-    if (argument.size() < 3 || argument[0] != '-' || argument[1] == '-') continue;
-    const std::string name = "-" + argument.substr(0, argument.find('='));
-    if (app_.get_option_no_throw(name) == nullptr) continue;
-    return usage(fmt::format("unknown option '{}'", name.substr(1)),
-                 fmt::format("did you mean '{}'?", name));
-  }
-  return std::nullopt;
-}
-
-// The first word before "--" that looks like an option and is none.
-std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>& arguments) const {
-  std::vector<std::string> names;
-  for (const OptionFacts& option : options_.facts()) {
-    names.insert(names.end(), option.names.begin(), option.names.end());
-  }
-  for (const std::string& argument : arguments) {
-    if (argument == "--") break;
-    const bool is_long = argument.starts_with("--");
-    const bool letter = argument.size() == 2 && argument[0] == '-' &&
-                        std::isalpha(static_cast<unsigned char>(argument[1])) != 0;
-    if (!is_long && !letter) continue;
-    const std::string name = argument.substr(0, argument.find('='));
-    if (app_.get_option_no_throw(name) != nullptr) continue;
-    const auto is_now = [&](const RenamedOption& option) {
-      if (option.before != name || (!option.tool.empty() && option.tool != tool_)) return false;
-      const std::string now(option.now.substr(0, option.now.find(' ')));
-      return !option.tool.empty() || !now.starts_with('-') ||
-             app_.get_option_no_throw(now) != nullptr;
-    };
-    // A tool's own rows come after those of any.
-    const auto none = std::rend(kRenamedOptions);
-    if (const auto row = std::find_if(std::rbegin(kRenamedOptions), none, is_now); row != none) {
-      return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
-    }
-    const std::string near = is_long ? nearest_name(name, names) : std::string();
-    return Error("usage", fmt::format("unknown option '{}'", shown(name)),
-                 near.empty() ? fmt::format("see {} --help", tool_)
-                              : fmt::format("did you mean '{}'?", near));
-  }
-  return std::nullopt;
 }
 
 std::vector<std::string> CommandLine::expanded(const std::vector<std::string>& arguments) const {
@@ -549,28 +298,6 @@ std::vector<std::string> CommandLine::expanded(const std::vector<std::string>& a
   return result;
 }
 
-std::string CommandLine::help() const {
-  return help_text(app_);
-}
-
-std::string CommandLine::short_help(const ToolSpec& spec) const {
-  std::vector<std::pair<std::string, std::string>> groups;  // in the order of --help
-  for (const CLI::Option* option : app_.get_options()) {
-    const std::string& group = option->get_group();
-    if (option->get_positional() || group.empty()) continue;
-    auto place = std::ranges::find(groups, group, &std::pair<std::string, std::string>::first);
-    if (place == groups.end()) place = groups.insert(groups.end(), {group, ""});
-    std::string& names = place->second;
-    const auto& longs = option->get_lnames();
-    names += names.empty() ? "" : ", ";
-    names += longs.empty() ? "-" + option->get_snames().front() : "--" + longs.front();
-  }
-  std::string text = fmt::format("{}\n\n{}\nOptions; {} --help explains them:\n", spec.summary,
-                                 usage_lines(spec), spec.name);
-  for (const auto& [group, names] : groups) text += fmt::format("  {}: {}\n", group, names);
-  return tidy_help(text + examples_of(spec));
-}
-
 GivenLimits CommandLine::limits() const {
   GivenLimits limits;
   limits.seconds = limit_seconds;
@@ -580,7 +307,7 @@ GivenLimits CommandLine::limits() const {
 
 ToolContext CommandLine::context() const {
   ToolContext context;
-  context.report.tool = tool_;
+  context.report.tool = spec_.name;
   context.report.version = version();
   context.jobs = jobs;
   context.keep_going = keep_going;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,7 +36,7 @@ class CommandLine {
   };
   enum class Wish { run, help, version };
 
-  CommandLine(const ToolSpec& spec, Form form);
+  CommandLine(ToolSpec spec, Form form);
   CommandLine(const CommandLine&) = delete;
   CommandLine& operator=(const CommandLine&) = delete;
 
@@ -47,11 +46,14 @@ class CommandLine {
 
   std::string help() const;
   // What fits on a screen: usage, names of options by group, examples.
-  std::string short_help(const ToolSpec& spec) const;
+  std::string short_help() const;
 
   // The same arguments with each positional that is a pattern, which the shell did not expand,
   // replaced by the files that it matches; a pattern without a match is left. After parse().
   std::vector<std::string> expanded(const std::vector<std::string>& arguments) const;
+
+  // The tool, whose functions share the options that parse() sets.
+  const ToolSpec& spec() const { return spec_; }
 
   // What completion in shells needs to know.
   std::vector<OptionFacts> options() const { return options_.facts(); }
@@ -92,8 +94,10 @@ class CommandLine {
   bool force = false;
 
  private:
+  // Sets up the layout of --help: usage, option groups, examples, exit codes.
+  void shape_help();
   void take_many_inputs();
-  void declare_common(const ToolSpec& spec);
+  void declare_common();
   void declare_for_many();
   void declare_keep_going(const char* help);
   void note_given();
@@ -102,21 +106,15 @@ class CommandLine {
   std::optional<Error> option_without_value(const std::vector<std::string>& arguments) const;
   std::optional<Error> option_with_one_dash(const std::vector<std::string>& arguments) const;
   std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
+  Error parse_error(const std::vector<std::string>& arguments, const CLI::ParseError& error) const;
 
   Form form_;
-  // Keeps the variables alive that the options of app_ write to.
-  std::function<void(CommandOptions&)> declare_;
+  ToolSpec spec_;
   CLI::App app_;
   CommandOptions options_{app_};
   CLI::Option* inputs_option_ = nullptr;
   std::vector<CLI::Option*> own_options_;
   std::vector<GivenOption> given_;
-  std::string tool_;
-  std::vector<std::string> folder_endings_;
-  bool keeps_going_ = false;
-  bool needs_output_ = false;
-  std::function<std::string()> default_output_;
-  bool takes_many_ = false;
 };
 
 }  // namespace krok::cli

@@ -7,7 +7,7 @@
 #include "core/hash.h"
 #include "core/text.h"
 #include "tools/cli/console_progress.h"
-#include "tools/cli/json_line.h"
+#include "tools/cli/json.h"
 #include "tools/cli/paths.h"
 #include "tools/cli/tool.h"
 
@@ -167,7 +167,7 @@ Provenance ToolContext::provenance() const {
     provenance.sources.push_back({to_utf8(base_name(input.path)), input.xxh3});
   }
   const auto text_of = [](const Json& value) {
-    return value.is_string() ? to_utf8(value.get<std::string>()) : json_line(value);
+    return value.is_string() ? to_utf8(value.get<std::string>()) : json_text(value);
   };
   for (const auto& [name, value] : result_options.items()) {
     // Repeated options are listed once per occurrence.

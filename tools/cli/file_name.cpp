@@ -1,5 +1,7 @@
 #include "tools/cli/file_name.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -22,6 +24,16 @@ std::string file_name_of(const std::string& name) {
     result.resize(end);
   }
   return result;
+}
+
+std::string uri_of(const std::string& path) {
+  std::string uri;
+  for (const char c : path) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       std::string_view("-._~/").find(c) != std::string_view::npos;
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri;
 }
 
 std::string beside(const std::string& path, const std::string& ending) {

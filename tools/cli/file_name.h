@@ -9,6 +9,9 @@ namespace krok::cli {
 // at most 100 bytes.
 std::string file_name_of(const std::string& name);
 
+// A path with slashes as a relative URI reference (RFC 3986).
+std::string uri_of(const std::string& path);
+
 // The same path with another ending: "takes/walk.html" for "takes/walk.bvh", "takes.html" for the
 // folder "takes/"; empty for "-".
 std::string beside(const std::string& path, const std::string& ending);

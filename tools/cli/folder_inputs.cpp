@@ -42,12 +42,4 @@ Diagnostics keep_inputs(const std::string& folder, const std::vector<std::string
   return {std::move(left_out)};
 }
 
-std::string any_of_words(const std::vector<std::string>& endings) {
-  std::string text;
-  for (const std::string& ending : endings) {
-    text += (text.empty() ? "" : ending == endings.back() ? " or " : ", ") + ending;
-  }
-  return text;
-}
-
 }  // namespace krok::cli

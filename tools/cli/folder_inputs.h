@@ -14,7 +14,4 @@ namespace krok::cli {
 Diagnostics keep_inputs(const std::string& folder, const std::vector<std::string>& endings,
                         std::vector<std::string>& paths);
 
-// ".anim, .bvh or .amc"
-std::string any_of_words(const std::vector<std::string>& endings);
-
 }  // namespace krok::cli

@@ -1,12 +1,14 @@
 #pragma once
 
-#include <initializer_list>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/quantity.h"
+#include "core/result.h"
+#include "formats/registry/registry.h"
 #include "math/types.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/usage.h"
@@ -110,5 +112,13 @@ ValueKind<std::optional<T>> or_word(const std::string& word, const ValueKind<T>&
           },
           {}};
 }
+
+// Fails (code usage) if `path` has another extension than files of kind `written`; none is allowed.
+// `option` is the option that gave the path, "-o".
+Status check_output_kind(const std::string& path, const std::string& option,
+                         registry::Kind written);
+
+// The same as a kind of value.
+ValueKind<std::string> output_of(registry::Kind written);
 
 }  // namespace krok::cli

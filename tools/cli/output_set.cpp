@@ -1,7 +1,9 @@
 #include "tools/cli/output_set.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <atomic>
+#include <filesystem>
 #include <iterator>
 #include <optional>
 
@@ -29,6 +31,14 @@ Result<std::optional<OutputFile>> written(const std::string& path, OutputFile::O
 Status OutputSet::add(const std::string& path, const std::function<Status(OutputFile&)>& write) {
   if (path.empty()) return {};
   return add_all({path}, 1, [&](std::size_t, OutputFile& file) { return write(file); });
+}
+
+Status OutputSet::add(const std::string& path, std::string_view text) {
+  return add(path, std::as_bytes(std::span(text)));
+}
+
+Status OutputSet::add(const std::string& path, std::span<const std::byte> bytes) {
+  return add(path, [&](OutputFile& file) { return file.write(bytes); });
 }
 
 Status OutputSet::add_all(const std::vector<std::string>& paths, int jobs,
@@ -90,11 +100,29 @@ std::string OutputSet::names() const {
   return names;
 }
 
-Status write_output(ToolContext& context, const std::string& path,
-                    const std::function<Status(OutputFile&)>& write) {
-  OutputSet outputs(context);
-  if (Status status = outputs.add(path, write); !status) return status;
-  return outputs.finish();
+namespace fs = std::filesystem;
+
+NewFolders::~NewFolders() {
+  std::error_code ignored;
+  // Only empty folders are removed.
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
+}
+
+Status NewFolders::make(const std::string& folder) {
+  std::error_code trouble;
+  std::vector<fs::path> missing;
+  for (fs::path path = folder; !path.empty() && !fs::exists(path, trouble);
+       path = path.parent_path()) {
+    missing.push_back(path);
+  }
+  trouble.clear();
+  for (auto path = missing.rbegin(); path != missing.rend() && !trouble; ++path) {
+    if (fs::create_directory(*path, trouble)) made_.push_back(path->string());
+  }
+  if (!trouble && fs::is_directory(folder, trouble)) return {};
+  return Error("file-unwritable", fmt::format("cannot create folder: {}",
+                                              trouble ? trouble.message() : "a file has this name"))
+      .in_file(folder);
 }
 
 }  // namespace krok::cli

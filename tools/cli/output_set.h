@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/file.h"
@@ -19,6 +22,10 @@ class OutputSet {
 
   // Writes a file under a temporary name beside `path`. Does nothing if `path` is empty.
   Status add(const std::string& path, const std::function<Status(OutputFile&)>& write);
+
+  // The same for text and bytes.
+  Status add(const std::string& path, std::string_view text);
+  Status add(const std::string& path, std::span<const std::byte> bytes);
 
   // The same for several files, on up to `jobs` threads. If several fail, the error of the first
   // file in the list is returned. write(i, file) writes the ith file.
@@ -45,8 +52,30 @@ class OutputSet {
   std::vector<OutputFile> files_;
 };
 
-// Writes a single output file.
-Status write_output(ToolContext& context, const std::string& path,
-                    const std::function<Status(OutputFile&)>& write);
+// Writes a single output file; `content` is what OutputSet::add() takes.
+template <typename Content>
+Status write_output(ToolContext& context, const std::string& path, const Content& content) {
+  OutputSet outputs(context);
+  if (Status status = outputs.add(path, content); !status) return status;
+  return outputs.finish();
+}
+
+// Folders for outputs; removed again unless keep() is called.
+class NewFolders {
+ public:
+  NewFolders() = default;
+  NewFolders(const NewFolders&) = delete;
+  NewFolders& operator=(const NewFolders&) = delete;
+  ~NewFolders();
+
+  // Creates a folder and its missing parents. Code file-unwritable.
+  Status make(const std::string& folder);
+
+  // Keeps the folders: the outputs are in them.
+  void keep() { made_.clear(); }
+
+ private:
+  std::vector<std::string> made_;  // parents first
+};
 
 }  // namespace krok::cli

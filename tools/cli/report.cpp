@@ -2,31 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/cli/json_object.h"
+#include "tools/cli/json.h"
 
 namespace krok::cli {
 
-namespace {
-
 const char* severity_name(Severity severity) {
-  switch (severity) {
-    case Severity::note:
-      return "note";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      break;
-  }
-  return "error";
+  constexpr std::array kNames = {"note", "warning", "error"};  // [Severity]
+  return kNames[static_cast<std::size_t>(severity)];
 }
-
-}  // namespace
 
 Json rounded(Json json) {
   if (json.is_structured()) {

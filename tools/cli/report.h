@@ -56,6 +56,9 @@ inline std::string reported_unit(std::string_view unit) {
 // float holds.
 Json rounded(Json json);
 
+// "note", "warning", "error".
+const char* severity_name(Severity severity);
+
 Json to_json(const Diagnostic& diagnostic);
 Json to_json(const Diagnostics& diagnostics);
 Json to_json(const std::vector<Report::Input>& inputs);

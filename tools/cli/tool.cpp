@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
-#include <memory>
 #include <new>
 #include <optional>
 
@@ -19,7 +18,6 @@
 #include "tools/cli/command_line.h"
 #include "tools/cli/console_progress.h"
 #include "tools/cli/option_kinds.h"
-#include "tools/cli/output_kind.h"
 #include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 
@@ -143,7 +141,8 @@ Error standard_output_error() {
                "check where it is redirected to");
 }
 
-int run_single(const ToolSpec& spec, const CommandLine& line) {
+int run_single(const CommandLine& line) {
+  const ToolSpec& spec = line.spec();
   ToolContext context = line.context();
   if (context.report_on_standard_output && context.output == "-") {
     return fail(context,
@@ -235,9 +234,9 @@ int run_arguments(const MakeToolSpec& make_spec, const std::vector<std::string>&
   if (*wish == CommandLine::Wish::help) {
     const CommandLine single(spec, CommandLine::Form::single);
     const bool is_short = std::ranges::find(arguments, "-h") != arguments.end();
-    return print_and_end(spec.name, is_short ? single.short_help(spec) : single.help());
+    return print_and_end(spec.name, is_short ? single.short_help() : single.help());
   }
-  return many ? many_files.run(make_spec, line) : run_single(spec, line);
+  return many ? many_files.run(make_spec, line) : run_single(line);
 }
 
 // Converts the current exception to an Error; call in a catch clause.

@@ -14,6 +14,32 @@ namespace krok::cli::blend {
 
 namespace {
 
+// Code: usage for an invalid weight.
+Result<WeightedInput> parse_weighted_input(const std::string& word) {
+  const std::size_t colon = word.rfind(':');
+  const auto wrong = [&](const std::string& what) {
+    return Error("usage", what,
+                 "give each motion a weight: walk.anim:0.5 or "
+                 "walk.anim:@weights.csv");
+  };
+  WeightedInput input;
+  if (parse_finite(word)) return wrong(fmt::format("'{}' is a weight without a motion", word));
+  if (colon == std::string::npos) {
+    input.path = word;
+    return input;
+  }
+  if (colon == 0) return wrong(fmt::format("'{}' names no motion", word));
+  input.path = word.substr(0, colon);
+  const std::string weight = word.substr(colon + 1);
+  if (weight.size() > 1 && weight[0] == '@') {
+    input.curve = weight.substr(1);
+    return input;
+  }
+  input.weight = parse_finite(weight);
+  if (!input.weight) return wrong(fmt::format("invalid weight '{}'", weight));
+  return input;
+}
+
 void declare(CommandOptions& command, Options& options) {
   command
       .add("inputs IN:WEIGHT", options.inputs,
@@ -68,31 +94,6 @@ ToolSpec make_spec() {
       {"krok-blend a.anim:0.5 b.anim:0.5 -o c.anim --warp dtw",
        "motions without keytimes, aligned by the similarity of their poses"}};
   return spec;
-}
-
-Result<WeightedInput> parse_weighted_input(const std::string& word) {
-  const std::size_t colon = word.rfind(':');
-  const auto wrong = [&](const std::string& what) {
-    return Error("usage", what,
-                 "give each motion a weight: walk.anim:0.5 or "
-                 "walk.anim:@weights.csv");
-  };
-  WeightedInput input;
-  if (parse_finite(word)) return wrong(fmt::format("'{}' is a weight without a motion", word));
-  if (colon == std::string::npos) {
-    input.path = word;
-    return input;
-  }
-  if (colon == 0) return wrong(fmt::format("'{}' names no motion", word));
-  input.path = word.substr(0, colon);
-  const std::string weight = word.substr(colon + 1);
-  if (weight.size() > 1 && weight[0] == '@') {
-    input.curve = weight.substr(1);
-    return input;
-  }
-  input.weight = parse_finite(weight);
-  if (!input.weight) return wrong(fmt::format("invalid weight '{}'", weight));
-  return input;
 }
 
 Result<krok::blend::WeightCurve> read_weight_curve(const std::string& path, ToolContext& context) {

@@ -9,7 +9,7 @@
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::blend {
 
@@ -20,9 +20,6 @@ struct WeightedInput {
   bool is_equal_share() const { return !weight && curve.empty(); }
   std::string curve;  // path of a weight curve; empty if the weight is a number or an equal share
 };
-
-// Code: usage for an invalid weight.
-Result<WeightedInput> parse_weighted_input(const std::string& word);
 
 // Reads a table with the columns "generic", rising, and "weight". Codes, with line and column:
 // those of csv::Table; weight-curve for missing values or times that do not rise.

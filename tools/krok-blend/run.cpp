@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 
 #include "blend/warp_by_shape.h"
@@ -17,7 +16,7 @@
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
 #include "tools/shared/keys_sidecar.h"
-#include "tools/shared/plant_result.h"
+#include "tools/shared/planting.h"
 
 namespace krok::cli::blend {
 
@@ -125,8 +124,6 @@ std::string warp_table(const std::vector<Motion>& motions, const Blended& blende
 
 Status write_results(const Options& options, const std::vector<Motion>& motions, Blended& blended,
                      ToolContext& context) {
-  const auto keys_path = place_for_keys(blended.keys, context.output);
-  if (!keys_path) return keys_path.error();
   blended.clip.provenance = context.provenance();
   for (const Motion& motion : motions) {
     for (const std::string& conversion : motion.clip.provenance.conversions) {
@@ -139,15 +136,12 @@ Status write_results(const Options& options, const std::vector<Motion>& motions,
                        {.orientation = options.orientation, .jobs = thread_count(context.jobs)},
                        file);
   });
-  if (status && !keys_path->empty()) {
-    status = outputs.add(*keys_path, [&](OutputFile& file) {
-      return file.write(keys::write(blended.keys, blended.clip.skeleton, blended.clip.duration()));
-    });
-  }
   if (status) {
-    status = outputs.add(options.save_warp, [&](OutputFile& file) {
-      return file.write(warp_table(motions, blended));
-    });
+    status = add_keys(blended.keys, blended.clip.skeleton, blended.clip.duration(), context.output,
+                      outputs);
+  }
+  if (status && !options.save_warp.empty()) {
+    status = outputs.add(options.save_warp, warp_table(motions, blended));
   }
   return status ? outputs.finish() : status;
 }
@@ -259,11 +253,10 @@ Result<int> run(const Options& options, ToolContext& context) {
                             (*motions)[m].name, readable(from, 3), readable(to, 3),
                             readable(clip.duration(), 3)));
   }
-  context.log(fmt::format("{} -> {}: {} at {} fps ({} s), {} matched times",
-                          counted(static_cast<long long>(motions->size()), "motion"),
-                          context.output, counted(blended->clip.frame_count(), "frame"),
-                          readable(blended->clip.rate), readable(blended->clip.duration(), 4),
-                          moments->moments()));
+  context.log(fmt::format(
+      "{} -> {}: {} at {} fps ({} s), {} matched times", counted(motions->size(), "motion"),
+      context.output, counted(blended->clip.frame_count(), "frame"), readable(blended->clip.rate),
+      readable(blended->clip.duration(), 4), moments->moments()));
   return kExitDone;
 }
 

@@ -88,7 +88,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.report.result = result_of(*body);
   context.log(fmt::format("body: {}, {}, {}, {} m3 -> {}",
                           counted(model.vertex_count(), "vertex", "vertices"),
-                          counted(static_cast<long long>(model.triangles.size()), "triangle"),
+                          counted(model.triangles.size(), "triangle"),
                           counted(model.skeleton.joint_count() - 1, "bone"),
                           readable(body->volume, 2), context.output));
   return kExitDone;

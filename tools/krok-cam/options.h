@@ -9,7 +9,7 @@
 #include "formats/cam/cam.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/interpolation_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::cam {
 

@@ -30,7 +30,7 @@
 #include "nodes/evaluate.h"
 #include "nodes/moving.h"
 #include "scene/camera_track.h"
-#include "tools/cli/output_kind.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/camera_choice.h"
@@ -141,7 +141,7 @@ Result<Shot> from_keys(const Options& options, const InputFile& file) {
   shot.track = *std::move(track);
   const auto count = keys->camera.keys.size();
   shot.facts["keys"] = count;
-  shot.words = fmt::format("from {}", counted(static_cast<long long>(count), "key"));
+  shot.words = fmt::format("from {}", counted(count, "key"));
   return shot;
 }
 
@@ -352,8 +352,7 @@ Status write(const Options& options, Format format, CameraTrack& track, ToolCont
     if (diagnostic.where.file.empty()) diagnostic.where.file = options.input;
     context.diagnose(std::move(diagnostic));
   }
-  return write_output(context, context.output,
-                      [&](OutputFile& file) { return file.write(made->bytes); });
+  return write_output(context, context.output, made->bytes);
 }
 
 void report(const Shot& shot, ToolContext& context) {

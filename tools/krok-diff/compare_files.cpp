@@ -1,21 +1,23 @@
 #include "tools/krok-diff/compare_files.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "compare/camera_difference.h"
 #include "compare/clip_difference.h"
 #include "compare/model_difference.h"
 #include "compare/morph_difference.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/cam/cam.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/morph_exr/morph_exr.h"
+#include "formats/registry/registry.h"
 #include "skin/scene_of.h"
-#include "tools/krok-diff/compare_two.h"
 #include "tools/krok-diff/difference_plot.h"
 #include "tools/krok-diff/difference_sheet.h"
-#include "tools/krok-diff/input_kinds.h"
 
 namespace krok::cli::diff {
 
@@ -147,6 +149,21 @@ Result<Outcome> compare_long_motions(const InputFile& first, const InputFile& se
   return outcome;
 }
 
+using registry::Kind;
+
+struct KindRow {
+  InputKind kind;
+  const char* description;
+  const char* word;
+};
+constexpr KindRow kKindRows[] = {{InputKind::motion, "a motion", "anim"},
+                                 {InputKind::model, "a model (.model)", "model"},
+                                 {InputKind::mesh, "a mesh (.obj)", "obj"},
+                                 {InputKind::camera, "a camera (.cam)", "cam"},
+                                 {InputKind::gltf, "glTF", "gltf"},
+                                 {InputKind::points, "a point cache (.pc2)", "pc2"},
+                                 {InputKind::morphs, "morph targets (.exr)", "morphs"}};
+
 }  // namespace
 
 Result<Outcome> compare_files(const Options& options, ToolContext& context) {
@@ -195,10 +212,9 @@ Result<Outcome> compare_models(const InputFile& first, const InputFile& second,
     if (!step) return step.error();
   }
   outcome.kind = word_of(InputKind::model);
-  outcome.summary = {
-      fmt::format("models: {}, {}, {}", counted(model.vertex_count(), "vertex", "vertices"),
-                  counted(static_cast<std::int64_t>(model.triangles.size()), "triangle"),
-                  counted(model.skeleton.joint_count(), "joint"))};
+  outcome.summary = {fmt::format(
+      "models: {}, {}, {}", counted(model.vertex_count(), "vertex", "vertices"),
+      counted(model.triangles.size(), "triangle"), counted(model.skeleton.joint_count(), "joint"))};
   outcome.structure = found->structure;
   outcome.names.joints = model.skeleton.names;
   outcome.add_row("joint positions", Unit::length, found->reference_positions);
@@ -280,6 +296,41 @@ Result<Outcome> compare_cameras(const InputFile& first, const InputFile& second,
   outcome.add_row("fields of view", Unit::angle, found->fields_of_view);
   outcome.same = found->same();
   return outcome;
+}
+
+std::string description(InputKind kind) {
+  return std::ranges::find(kKindRows, kind, &KindRow::kind)->description;
+}
+
+const char* word_of(InputKind kind) {
+  return std::ranges::find(kKindRows, kind, &KindRow::kind)->word;
+}
+
+Result<InputKind> kind_of(const InputFile& file) {
+  if (file.text().starts_with("\x76\x2F\x31\x01")) return InputKind::morphs;
+  if (file.text().starts_with("POINTCACHE2")) return InputKind::points;
+  if (extension(file.path()) == ".obj") return InputKind::mesh;
+  const auto bytes = file.bytes();
+  if (io::is_motion(file)) return InputKind::motion;
+  const Kind kind = registry::identify(file.path(), bytes);
+  switch (kind) {
+    case Kind::model:
+      return InputKind::model;
+    case Kind::cam:
+      return InputKind::camera;
+    case Kind::glb:
+    case Kind::gltf:
+      return InputKind::gltf;
+    default:
+      break;
+  }
+  return Error("diff-kind",
+               fmt::format(
+                   "this is {}; expected a motion (.anim, .bvh, .amc), .model, .cam, .glb, .gltf, "
+                   ".obj, .pc2 or .exr file",
+                   registry::describe_content(bytes)),
+               registry::advice(kind, Kind::anim))
+      .in_file(file.path());
 }
 
 }  // namespace krok::cli::diff

@@ -17,7 +17,7 @@
 #include "nodes/scene_of.h"
 #include "scene/scene.h"
 #include "skin/scene_of.h"
-#include "tools/krok-diff/compare_two.h"
+#include "tools/krok-diff/compare_files.h"
 #include "tools/krok-diff/difference_plot.h"
 #include "tools/krok-diff/difference_sheet.h"
 
@@ -211,12 +211,11 @@ std::string summary_of(const Scene& scene) {
     vertices += mesh.vertex_count;
     triangles += mesh.triangles.size();
   }
-  const auto number = [](std::size_t count) { return static_cast<std::int64_t>(count); };
-  return fmt::format("{}, {}, {}; {}; {}", counted(number(scene.meshes.size()), "mesh", "meshes"),
-                     counted(number(vertices), "vertex", "vertices"),
-                     counted(number(triangles), "triangle", "triangles"),
-                     counted(number(scene.joint_names.size()), "joint", "joints"),
-                     counted(number(scene.animations.size()), "animation", "animations"));
+  return fmt::format("{}, {}, {}; {}; {}", counted(scene.meshes.size(), "mesh", "meshes"),
+                     counted(vertices, "vertex", "vertices"),
+                     counted(triangles, "triangle", "triangles"),
+                     counted(scene.joint_names.size(), "joint", "joints"),
+                     counted(scene.animations.size(), "animation", "animations"));
 }
 
 PlaceNames names_of(const Scene& first, const Scene& second) {

@@ -10,7 +10,6 @@
 #include "render/actor.h"
 #include "render/sheet.h"
 #include "scene/clip.h"
-#include "scene/model.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/image.h"
 

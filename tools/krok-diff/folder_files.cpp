@@ -1,4 +1,4 @@
-#include "tools/krok-diff/folder_files.h"
+#include "tools/krok-diff/folders.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,8 @@
 
 #include "core/glob.h"
 #include "tools/cli/paths.h"
+
+// Selects the files of a folder to compare.
 
 namespace krok::cli::diff {
 
@@ -92,8 +94,7 @@ class Walk {
   FolderFiles found_;
 };
 
-}  // namespace
-
+// Whether a path matches a pattern; ** as a path component matches any number of folders.
 bool path_fits(std::string_view pattern, std::string_view path) {
   const auto wanted = parts_of(pattern), parts = parts_of(path);
   // After each pattern component: the possible numbers of path components consumed.
@@ -112,6 +113,8 @@ bool path_fits(std::string_view pattern, std::string_view path) {
   }
   return used.back();
 }
+
+}  // namespace
 
 bool PathFilter::takes(const std::string& path) const {
   const auto fits = [&](const std::string& pattern) {

@@ -17,23 +17,12 @@ namespace {
 constexpr std::array kStatuses = {FileStatus::same,          FileStatus::differs,
                                   FileStatus::only_in_first, FileStatus::only_in_second,
                                   FileStatus::unreadable,    FileStatus::not_compared};
+// [FileStatus]
+constexpr std::array kKeys = {"same",           "differs",    "only_in_first",
+                              "only_in_second", "unreadable", "not_compared"};
 
 const char* status_key(FileStatus status) {
-  switch (status) {
-    case FileStatus::same:
-      return "same";
-    case FileStatus::differs:
-      return "differs";
-    case FileStatus::only_in_first:
-      return "only_in_first";
-    case FileStatus::only_in_second:
-      return "only_in_second";
-    case FileStatus::unreadable:
-      return "unreadable";
-    case FileStatus::not_compared:
-      break;
-  }
-  return "not_compared";
+  return kKeys[static_cast<std::size_t>(status)];
 }
 
 std::string safe(const std::string& text) {
@@ -59,21 +48,10 @@ std::vector<std::pair<std::string, std::size_t>> counts_of(const FolderOutcome& 
 }
 
 std::string status_words(FileStatus status, const Options& options) {
-  switch (status) {
-    case FileStatus::same:
-      return "the same";
-    case FileStatus::differs:
-      return "differs";
-    case FileStatus::only_in_first:
-      return "only in " + safe(options.first);
-    case FileStatus::only_in_second:
-      return "only in " + safe(options.second);
-    case FileStatus::unreadable:
-      return "cannot be read";
-    case FileStatus::not_compared:
-      break;
-  }
-  return "not compared";
+  if (status == FileStatus::only_in_first) return "only in " + safe(options.first);
+  if (status == FileStatus::only_in_second) return "only in " + safe(options.second);
+  constexpr std::array kWords = {"the same", "differs", "", "", "cannot be read", "not compared"};
+  return kWords[static_cast<std::size_t>(status)];
 }
 
 std::string to_text(const FolderOutcome& outcome, const Options& options, bool all) {
@@ -88,8 +66,7 @@ std::string to_text(const FolderOutcome& outcome, const Options& options, bool a
   const auto counts = counts_of(outcome, options);
   std::size_t width = 0;
   for (const auto& [words, count] : counts) width = std::max(width, words.size());
-  text += fmt::format("{}: {}\n", title_of(options),
-                      counted(static_cast<long long>(outcome.files.size()), "file"));
+  text += fmt::format("{}: {}\n", title_of(options), counted(outcome.files.size(), "file"));
   for (const auto& [words, count] : counts) {
     text += fmt::format("  {:<{}}  {:>5}\n", words, width, count);
   }

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "tools/cli/new_folders.h"
+#include "tools/cli/output_set.h"
 #include "tools/cli/paths.h"
 #include "tools/krok-diff/compare_files.h"
 #include "tools/krok-diff/folders.h"

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <filesystem>
 #include <iterator>
-#include <optional>
 #include <set>
 
 #include "core/hash.h"
@@ -16,7 +15,6 @@
 #include "formats/registry/registry.h"
 #include "tools/cli/paths.h"
 #include "tools/krok-diff/compare_files.h"
-#include "tools/krok-diff/summary_page.h"
 
 namespace krok::cli::diff {
 
@@ -48,9 +46,8 @@ Outcome byte_outcome(const InputFile& first, const InputFile& second) {
   outcome.summary = {"compared byte by byte"};
   std::string sentence = fmt::format("first difference at byte {}", grouped(apart));
   if (a.size() != b.size()) {
-    sentence = fmt::format("{} in the first, {} in the second; {}",
-                           counted(static_cast<long long>(a.size()), "byte"),
-                           counted(static_cast<long long>(b.size()), "byte"), sentence);
+    sentence = fmt::format("{} in the first, {} in the second; {}", counted(a.size(), "byte"),
+                           counted(b.size(), "byte"), sentence);
   }
   outcome.structure = {sentence};
   return outcome;
@@ -287,8 +284,7 @@ Error unreadable_error(const FolderOutcome& outcome, const FolderOptions& option
                  "use --keep-going to compare the others");
   }
   return Error("batch-failed",
-               fmt::format("{} cannot be read: {}{}", counted(static_cast<long long>(all), "file"),
-                           names, end));
+               fmt::format("{} cannot be read: {}{}", counted(all, "file"), names, end));
 }
 
 // Runs the update and prints its results.
@@ -368,17 +364,13 @@ Result<bool> are_folders(const Options& options) {
                "give two folders or two files");
 }
 
-Result<FolderOutcome> compare_folders(const Options& options, ToolContext& context) {
-  return Comparison(options, context).run();
-}
-
 Result<int> run_folders(const Options& options, ToolContext& context) {
   if (!options.sheet.path.empty() || !options.plot.empty() || !options.heatmap.empty()) {
     return Error("usage", "--sheet, --plot and --heatmap are for two files, not folders",
                  "use --summary for folders");
   }
   const FolderOptions& folders = options.folders;
-  const auto outcome = compare_folders(options, context);
+  const auto outcome = Comparison(options, context).run();
   if (!outcome) return outcome.error();
   const auto some = [&](FileStatus status) { return outcome->count(status) > 0; };
   const bool failed = some(FileStatus::unreadable);

@@ -3,13 +3,13 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "core/result.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
-#include "tools/krok-diff/folder_files.h"
 #include "tools/krok-diff/outcome.h"
 
 // Compares two folders: files are paired by their relative paths.
@@ -17,6 +17,14 @@
 namespace krok::cli::diff {
 
 struct Options;
+
+// Shell patterns. Without a slash they match file names, "*.glb"; with a slash, paths relative to
+// the folder, "walks/**/*.glb". An empty `include` matches all files.
+struct PathFilter {
+  std::vector<std::string> include, exclude;
+
+  bool takes(const std::string& path) const;
+};
 
 struct FolderOptions {
   PathFilter filter;
@@ -81,9 +89,6 @@ Result<bool> are_folders(const Options& options);
 // compare.
 Result<int> run_folders(const Options& options, ToolContext& context);
 
-// Compares all files, or those up to the first that cannot be read.
-Result<FolderOutcome> compare_folders(const Options& options, ToolContext& context);
-
 // Copies changed and new files to the first folder: all of them or, on failure, none. Call only if
 // all files could be read.
 Result<FolderUpdate> update_first(const Options& options, const FolderOutcome& outcome,
@@ -101,5 +106,24 @@ std::vector<std::pair<std::string, std::size_t>> counts_of(const FolderOutcome& 
 
 // "the same", "differs", "only in golden".
 std::string status_words(FileStatus status, const Options& options);
+
+struct FolderFiles {
+  std::vector<std::string> paths;  // relative to the folder, sorted bytewise
+  std::vector<std::string> notes;  // messages about skipped files
+};
+
+// The files in a folder and its sub-folders. Skipped silently: names that begin with a dot, batch
+// journals (krok-import.journal.jsonl), files that the filter excludes, and the folder `other` and
+// the files `written` if they are inside. Skipped with a note: links to folders (which could form
+// loops), devices and pipes (which could block). Error (code file-unreadable) for a folder that
+// cannot be read.
+Result<FolderFiles> files_in(const std::string& folder, const PathFilter& filter,
+                             const std::string& other, const std::vector<std::string>& written);
+
+// Writes a page of the files that are not the same, the worst first: HTML with pictures and charts
+// inside, which needs no other file, or, by extension, Markdown, or a test case for each file
+// (JUnit) for CI servers. Links to the files compared are relative to the page.
+Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
+                     const Options& options, ToolContext& context);
 
 }  // namespace krok::cli::diff

@@ -31,29 +31,13 @@ ValueKind<double> tolerance(ValueKind<double> kind) {
   return kind;
 }
 
-// The value of --match.
-const char* word_of(Matching matching) {
-  switch (matching) {
-    case Matching::order:
-      return "order";
-    case Matching::name:
-      return "name";
-    case Matching::nearest:
-      return "nearest";
-    case Matching::automatic:
-      break;
-  }
-  return "auto";
-}
-
 // Codes of the values: usage, those of quantities, quantity-range.
 void declare_tolerances(CommandOptions& command, Options& o) {
-  std::vector<std::pair<std::string, Matching>> words;
-  for (const Matching matching :
-       {Matching::automatic, Matching::order, Matching::name, Matching::nearest}) {
-    words.emplace_back(word_of(matching), matching);
-  }
-  command.add("--match HOW", o.matching, choice<Matching>(std::move(words)),
+  command.add("--match HOW", o.matching,
+              choice<Matching>({{"auto", Matching::automatic},
+                                {"order", Matching::order},
+                                {"name", Matching::name},
+                                {"nearest", Matching::nearest}}),
               "How to match meshes and joints: order, by their index in the file, and a renamed "
               "animation or material is then no difference; name, by name, reporting those that "
               "only one has; auto, by name if all names are unique and the same, else by index; "

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -35,18 +36,8 @@ std::string in_unit(double value, Unit unit) {
 }
 
 const char* unit_name(Unit unit) {
-  switch (unit) {
-    case Unit::length:
-      return "m";
-    case Unit::angle:
-      return "deg";
-    case Unit::time:
-      return "s";
-    case Unit::side:
-    case Unit::ratio:
-      break;
-  }
-  return "1";
+  constexpr std::array kNames = {"m", "deg", "1", "s", "1"};  // [Unit]
+  return kNames[static_cast<std::size_t>(unit)];
 }
 
 // The name at an index; empty if there is none.

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "tools/krok-diff/compare_files.h"
-#include "tools/krok-diff/summary_page.h"
+#include "tools/krok-diff/folders.h"
 
 namespace krok::cli::diff {
 

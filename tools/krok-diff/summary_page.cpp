@@ -1,9 +1,8 @@
-#include "tools/krok-diff/summary_page.h"
+#include "tools/krok-diff/folders.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <span>
 #include <sstream>
@@ -13,8 +12,12 @@
 #include "core/markup.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/paths.h"
+#include "tools/krok-diff/options.h"
+
+// A page about a comparison.
 
 namespace krok::cli::diff {
 
@@ -149,13 +152,7 @@ std::string link_to(const std::string& path, const std::string& page) {
   const fs::path folder =
       fs::absolute(page == "-" ? "page" : page).lexically_normal().parent_path();
   const fs::path relative = fs::absolute(path).lexically_normal().lexically_relative(folder);
-  std::string link;
-  for (const char c : relative.generic_string()) {
-    const bool plain = (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                       std::string_view("-._~/").find(c) != std::string_view::npos;
-    link += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return link;
+  return uri_of(relative.generic_string());
 }
 
 std::string html_of_key(const render::ColourKey& key) {
@@ -321,8 +318,7 @@ Status write_summary(const FolderOutcome& outcome, const FolderUpdate& update,
     const std::string text = extension(path) == ".xml" ? junit(outcome, options)
                              : is_page(path)           ? html(outcome, rows, options, path)
                                                        : markdown(outcome, rows, options);
-    const Status status =
-        write_output(context, path, [&](OutputFile& file) { return file.write(text); });
+    const Status status = write_output(context, path, text);
     if (!status) return status;
   }
   return {};

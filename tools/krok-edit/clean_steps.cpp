@@ -6,12 +6,17 @@
 #include <tuple>
 #include <utility>
 
+#include "contacts/contacts.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "filter/noise_filter.h"
+#include "motion/cut.h"
 #include "motion/displacement.h"
 #include "motion/ground_frame.h"
+#include "motion/place.h"
+#include "motion/travel.h"
 #include "tools/krok-edit/steps.h"
+#include "tools/shared/planting.h"
 
 namespace krok::cli::edit {
 
@@ -74,8 +79,7 @@ std::string report_spikes(const std::vector<filter::Spike>& spikes, const Option
   }
   metrics["spikes"] = std::move(list);
   if (spikes.empty()) return "no spikes found";
-  return fmt::format("{} removed, {} replaced",
-                     counted(static_cast<long long>(spikes.size()), "spike"),
+  return fmt::format("{} removed, {} replaced", counted(spikes.size(), "spike"),
                      counted(frames, "joint's frame", "joints' frames"));
 }
 
@@ -269,6 +273,44 @@ Status clean(const Options& options, ToolContext& context, Edit& edit) {
   if (Status status = filter_jitter(options, context, *joints, edit); !status) return status;
   if (Status status = filter_noise(options, context, *joints, edit); !status) return status;
   return plant(options, context, edit);
+}
+
+Status plant(const Options& options, ToolContext& context, Edit& edit) {
+  if (!options.plant) return {};
+  auto planted = cli::plant(edit.clip, edit.roles, edit.contacts);
+  if (!planted) return planted.error();
+  context.diagnose(planted->warnings);
+  Json metrics = planting_json(*planted, edit.contacts.has_value());
+  std::string line = planting_line(*planted);
+  edit.clip = std::move(planted->clip);
+  edit.note("plant", std::move(metrics), std::move(line));
+  return {};
+}
+
+Status plant_loop(const Options& options, const Edit& edit, Looped& looped) {
+  if (!options.plant) return {};
+  constexpr int kCycles = 3;
+  const auto cycles = repeated(looped.clip, looped.displacement, kCycles);
+  if (!cycles) return cycles.error();
+  const auto moving = travelling(*cycles, edit.carrier);
+  auto contacts = find_contacts(moving ? *moving : *cycles, edit.roles);
+  if (!contacts) return contacts.error();
+  // A loop in which no foot is in contact has nothing to hold.
+  const auto planted = cli::plant(*cycles, edit.roles, std::move(contacts->contacts));
+  if (!planted) return {};
+  const int period = looped.clip.frame_count() - 1;
+  Clip middle = cut(planted->clip, period, 2 * period);
+  move_clip(looped.displacement.inverse(), middle);
+  // Closes what is left at the seam.
+  const LoopOptions closing{
+      options.loop_blend.seconds(edit.clip.rate), LoopEnd::closed,
+      looped.turn == 0 ? LoopTurn::straighten : LoopTurn::keep,
+      looped.displacement.position.y() == 0 ? LoopClimb::level : LoopClimb::keep};
+  auto closed = loop(middle, edit.carrier, closing);
+  if (!closed) return closed.error();
+  looped.clip = std::move(closed->clip);
+  looped.displacement = closed->displacement;
+  return {};
 }
 
 }  // namespace krok::cli::edit

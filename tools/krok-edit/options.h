@@ -11,10 +11,8 @@
 #include "motion/joint_selection.h"
 #include "motion/loop.h"
 #include "motion/travel.h"
-#include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/ground_choice.h"
-#include "tools/shared/interpolation_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::edit {
 

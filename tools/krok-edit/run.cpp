@@ -19,7 +19,7 @@
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/steps.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
 #include "tools/shared/planting.h"
 
 namespace krok::cli::edit {

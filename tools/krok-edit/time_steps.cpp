@@ -229,16 +229,13 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
         "list joint roles with krok-info");
   }
   for (const int j : pairs.unpaired()) {
-    unpaired.push_back(joint_name(edit, j));
+    const std::string name = joint_name(edit, j);
+    unpaired.push_back(name);
     if (edit.clip.skeleton.end_sites[static_cast<std::size_t>(j)] != 0) continue;
-    Diagnostic warning;
-    warning.severity = Severity::warning;
-    warning.code = "edit-unpaired";
-    warning.where.file = options.input;
-    warning.joint = joint_name(edit, j);
-    warning.message = fmt::format("{} has no counterpart on the other side; it follows its parent",
-                                  warning.joint);
-    context.diagnose(std::move(warning));
+    Diagnostic warning = make_warning(
+        "edit-unpaired", name + " has no counterpart on the other side; it follows its parent");
+    warning.joint = name;
+    context.diagnose_in(options.input, {warning});
   }
   if (edit.frames) {
     Status status = edit.take(mirror(*edit.frames, pairs, thread_count(context.jobs)));
@@ -250,9 +247,9 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
     removed->velocity.x() *= -1;
     removed->turn_rate *= -1;
   }
-  std::string line = fmt::format("mirrored: {}, {} in the middle",
-                                 counted(static_cast<long long>(pair_list.size()), "pair"),
-                                 counted(static_cast<long long>(middle.size()), "joint"));
+  std::string line =
+      fmt::format("mirrored: {}, {} in the middle", counted(pair_list.size(), "pair"),
+                  counted(middle.size(), "joint"));
   Json metrics;
   metrics["pairs"] = std::move(pair_list);
   metrics["middle"] = std::move(middle);

@@ -1,5 +1,7 @@
 #include "tools/krok-export/options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -11,24 +13,14 @@ namespace krok::cli::exporting {
 
 namespace {
 
+const std::vector<std::pair<std::string, ExportFormat>> kFormats = {
+    {"bvh", ExportFormat::bvh}, {"glb", ExportFormat::glb}, {"gltf", ExportFormat::gltf},
+    {"csv", ExportFormat::csv}, {"npz", ExportFormat::npz}, {"mot", ExportFormat::mot},
+    {"sto", ExportFormat::sto}};
+
 Result<std::string> extension_of(ExportFormat format) {
-  switch (format) {
-    case ExportFormat::bvh:
-      return std::string(".bvh");
-    case ExportFormat::glb:
-      return std::string(".glb");
-    case ExportFormat::gltf:
-      return std::string(".gltf");
-    case ExportFormat::csv:
-      return std::string(".csv");
-    case ExportFormat::mot:
-      return std::string(".mot");
-    case ExportFormat::sto:
-      return std::string(".sto");
-    case ExportFormat::npz:
-      return std::string(".npz");
-    case ExportFormat::from_extension:
-      break;
+  for (const auto& [word, value] : kFormats) {
+    if (value == format) return "." + word;
   }
   return Error("usage", "no output format given",
                "use --format bvh, glb, gltf, csv, npz, mot or sto");
@@ -61,6 +53,20 @@ Status check(const Options& options) {
 }
 
 }  // namespace
+
+Result<ExportFormat> format_of(const Options& options, const std::string& output) {
+  if (options.format != ExportFormat::from_extension) return options.format;
+  const std::string end = extension(output);
+  for (const auto& [word, format] : kFormats) {
+    if (end == "." + word) return format;
+  }
+  return Error("export-format",
+               end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
+                           : fmt::format("unknown extension {}", end),
+               end == ".obj" ? "krok-skin writes meshes as .obj"
+                             : "use .bvh, .glb, .gltf, .csv, .npz, .mot or .sto; or --format")
+      .in_file(output);
+}
 
 Status check_for(ExportFormat format, const Options& options) {
   using enum ExportFormat;
@@ -102,14 +108,7 @@ void declare(CommandOptions& command, Options& options) {
                   "by krok-import without options")
       .required();
   command.add(
-      "--format FORMAT", options.format,
-      choice<ExportFormat>({{"bvh", ExportFormat::bvh},
-                            {"glb", ExportFormat::glb},
-                            {"gltf", ExportFormat::gltf},
-                            {"csv", ExportFormat::csv},
-                            {"npz", ExportFormat::npz},
-                            {"mot", ExportFormat::mot},
-                            {"sto", ExportFormat::sto}}),
+      "--format FORMAT", options.format, choice<ExportFormat>(kFormats),
       "bvh, glb, gltf (text, embedded data), csv, npz (arrays of numpy), or OpenSim's mot or "
       "sto; default: the "
       "output's extension");

@@ -40,6 +40,9 @@ struct Options {
   std::function<bool(const char* option)> given;
 };
 
+// What is written: by --format, else by the output's extension. Code export-format.
+Result<ExportFormat> format_of(const Options& options, const std::string& output);
+
 // Checks the options for a format. Codes usage, export-unit.
 Status check_for(ExportFormat format, const Options& options);
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <set>
 
@@ -31,7 +30,7 @@
 #include "skin/bone_mesh.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::exporting {
 
@@ -194,24 +193,6 @@ csv::SeriesTable contact_series(const Clip& clip, std::span<const Contact> conta
   return table;
 }
 
-Result<ExportFormat> format_of(const Options& options, const std::string& output) {
-  if (options.format != ExportFormat::from_extension) return options.format;
-  const std::string end = extension(output);
-  if (end == ".bvh") return ExportFormat::bvh;
-  if (end == ".glb") return ExportFormat::glb;
-  if (end == ".gltf") return ExportFormat::gltf;
-  if (end == ".csv") return ExportFormat::csv;
-  if (end == ".npz") return ExportFormat::npz;
-  if (end == ".mot") return ExportFormat::mot;
-  if (end == ".sto") return ExportFormat::sto;
-  return Error("export-format",
-               end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
-                           : fmt::format("unknown extension {}", end),
-               end == ".obj" ? "krok-skin writes meshes as .obj"
-                             : "use .bvh, .glb, .gltf, .csv, .npz, .mot or .sto; or --format")
-      .in_file(output);
-}
-
 // "ZXY", in any case; validated by the option's check.
 EulerOrder order_of(const std::string& letters) {
   EulerOrder order{};
@@ -351,8 +332,7 @@ Status write_arrays(const Clip& clip, const Options& options, ToolContext& conte
   if (!contacts && contacts.error().code != "contacts-feet") return contacts.error();
   const auto bytes = npy::write_motion(clip, contacts ? *contacts : std::vector<Contact>());
   if (!bytes) return bytes.error();
-  return write_output(context, context.output,
-                      [&](OutputFile& file) { return file.write(*bytes); });
+  return write_output(context, context.output, *bytes);
 }
 
 // The place of the root at rest moves nothing, so it is left out, but another reference pose comes
@@ -415,9 +395,8 @@ Json result_of(const io::MotionSummary& motion, const std::optional<Reduction>& 
 }
 
 std::string words_for(const Reduction& reduction) {
-  return fmt::format(", {} of {}, max error {} mm",
-                     grouped(static_cast<long long>(reduction.keys_after)),
-                     counted(static_cast<long long>(reduction.keys_before), "key"),
+  return fmt::format(", {} of {}, max error {} mm", grouped(reduction.keys_after),
+                     counted(reduction.keys_before, "key"),
                      readable(1e3 * reduction.largest_error, 3));
 }
 

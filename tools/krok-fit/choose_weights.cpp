@@ -1,4 +1,4 @@
-#include "tools/krok-fit/choose_weights.h"
+#include "tools/krok-fit/fit_library.h"
 
 #include <algorithm>
 #include <vector>
@@ -12,6 +12,11 @@ using rbf::Kernel;
 
 // From almost none to affine.
 constexpr double kSeries[] = {1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 100};
+// Min examples left out that the others can predict, and min captures they are from, for a choice.
+constexpr int kMinInside = 5;
+constexpr int kMinCaptures = 3;
+// The cubic kernel without smoothing is used unless the best is better by this factor.
+constexpr double kGain = 1.03;
 constexpr double kOfSeveralStyles = 1;  // smoothing, where captures are too few to choose one
 constexpr Kernel kKernels[] = {Kernel::cubic, Kernel::linear, Kernel::gaussian, Kernel::bspline,
                                Kernel::wendland};

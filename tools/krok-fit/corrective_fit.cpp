@@ -236,8 +236,7 @@ void log_joint(const JointCorrective& joint, const std::vector<PoseError>& error
   const auto mm = [](double metres) { return readable(metres * 1e3, 3); };
   std::string text = fmt::format("{}: {}", joint.joint, counted(joint.target_count(), "target"));
   if (refined > 0) text += fmt::format(" ({} of them by refinement)", refined);
-  text += fmt::format(" of {}",
-                      counted(static_cast<long long>(joint.vertices.size()), "vertex", "vertices"));
+  text += fmt::format(" of {}", counted(joint.vertices.size(), "vertex", "vertices"));
   const Group held_out(errors, true);
   const Group group = held_out.count > 0 ? held_out : Group(errors, false);
   text += fmt::format(
@@ -286,8 +285,7 @@ Result<int> run_correctives(const Options& options, ToolContext& context) {
   if (!fit) return fit.error();
   const auto text = correctives_file::write(fit->correctives);
   if (!text) return text.error();
-  Status status =
-      write_output(context, context.output, [&](OutputFile& file) { return file.write(*text); });
+  Status status = write_output(context, context.output, *text);
   if (!status) return status.error();
   Json joints = Json::array();
   for (std::size_t j = 0; j < fit->errors.size(); ++j) {

@@ -1,4 +1,4 @@
-#include "tools/krok-fit/example_motions.h"
+#include "tools/krok-fit/library_input.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +16,8 @@
 #include "parametric/library.h"
 #include "tools/cli/paths.h"
 #include "tools/shared/keys_sidecar.h"
+
+// Loads the motions named in a library description, with their keys; all share one skeleton.
 
 namespace krok::cli::fit {
 
@@ -191,10 +193,7 @@ class MotionReader {
       return {};
     }
     Gait gait = find_gait(motion.clip, made_.roles, *motion.found);
-    for (Diagnostic& warning : gait.warnings) {
-      if (warning.where.file.empty()) warning.where.file = motion.path;
-    }
-    context_.diagnose(gait.warnings);
+    context_.diagnose_in(motion.path, gait.warnings);
     motion.keys = {motion.found->contacts, std::move(gait.keytimes)};
     return {};
   }

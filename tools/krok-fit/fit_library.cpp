@@ -100,8 +100,7 @@ std::vector<double> tolerances_of(const Library& library, const Options& options
   return tolerances;
 }
 
-}  // namespace
-
+// Measures blends of the library; thread-safe. `measure` must outlive it.
 rbf::Measure measure_of(const parametric::Measure& measure) {
   return [&measure](std::span<const double> weights, std::span<double> parameters,
                     std::span<double> jacobian) {
@@ -115,6 +114,8 @@ rbf::Measure measure_of(const parametric::Measure& measure) {
     return measure(weights, parameters, jacobian, scratch);
   };
 }
+
+}  // namespace
 
 Result<FittedLibrary> fit_library(const LibraryInput& input, const Options& options,
                                   WeightsChoice choice, const krok::fit::Refined* start,

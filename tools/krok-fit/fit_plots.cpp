@@ -1,4 +1,4 @@
-#include "tools/krok-fit/fit_plots.h"
+#include "tools/krok-fit/fit_report.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "parametric/bounds.h"
 #include "rbf/sobol.h"
 #include "rbf/weight_evaluator.h"
-#include "tools/krok-fit/parameter_text.h"
 
 namespace krok::cli::fit {
 

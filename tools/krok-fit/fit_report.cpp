@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string_view>
 
 #include "core/numbers.h"
-#include "tools/krok-fit/choose_weights.h"
-#include "tools/krok-fit/parameter_text.h"
+#include "tools/krok-fit/fit_library.h"
 
 namespace krok::cli::fit {
 
@@ -172,19 +172,11 @@ void say_polish(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
 }
 
 std::string_view reason_of(krok::fit::Refusal refusal) {
-  switch (refusal) {
-    case krok::fit::Refusal::weights:
-      return "needs too large or too low weights";
-    case krok::fit::Refusal::residual:
-      return "cannot be reached by any blend";
-    case krok::fit::Refusal::near:
-      return "too close to other points";
-    case krok::fit::Refusal::system:
-      return "makes the weights ill-conditioned";
-    case krok::fit::Refusal::growth:
-      break;
-  }
-  return "raises the error elsewhere";
+  constexpr std::array kReasons = {"needs too large or too low weights",
+                                   "cannot be reached by any blend", "too close to other points",
+                                   "makes the weights ill-conditioned",
+                                   "raises the error elsewhere"};  // [Refusal]
+  return kReasons[static_cast<std::size_t>(refusal)];
 }
 
 // Refinement that ends with errors beyond the tolerances and no way to reduce them.
@@ -393,9 +385,28 @@ void say_report(const LibraryInput& input, const FittedLibrary& fitted, ToolCont
   say_polish(input, fitted, context);
   context.log(fmt::format("  {} inserted in {} ({} s): {}; weights {} to {}",
                           counted(fitted.refined.function.inserted(), "point"),
-                          counted(static_cast<long long>(fitted.refined.rounds.size()), "round"),
+                          counted(fitted.refined.rounds.size(), "round"),
                           readable(fitted.seconds, 3), what_stopped(fitted.refined),
                           readable(after.least_weight, 3), readable(after.largest_weight, 3)));
+}
+
+ShownUnit unit_for_values(const parametric::Parameter& parameter) {
+  if (is_turn(parameter.quantity)) {
+    return {"\u00B0", 1 / kRadiansPerDegree};
+  }
+  return {std::string(unit_of(parameter)), 1};
+}
+
+ShownUnit unit_for_errors(const parametric::Parameter& parameter) {
+  switch (parameter.quantity) {
+    case parametric::Quantity::step_turn:
+    case parametric::Quantity::path_turn:
+      return {"\u00B0", 1 / kRadiansPerDegree};
+    case parametric::Quantity::duration:
+      return {"ms", 1000};
+    default:
+      return {"mm", 1000};
+  }
 }
 
 }  // namespace krok::cli::fit

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <utility>
 
 #include "formats/io/formats.h"
@@ -11,7 +11,6 @@
 #include "parametric/thin_out.h"
 #include "rbf/weight_function.h"
 #include "tools/cli/usage.h"
-#include "tools/krok-fit/name_styles.h"
 
 namespace krok::cli::fit {
 
@@ -64,29 +63,10 @@ std::string name_in_walk(const std::string& keytime, FootSide swing) {
 }
 
 parametric::StepGait gait_of(library::StepKind kind) {
-  switch (kind) {
-    case library::StepKind::runs:
-      return parametric::StepGait::run;
-    case library::StepKind::starts:
-      return parametric::StepGait::start;
-    case library::StepKind::stops:
-      return parametric::StepGait::stop;
-    case library::StepKind::stands:
-      return parametric::StepGait::stand;
-    case library::StepKind::backward:
-      return parametric::StepGait::backward;
-    case library::StepKind::side:
-      return parametric::StepGait::side;
-    case library::StepKind::side_closing:
-      return parametric::StepGait::side_closing;
-    case library::StepKind::turns:
-      return parametric::StepGait::turn;
-    case library::StepKind::turns_closing:
-      return parametric::StepGait::turn_closing;
-    case library::StepKind::walks:
-      break;
-  }
-  return parametric::StepGait::walk;
+  using enum parametric::StepGait;
+  constexpr std::array kGaits = {walk,     run,  start,        stop, stand,
+                                 backward, side, side_closing, turn, turn_closing};  // [StepKind]
+  return kGaits[static_cast<std::size_t>(kind)];
 }
 
 class Reader {

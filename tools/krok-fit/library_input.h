@@ -1,18 +1,56 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "contacts/contacts.h"
 #include "core/result.h"
 #include "formats/library/library_description.h"
 #include "parametric/cut_steps.h"
 #include "parametric/library.h"
+#include "roles/roles.h"
+#include "scene/clip.h"
+#include "scene/motion_keys.h"
 #include "tools/cli/tool.h"
-#include "tools/krok-fit/example_motions.h"
 
 // Builds a library from its description and motions.
 
 namespace krok::cli::fit {
+
+// A motion and its entry in the description.
+struct ExampleMotion {
+  const library::ExampleEntry* entry = nullptr;
+  std::string path;
+  std::string name;  // for messages
+  Clip clip;
+  bool has_keys = false;  // a keytime file exists beside the motion or is named
+  MotionKeys keys;
+  std::optional<FoundContacts> found;
+};
+
+// A motion that was left out, and the reason.
+struct RefusedClip {
+  std::string path;
+  Error error;
+};
+
+struct ExampleMotions {
+  std::vector<ExampleMotion> motions;  // at least one; the description must outlive them
+  Skeleton skeleton;                   // shared by all
+  RoleMap roles;
+  std::vector<RefusedClip> refused;
+};
+
+// Reads the motions of the description at `path`. Motions for step detection get contacts; those
+// without keytimes of their own get the keys beside them or detected ones. An unsuitable motion is
+// an Error, or with `keep_going` a warning, and left out. Codes: see read_library().
+Result<ExampleMotions> read_example_motions(const library::LibraryDescription& description,
+                                            const std::string& path, bool keep_going,
+                                            ToolContext& context);
+
+// Sets the error's location in the description, unless it has one.
+Error at_entry(Error error, const Location& place);
 
 struct LibraryInput {
   library::LibraryDescription description;
@@ -49,5 +87,11 @@ inline constexpr double kFormerSmoothedSpacing = 0.01;
 // gives a spacing.
 void take_examples(LibraryInput& input, double spacing);
 void take_smoothed_examples(LibraryInput& input);
+
+// Gives examples without a style that of their group of captures, if the spread of their steps is
+// that of several people or moods; a warning names the groups. A group is named after a word that
+// its captures' names have and others lack, if there is one. Sets `input.styles`, for the report.
+// Codes: those of parametric::group_styles().
+Status name_styles(LibraryInput& input, ToolContext& context);
 
 }  // namespace krok::cli::fit

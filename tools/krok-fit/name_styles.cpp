@@ -1,4 +1,4 @@
-#include "tools/krok-fit/name_styles.h"
+#include "tools/krok-fit/library_input.h"
 
 #include <fmt/format.h>
 
@@ -13,6 +13,8 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "parametric/style_groups.h"
+
+// Finds out whether examples are of several people or moods.
 
 namespace krok::cli::fit {
 
@@ -76,7 +78,7 @@ std::string shown_groups(const Groups& groups, const std::vector<std::string>& n
   std::string text;
   for (std::size_t g = 0; g < std::min(groups.size(), kShownGroups); ++g) {
     text += fmt::format("{}'{}' ({}: ", g == 0 ? "" : ", ", shown(names[g]),
-                        counted(static_cast<long long>(groups[g].size()), "capture"));
+                        counted(groups[g].size(), "capture"));
     std::size_t listed = 0;
     for (const std::string& capture : groups[g]) {
       if (listed == kShownOfGroup) break;

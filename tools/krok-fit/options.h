@@ -7,7 +7,6 @@
 
 #include "core/result.h"
 #include "rbf/weight_function.h"
-#include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli::fit {

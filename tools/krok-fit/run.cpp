@@ -10,12 +10,11 @@
 #include "core/result.h"
 #include "fit/refine.h"
 #include "formats/steps/steps.h"
-#include "tools/cli/output_kind.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/report.h"
 #include "tools/krok-fit/corrective_fit.h"
 #include "tools/krok-fit/fit_library.h"
-#include "tools/krok-fit/fit_plots.h"
 #include "tools/krok-fit/fit_report.h"
 #include "tools/krok-fit/library_input.h"
 
@@ -184,8 +183,7 @@ Status write_results(const Options& options, const LibraryInput& input, const Fi
         .in_file(options.plots);
   }
   for (const auto& [name, svg] : *charts) {
-    status = outputs.add((std::filesystem::path(options.plots) / name).string(),
-                         [&text = svg](OutputFile& output) { return output.write(text); });
+    status = outputs.add((std::filesystem::path(options.plots) / name).string(), svg);
     if (!status) return status;
   }
   return outputs.finish();

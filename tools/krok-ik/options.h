@@ -8,7 +8,7 @@
 #include "formats/container/packed_orientation.h"
 #include "ik/goal_motion.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/ground_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::ik {
 

@@ -112,9 +112,8 @@ std::string summary(const Outcome& outcome) {
     reached += goal.reached;
   }
   return fmt::format("{} in {} of {}, reached in {} of {} at full strength",
-                     counted(static_cast<long long>(outcome.goals.size()), "goal"),
-                     outcome.motion.changed_frames, counted(outcome.input.frame_count, "frame"),
-                     reached, total);
+                     counted(outcome.goals.size(), "goal"), outcome.motion.changed_frames,
+                     counted(outcome.input.frame_count, "frame"), reached, total);
 }
 
 std::string table(const Outcome& outcome) {
@@ -209,7 +208,7 @@ Json to_json(const Outcome& outcome, bool with_frames) {
 
 std::string limits_summary(const krok::ik::Limits& limits) {
   return fmt::format("limits of {}: {} with a cone, {} with a hinge, {} locked",
-                     counted(static_cast<long long>(limits.size()), "joint"),
+                     counted(limits.size(), "joint"),
                      count_of(limits, krok::ik::JointLimit::Kind::cone),
                      count_of(limits, krok::ik::JointLimit::Kind::hinge),
                      count_of(limits, krok::ik::JointLimit::Kind::locked));

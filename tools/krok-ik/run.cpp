@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -498,9 +497,7 @@ Status Run::write(const FrameSource* made, const std::function<Provenance()>& pr
   OutputSet outputs(context_);
   if (!options_.write_limits.empty()) {
     const std::string text = limits::write(limits_, clip_.skeleton);
-    if (Status status = outputs.add(
-            options_.write_limits,
-            [&](OutputFile& file) { return file.write(std::as_bytes(std::span(text))); });
+    if (Status status = outputs.add(options_.write_limits, std::as_bytes(std::span(text)));
         !status) {
       return status;
     }

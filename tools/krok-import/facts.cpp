@@ -9,7 +9,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/json_object.h"
+#include "tools/cli/json.h"
 #include "tools/shared/role_report.h"
 
 namespace krok::cli::import {

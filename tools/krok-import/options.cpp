@@ -6,7 +6,7 @@
 
 #include "formats/io/formats.h"
 #include "positions/position_skeleton.h"
-#include "tools/cli/output_kind.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::import {

@@ -7,7 +7,6 @@
 #include "formats/container/packed_orientation.h"
 #include "formats/io/open_capture.h"
 #include "formats/io/open_role_map.h"
-#include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli::import {

@@ -14,19 +14,18 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
-#include "formats/keys/keys.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
 #include "motion/sample.h"
 #include "nodes/evaluate.h"
 #include "scene/model.h"
-#include "tools/cli/output_kind.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::import {
 
@@ -163,12 +162,8 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
     model.provenance = provenance;
     return model::write(model, {.orientation = options.orientation}, file);
   });
-  if (status && !output.empty()) {
-    const auto sidecar = place_for_keys(capture.keys, output);
-    if (!sidecar) return sidecar.error();
-    status = outputs.add(*sidecar, [&](OutputFile& file) {
-      return file.write(keys::write(capture.keys, frames.skeleton, frames.duration()));
-    });
+  if (status) {
+    status = add_keys(capture.keys, frames.skeleton, frames.duration(), output, outputs);
   }
   if (status) status = outputs.finish();
   if (!status) return status;

@@ -31,13 +31,9 @@ Result<int> SceneImporter::run() {
 
 void SceneImporter::warn(const char* code, std::string message, std::string hint,
                          Severity severity) {
-  Diagnostic diagnostic;
+  Diagnostic diagnostic = make_warning(code, std::move(message), std::move(hint));
   diagnostic.severity = severity;
-  diagnostic.code = code;
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
-  diagnostic.where.file = path_;
-  context_.diagnose(std::move(diagnostic));
+  context_.diagnose_in(path_, {diagnostic});
 }
 
 Error SceneImporter::missing(const std::string& what, const std::string& option, std::string hint) {
@@ -140,7 +136,7 @@ void SceneImporter::report_what_else_is_there() {
   std::vector<std::string> more;
   const auto has = [&](std::size_t count, const char* one, const char* option) {
     if (count > 0) {
-      more.push_back(fmt::format("{} ({})", counted(static_cast<long long>(count), one), option));
+      more.push_back(fmt::format("{} ({})", counted(count, one), option));
     }
   };
   std::size_t targets = 0, meshes = 0;

@@ -10,7 +10,6 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "nodes/evaluate.h"
-#include "tools/cli/new_folders.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-import/facts.h"

@@ -30,8 +30,7 @@
 #include "scene/character.h"
 #include "scene/encoded_image.h"
 #include "tools/cli/file_name.h"
-#include "tools/cli/new_folders.h"
-#include "tools/cli/output_kind.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-import/facts.h"
 #include "tools/krok-import/scene_importer.h"
@@ -142,7 +141,7 @@ class Adder {
 
   Status add_text(const std::string& path, const Result<std::string>& text) {
     if (!text) return Error(text.error()).in_file(path);
-    return outputs_.add(path, [&](OutputFile& file) { return file.write(*text); });
+    return outputs_.add(path, *text);
   }
 
   Status add_materials() {
@@ -176,9 +175,7 @@ class Adder {
       if (!facts) return facts.error();
       const std::string file = image_names_.make(image, facts->kind, fallback);
       if (Status status = new_folders_.make(stem_ + "_textures"); !status) return status;
-      const Status status = outputs_.add(stem_ + "_textures/" + file, [&](OutputFile& output) {
-        return output.write(image.bytes);
-      });
+      const Status status = outputs_.add(stem_ + "_textures/" + file, image.bytes);
       if (!status) return status;
       place->second =
           std::make_shared<const EncodedImage>(EncodedImage{{}, name_ + "_textures/" + file, {}});
@@ -309,7 +306,7 @@ void SceneImporter::report_model() {
   line_ = fmt::format("{}: {}, {}, {}", base_name(path_),
                       counted(model.skeleton.joint_count(), "joint"),
                       counted(model.vertex_count(), "vertex", "vertices"),
-                      counted(static_cast<long long>(model.triangles.size()), "triangle"));
+                      counted(model.triangles.size(), "triangle"));
 }
 
 Status SceneImporter::add_whole_character() {
@@ -327,8 +324,8 @@ Status SceneImporter::add_whole_character() {
                           {"textures", added->images},
                           {"expressions", added->character.expressions.size()},
                           {"eyes", added->character.eyes.size()}};
-  line_ += fmt::format(", {}, {}", counted(static_cast<long long>(added->materials), "material"),
-                       counted(static_cast<long long>(added->images), "texture"));
+  line_ += fmt::format(", {}, {}", counted(added->materials, "material"),
+                       counted(added->images, "texture"));
   return {};
 }
 

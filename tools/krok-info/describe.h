@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "core/file.h"
 #include "core/result.h"
 #include "formats/io/open_role_map.h"
@@ -30,31 +28,15 @@ Status add_skeleton(const Skeleton& skeleton, const SkeletonOptions& options, De
 void add_skeleton(const Skeleton& skeleton, const RoleMap& map, bool verbose, double metres,
                   Description& out);
 
-Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& how,
-                                  ToolContext& context);
-Result<Description> describe_model(const InputFile& file, const SkeletonOptions& how,
-                                   ToolContext& context);
-Result<Description> describe_cam(const InputFile& file, ToolContext& context);
-Result<Description> describe_steps(const InputFile& file, ToolContext& context);
-// Bodies and joints; without their skeleton.
-Result<Description> describe_ragdoll(const InputFile& file, ToolContext& context);
-Result<Description> describe_correctives(const InputFile& file, ToolContext& context);
-// Morph targets (OpenEXR).
-Result<Description> describe_morphs(const InputFile& file, ToolContext& context);
-Result<Description> describe_textgrid(const InputFile& file, ToolContext& context);
-Result<Description> describe_material(const InputFile& file, ToolContext& context);
-// A character with the files that it refers to; joint roles are its own unless `how` has a role
-// map.
-Result<Description> describe_character(const InputFile& file, const SkeletonOptions& how,
-                                       ToolContext& context);
-Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& how,
-                                 ToolContext& context);
-// A skeleton, or a motion with the skeleton beside it.
-Result<Description> describe_acclaim(const InputFile& file, const SkeletonOptions& how,
+using Describe = Result<Description>(const InputFile& file, const SkeletonOptions& how,
                                      ToolContext& context);
-// Any other motion of the table of formats (formats/io/formats.h).
-Result<Description> describe_motion(const InputFile& file, const SkeletonOptions& how,
-                                    ToolContext& context);
+Describe describe_anim, describe_bvh, describe_cam, describe_correctives, describe_material,
+    describe_model, describe_steps, describe_textgrid;
+Describe describe_acclaim;    // a skeleton, or a motion with the skeleton beside it
+Describe describe_character;  // with its files; joint roles are its own unless `how` has a role map
+Describe describe_morphs;     // morph targets (OpenEXR)
+Describe describe_motion;     // any other motion of the table of formats (formats/io/formats.h)
+Describe describe_ragdoll;    // bodies and joints, without their skeleton
 // glTF, and formats read through Assimp.
 Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
                                    const SkeletonOptions& how, ToolContext& context);

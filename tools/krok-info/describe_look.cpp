@@ -172,7 +172,8 @@ void add_expressions(const io::LoadedCharacter& loaded, Description& out) {
 
 }  // namespace
 
-Result<Description> describe_material(const InputFile& file, ToolContext& context) {
+Result<Description> describe_material(const InputFile& file, const SkeletonOptions&,
+                                      ToolContext& context) {
   const auto materials = material::read(file.text());
   if (!materials) return materials.error();
   Description out;
@@ -200,8 +201,8 @@ Result<Description> describe_character(const InputFile& file, const SkeletonOpti
   out.json["name"] = character.name;
   if (!character.name.empty()) out.add("name", shown(character.name));
   out.add("model", fmt::format("{}: {}, {}", shown(character.model),
-                               count_of(model.positions.size(), "vertex", "vertices"),
-                               count_of(model.triangles.size(), "triangle")));
+                               counted(model.positions.size(), "vertex", "vertices"),
+                               counted(model.triangles.size(), "triangle")));
   out.json["model"] = character.model;
   out.json["vertices"] = model.positions.size();
   out.json["triangles"] = model.triangles.size();

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "core/index.h"
@@ -40,15 +41,8 @@ std::string or_none(const std::string& name) {
 }
 
 std::string_view shape_name(ragdoll::Shape::Kind kind) {
-  switch (kind) {
-    case ragdoll::Shape::Kind::box:
-      return "box";
-    case ragdoll::Shape::Kind::capsule:
-      return "capsule";
-    case ragdoll::Shape::Kind::sphere:
-      break;
-  }
-  return "sphere";
+  constexpr std::array kNames = {"box", "capsule", "sphere"};  // [Kind]
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 // "8 spherical, 4 revolute".
@@ -67,7 +61,7 @@ void add_parts(const Model& model, Description& out) {
     out.json["parts"].push_back(
         {{"name", part.name}, {"material", part.material}, {"triangles", part.triangle_count}});
     lines.push_back(
-        fmt::format("{}, {}, {}", or_none(part.name), count_of(part.triangle_count, "triangle"),
+        fmt::format("{}, {}, {}", or_none(part.name), counted(part.triangle_count, "triangle"),
                     part.material.empty() ? "no material" : "material " + part.material));
   }
   out.add("parts", std::move(lines));
@@ -134,8 +128,8 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
   if (!model->colours.empty()) with.emplace_back("vertex colours");
   if (!model->tangents.empty()) with.emplace_back("tangents");
   out.add("mesh", vertices == 0 ? std::string("none, skeleton only")
-                                : fmt::format("{}, {}", count_of(vertices, "vertex", "vertices"),
-                                              count_of(triangles, "triangle")));
+                                : fmt::format("{}, {}", counted(vertices, "vertex", "vertices"),
+                                              counted(triangles, "triangle")));
   out.add("with", with.empty() ? std::vector<std::string>()
                                : std::vector{fmt::format("{}", fmt::join(with, ", "))});
   if (vertices > 0) {
@@ -153,7 +147,7 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
   return out;
 }
 
-Result<Description> describe_cam(const InputFile& file, ToolContext&) {
+Result<Description> describe_cam(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto camera = cam::read(file.bytes());
   if (!camera) return camera.error();
   Description out;
@@ -181,7 +175,8 @@ Result<Description> describe_cam(const InputFile& file, ToolContext&) {
   return out;
 }
 
-Result<Description> describe_correctives(const InputFile& file, ToolContext&) {
+Result<Description> describe_correctives(const InputFile& file, const SkeletonOptions&,
+                                         ToolContext&) {
   const auto read = correctives_file::read(file.text());
   if (!read) return read.error();
   Description out;
@@ -204,7 +199,7 @@ Result<Description> describe_correctives(const InputFile& file, ToolContext&) {
   return out;
 }
 
-Result<Description> describe_morphs(const InputFile& file, ToolContext&) {
+Result<Description> describe_morphs(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto morphs = morph_exr::read(file.bytes());
   if (!morphs) return morphs.error();
   Description out;
@@ -222,7 +217,7 @@ Result<Description> describe_morphs(const InputFile& file, ToolContext&) {
   return out;
 }
 
-Result<Description> describe_textgrid(const InputFile& file, ToolContext&) {
+Result<Description> describe_textgrid(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto grid = textgrid::read(file.text(), file.path());
   if (!grid) return grid.error();
   Description out;
@@ -246,7 +241,7 @@ Result<Description> describe_textgrid(const InputFile& file, ToolContext&) {
   return out;
 }
 
-Result<Description> describe_ragdoll(const InputFile& file, ToolContext&) {
+Result<Description> describe_ragdoll(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto read = ragdoll_file::read(file.text(), nullptr);
   if (!read) return read.error();
   Description out;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 
 #include "character/scene_motion.h"
 #include "character/space.h"
@@ -34,12 +33,12 @@ void add_meshes(const nodes::Scene& scene, Description& out) {
       triangles += primitive.triangles.size();
     }
     std::string line =
-        fmt::format("{}: {}, {}", named(mesh.name, i), count_of(vertices, "vertex", "vertices"),
-                    count_of(triangles, "triangle"));
+        fmt::format("{}: {}, {}", named(mesh.name, i), counted(vertices, "vertex", "vertices"),
+                    counted(triangles, "triangle"));
     Json targets = Json::array();
     std::string names;
     if (mesh.target_count() > 0) {
-      line += ", " + count_of(mesh.target_count(), "morph target");
+      line += ", " + counted(mesh.target_count(), "morph target");
       for (const nodes::MorphTarget& target : mesh.primitives[0].targets) {
         targets.push_back(target.name);
         if (targets.size() <= kMaxNames) names += (names.empty() ? "" : ", ") + target.name;
@@ -64,7 +63,7 @@ void add_skins(const nodes::Scene& scene, Description& out) {
   for (std::size_t i = 0; i < scene.skins.size(); ++i) {
     const nodes::Skin& skin = scene.skins[i];
     lines.push_back(
-        fmt::format("{}: {}", named(skin.name, i), count_of(skin.joints.size(), "joint")));
+        fmt::format("{}: {}", named(skin.name, i), counted(skin.joints.size(), "joint")));
     out.json["skins"].push_back({{"name", skin.name}, {"joints", skin.joints.size()}});
   }
   out.add("skins", std::move(lines));
@@ -83,8 +82,8 @@ void add_animations(const nodes::Scene& scene, Description& out) {
       keys = std::max(keys, channel.times->size());
     }
     lines.push_back(fmt::format("{}: {} s, {}, up to {} each", named(animation.name, i),
-                                readable(end, 5), count_of(animation.channels.size(), "channel"),
-                                count_of(keys, "key")));
+                                readable(end, 5), counted(animation.channels.size(), "channel"),
+                                counted(keys, "key")));
     out.json["animations"].push_back({{"name", animation.name},
                                       {"duration", end},
                                       {"channels", animation.channels.size()},

@@ -48,7 +48,7 @@ void add_weights(const steps::StepsFile& steps, Description& out) {
   const rbf::WeightFunction& weights = *steps.weights;
   out.add("weights",
           fmt::format("{} kernel, {}", rbf::kernel_name(weights.kernel),
-                      count_of(static_cast<std::size_t>(weights.inserted()), "inserted point")));
+                      counted(static_cast<std::size_t>(weights.inserted()), "inserted point")));
   out.json["weights"] = {{"kernel", std::string(rbf::kernel_name(weights.kernel))},
                          {"centres", weights.centre_count()},
                          {"inserted", weights.inserted()}};
@@ -133,7 +133,7 @@ void add_fit(const steps::StepsFile& steps, Description& out) {
 
 }  // namespace
 
-Result<Description> describe_steps(const InputFile& file, ToolContext&) {
+Result<Description> describe_steps(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto steps = steps::read(file.bytes());
   if (!steps) return steps.error();
   const parametric::Library& library = steps->library;
@@ -148,7 +148,7 @@ Result<Description> describe_steps(const InputFile& file, ToolContext&) {
   out.add("keytimes", fmt::format("{}", fmt::join(library.keytimes, ", ")));
   out.json["keytimes"] = library.keytimes;
   add_parameters(*steps, out);
-  out.add("examples", count_of(library.examples.size(), "motion"));
+  out.add("examples", counted(library.examples.size(), "motion"));
   Json examples = Json::array();
   for (const parametric::Example& example : library.examples) {
     std::vector<double> parameters = example.parameters;

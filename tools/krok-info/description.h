@@ -33,12 +33,6 @@ struct Description {
 // Labels in one column, values in the next; control characters are replaced.
 std::string to_text(const std::string& path, const Description& description);
 
-// "52 joints", "1 joint", "12,345 vertices"; `plural` for irregular plurals.
-inline std::string count_of(std::size_t count, std::string_view noun,
-                            std::string_view plural = {}) {
-  return counted(static_cast<long long>(count), noun, plural);
-}
-
 // A detected convention that the file does not state, with confidence and reason.
 void add_choice(const std::string& key, const Choice& choice, Description& out);
 
@@ -71,5 +65,10 @@ struct NamedVolume {
 // Text: volumes of the closed meshes in litres. JSON: volume (cubic metres; null for open meshes)
 // and area (square metres) of all meshes.
 void add_volumes(const std::vector<NamedVolume>& volumes, Description& out);
+
+// Many files at a glance: a row for each (kind, frames, rate, duration, joints, body), then how
+// many of what kind, how long they are together, at which rates and of how many skeletons. `files`
+// as in the report; those that could not be read have no kind.
+std::string folder_summary(const Json& files);
 
 }  // namespace krok::cli::info

@@ -1,4 +1,4 @@
-#include "tools/krok-info/folder_summary.h"
+#include "tools/krok-info/description.h"
 
 #include <fmt/format.h>
 
@@ -98,14 +98,13 @@ std::string folder_summary(const Json& files) {
     }
     text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
   }
-  text += fmt::format("\n{}: {}\n", counted(static_cast<long long>(files.size()), "file"),
-                      counts(kinds));
+  text += fmt::format("\n{}: {}\n", counted(files.size(), "file"), counts(kinds));
   if (!rates.empty()) {
     text += fmt::format("{} in {:.1f} s ({:.1f} min): {}\n", counted(frames, "frame"), seconds,
                         seconds / 60, counts(rates));
   }
   if (!skeletons.empty()) {
-    text += counted(static_cast<long long>(skeletons.size()), "skeleton") + " by joint names\n";
+    text += counted(skeletons.size(), "skeleton") + " by joint names\n";
   }
   return text;
 }

@@ -19,7 +19,7 @@
 #include "math/quaternion.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-info/describe.h"
-#include "tools/krok-info/folder_summary.h"
+#include "tools/krok-info/description.h"
 #include "tools/krok-info/options.h"
 
 namespace krok::cli::info {
@@ -197,35 +197,20 @@ Result<Description> describe(const InputFile& file, const SkeletonOptions& how,
   using registry::Kind;
   const Kind kind = registry::identify(file.path(), file.bytes());
   if (io::is_scene(kind)) return describe_scene(file, kind, how, context);
-  switch (kind) {
-    case Kind::anim:
-      return describe_anim(file, how, context);
-    case Kind::model:
-      return describe_model(file, how, context);
-    case Kind::cam:
-      return describe_cam(file, context);
-    case Kind::steps:
-      return describe_steps(file, context);
-    case Kind::material:
-      return describe_material(file, context);
-    case Kind::character:
-      return describe_character(file, how, context);
-    case Kind::ragdoll:
-      return describe_ragdoll(file, context);
-    case Kind::correctives:
-      return describe_correctives(file, context);
-    case Kind::bvh:
-      return describe_bvh(file, how, context);
-    case Kind::asf:
-    case Kind::amc:
-      return describe_acclaim(file, how, context);
-    default:
-      break;
+  constexpr std::pair<Kind, Describe*> kDescribers[] = {
+      {Kind::anim, describe_anim},         {Kind::model, describe_model},
+      {Kind::cam, describe_cam},           {Kind::steps, describe_steps},
+      {Kind::material, describe_material}, {Kind::character, describe_character},
+      {Kind::ragdoll, describe_ragdoll},   {Kind::correctives, describe_correctives},
+      {Kind::bvh, describe_bvh},           {Kind::asf, describe_acclaim},
+      {Kind::amc, describe_acclaim}};
+  for (const auto& [described, describe_it] : kDescribers) {
+    if (kind == described) return describe_it(file, how, context);
   }
   if (io::is_motion(file)) return describe_motion(file, how, context);
   const std::string ending = extension(file.path());
-  if (ending == ".exr") return describe_morphs(file, context);
-  if (ending == ".textgrid") return describe_textgrid(file, context);
+  if (ending == ".exr") return describe_morphs(file, how, context);
+  if (ending == ".textgrid") return describe_textgrid(file, how, context);
   return Error(
       "info-kind",
       "is " + std::string(registry::describe_content(file.bytes())) +

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "contacts/slide_speed.h"
 #include "core/numbers.h"
@@ -18,7 +17,7 @@
 #include "motion/travel.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::keys {
 
@@ -107,8 +106,7 @@ Result<int> write_rows(const Options& options, const char* header, Rows* rows_of
   }
   context.progress->end();
   if (motions == 0) return Error("keys-table", "none of the motions can be read");
-  const Status status =
-      write_output(context, output, [&](OutputFile& file) { return file.write(text); });
+  const Status status = write_output(context, output, text);
   if (!status) return status.error();
   context.report.result["rows"] = std::ranges::count(text, '\n') - 1;
   context.log(fmt::format("{}: {} of {} motions", output, motions, options.inputs.size()));

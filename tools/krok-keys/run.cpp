@@ -247,9 +247,8 @@ void report(const Options& options, const krok::keys::Sidecar& sidecar, const Sk
   context.report.result["edited"] = sidecar.has_edits();
   if (context.output.empty() && options.plot.empty()) context.print(as_table(sidecar, skeleton));
   context.log(fmt::format("{}: {}, {}{}", name_of_input(options.input()),
-                          counted(static_cast<long long>(sidecar.keys.keytimes.size()), "keytime"),
-                          counted(static_cast<long long>(sidecar.keys.contacts.size()), "contact"),
-                          gait_text(gait)));
+                          counted(sidecar.keys.keytimes.size(), "keytime"),
+                          counted(sidecar.keys.contacts.size(), "contact"), gait_text(gait)));
 }
 
 Status write_results(const Options& options, const Clip& clip, const RoleMap& roles,
@@ -258,8 +257,7 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
   OutputSet outputs(context);
   if (!context.output.empty()) {
     const std::string text = krok::keys::write_sidecar(sidecar, clip.skeleton);
-    const Status status =
-        outputs.add(context.output, [&](OutputFile& file) { return file.write(text); });
+    const Status status = outputs.add(context.output, text);
     if (!status) return status;
   }
   if (!options.plot.empty()) {
@@ -310,8 +308,7 @@ Result<int> run_long(const Options& options, const InputFile& file, ToolContext&
   }
   if (!context.output.empty()) {
     const std::string text = krok::keys::write_sidecar(sidecar, motion->skeleton);
-    const Status status = write_output(context, context.output,
-                                       [&](OutputFile& output) { return output.write(text); });
+    const Status status = write_output(context, context.output, text);
     if (!status) return status.error();
   }
   report(options, sidecar, motion->skeleton,

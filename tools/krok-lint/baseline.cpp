@@ -1,10 +1,9 @@
-#include "tools/krok-lint/baseline.h"
+#include "tools/krok-lint/linted_file.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
 #include <span>
 
 #include "core/file.h"

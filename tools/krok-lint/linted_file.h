@@ -1,14 +1,18 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
 #include "formats/io/open_role_map.h"
+#include "formats/lint/lint.h"
 #include "lint/duplicates.h"
 #include "lint/lint.h"
 #include "terrain/terrain.h"
+#include "tools/cli/json.h"
 #include "tools/krok-lint/options.h"
 
 namespace krok::cli::lint {
@@ -43,5 +47,51 @@ krok::lint::MotionOptions judging(const Options& options, const krok::lint::Sett
 // Reads and judges all inputs, on the context's threads, in order.
 std::vector<LintedFile> lint_all(const Options& options, const krok::lint::MotionOptions& how,
                                  const io::FindRoles& find_roles, ToolContext& context);
+
+// Which faults do not count: those of a baseline and suppressed ones.
+
+// A fault's identity: the file's name without folder and ending, the rule, and the fault's number
+// among those of the rule in order of time. Sixteen hexadecimal digits.
+std::string fingerprint_of(const std::string& path, std::string_view rule, int number);
+// Those of a file's findings, in their order.
+std::vector<std::string> fingerprints_of(const LintedFile& file);
+
+// What --save-baseline writes.
+std::vector<lint_files::KnownFault> known_faults(const std::vector<LintedFile>& files);
+
+// Takes out findings of the same file name and rule that overlap one of the baseline's in time,
+// within a quarter of a second: the worst joint of a fault and its ends may change when a motion is
+// resampled.
+void leave_out_known(const std::vector<lint_files::KnownFault>& known, LintedFile& file);
+
+// Takes out what the sidecar beside each motion, NAME.lint.json, suppresses. A sidecar that cannot
+// be read is the error of its motion.
+void leave_out_suppressed(LintedFile& file, ToolContext& context);
+
+// Rules and limits of a profile on top of `settings`. Codes: those of reading it, and lint-rule.
+Status apply_profile(const std::string& path, krok::lint::Settings& settings, ToolContext& context);
+
+// What was found as text for people, tables and other programs. Files in the order given.
+
+using LintedFiles = std::span<const LintedFile* const>;
+
+// A line for each fault: "walk.bvh: 1.20 s: warning: LeftFoot: 63 mm, limit 40 mm [foot-slide]".
+std::string console_text(const LintedFile& file, bool errors_only = false);
+std::string rules_text();
+
+std::string table_of(LintedFiles files);  // CSV
+Json json_of(const LintedFile& file);     // for the tool's report
+
+// SARIF 2.1.0 (OASIS): a result for each fault, with a fingerprint (krokLint/v1) that is the same
+// under another name of its folder, export, rate or unit. GitHub shows at most 25,000 results a
+// run, 5,000 of them: the worst are kept, and what is left out is counted.
+std::string sarif_of(LintedFiles files, const std::string& version);
+
+// JUnit XML: a test suite for each file, a failed test case for each rule with faults.
+std::string junit_of(LintedFiles files);
+
+// An HTML page, without other files: a table of all faults, the worst file first, and for the worst
+// fault of each file five images of the body around its worst moment, for the first 100 files.
+Result<std::string> page_of(LintedFiles files, ToolContext& context);
 
 }  // namespace krok::cli::lint

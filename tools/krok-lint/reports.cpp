@@ -1,11 +1,9 @@
-#include "tools/krok-lint/reports.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <map>
 
 #include "core/base64.h"
 #include "core/markup.h"
@@ -15,7 +13,8 @@
 #include "formats/csv/field.h"
 #include "render/png.h"
 #include "render/sheet.h"
-#include "tools/krok-lint/baseline.h"
+#include "tools/cli/file_name.h"
+#include "tools/krok-lint/linted_file.h"
 #include "tools/shared/moving_actor.h"
 
 namespace krok::cli::lint {
@@ -24,6 +23,7 @@ namespace {
 
 using krok::lint::facts_of;
 using krok::lint::Finding;
+using krok::lint::Rule;
 
 constexpr std::size_t kMaxSarifResults = 25'000;  // GitHub's limit for a run
 
@@ -31,44 +31,28 @@ std::string shown_path(const LintedFile& file) {
   return printable(to_utf8(file.path));
 }
 
-// A path as a URI reference (RFC 3986).
-std::string uri_of(const std::string& path) {
-  std::string uri;
-  for (const char c : to_utf8(std::filesystem::path(path).generic_string())) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool plain = (byte >= 'a' && byte <= 'z') || (byte >= 'A' && byte <= 'Z') ||
-                       (byte >= '0' && byte <= '9') ||
-                       std::string_view("-._~/").find(c) != std::string_view::npos;
-    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
-  }
-  return uri;
-}
-
 Json sarif_rules() {
   Json list = Json::array();
   for (const auto& facts : krok::lint::rules()) {
     list.push_back({{"id", facts.id},
                     {"shortDescription", {{"text", facts.meaning}}},
-                    {"defaultConfiguration", {{"level", name_of(facts.severity)}}}});
+                    {"defaultConfiguration", {{"level", severity_name(facts.severity)}}}});
   }
   return list;
 }
 
 Json sarif_result(const LintedFile& file, std::string_view rule, Severity severity,
                   const std::string& text, const std::string& fingerprint) {
-  Json location = {{"artifactLocation", {{"uri", uri_of(file.path)}}},
+  Json location = {{"artifactLocation",
+                    {{"uri", uri_of(to_utf8(std::filesystem::path(file.path).generic_string()))}}},
                    {"region", {{"startLine", 1}}}};
   Json physical = {{"physicalLocation", std::move(location)}};
   return {{"ruleId", rule},
-          {"level", name_of(severity)},
+          {"level", severity_name(severity)},
           {"message", {{"text", text}}},
           {"locations", Json::array({std::move(physical)})},
           {"partialFingerprints", {{"krokLint/v1", fingerprint}}}};
 }
-
-using krok::lint::facts_of;
-using krok::lint::Finding;
-using krok::lint::Rule;
 
 constexpr std::size_t kMaxStrips = 100;
 constexpr int kRowHeight = 170;  // pixels
@@ -130,15 +114,11 @@ Result<std::string> strip_of(const LintedFile& file, const Finding& finding, Too
 
 }  // namespace
 
-const char* name_of(Severity severity) {
-  return severity == Severity::error ? "error" : "warning";
-}
-
 std::string rules_text() {
   std::string text;
   for (const auto& facts : krok::lint::rules()) {
     text += fmt::format(
-        "{:<22}{:<9}{:>9}  {}\n", facts.id, name_of(facts.severity),
+        "{:<22}{:<9}{:>9}  {}\n", facts.id, severity_name(facts.severity),
         facts.threshold > 0 ? quantity_text(facts.threshold, std::string(facts.unit)) : "",
         facts.meaning);
   }
@@ -156,7 +136,7 @@ std::string console_text(const LintedFile& file, bool errors_only) {
     if (errors_only && facts.severity != Severity::error) continue;
     text +=
         fmt::format("{}: {:.2f} s: {}: {} [{}]\n", shown_path(file), file.seconds(finding.worst),
-                    name_of(facts.severity), text_of(finding, file), facts.id);
+                    severity_name(facts.severity), text_of(finding, file), facts.id);
   }
   return text;
 }
@@ -174,8 +154,8 @@ std::string table_of(LintedFiles files) {
     for (const Finding& f : file->findings) {
       const auto& facts = facts_of(f.rule);
       text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", path, facts.id, f.kind,
-                          name_of(facts.severity), readable(file->seconds(f.worst), 6), f.worst,
-                          csv::field(file->joint_of(f)), f.joints, readable(f.value, 4),
+                          severity_name(facts.severity), readable(file->seconds(f.worst), 6),
+                          f.worst, csv::field(file->joint_of(f)), f.joints, readable(f.value, 4),
                           readable(f.threshold, 4), f.unit, readable(file->seconds(f.first), 6),
                           readable(file->seconds(f.last), 6), csv::field(f.detail));
     }
@@ -194,7 +174,7 @@ Json json_of(const LintedFile& file) {
   for (std::size_t i = 0; i < file.findings.size(); ++i) {
     const Finding& f = file.findings[i];
     const auto& facts = facts_of(f.rule);
-    Json fault = {{"rule", facts.id}, {"severity", name_of(facts.severity)}};
+    Json fault = {{"rule", facts.id}, {"severity", severity_name(facts.severity)}};
     if (!f.kind.empty()) fault["kind"] = f.kind;
     if (f.joint >= 0) fault["joint"] = file.joint_of(f);
     fault["joints"] = f.joints;
@@ -285,8 +265,9 @@ std::string junit_of(LintedFiles files) {
         continue;
       }
       ++failed;
-      cases += fmt::format("><failure type=\"{}\" message=\"{}\">{}</failure></testcase>\n",
-                           name_of(facts.severity), to_markup(facts.meaning), to_markup(text));
+      cases +=
+          fmt::format("><failure type=\"{}\" message=\"{}\">{}</failure></testcase>\n",
+                      severity_name(facts.severity), to_markup(facts.meaning), to_markup(text));
     }
     suites += fmt::format(
         "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\">\n{}  </testsuite>\n",
@@ -325,8 +306,8 @@ Result<std::string> page_of(LintedFiles files, ToolContext& context) {
       const auto& facts = facts_of(finding.rule);
       body += fmt::format(
           "<tr><td>{:.2f} s</td><td class=\"{}\" title=\"{}\">{}</td><td>{}</td></tr>\n",
-          file->seconds(finding.worst), name_of(facts.severity), to_markup(facts.meaning), facts.id,
-          to_markup(text_of(finding, *file)));
+          file->seconds(finding.worst), severity_name(facts.severity), to_markup(facts.meaning),
+          facts.id, to_markup(text_of(finding, *file)));
     }
     body +=
         fmt::format("</table><p><code>krok view {}</code></p>\n", to_markup(to_utf8(file->path)));

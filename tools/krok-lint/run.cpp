@@ -13,17 +13,14 @@
 #include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
 #include "plant/plant_feet.h"
-#include "tools/cli/file_name.h"
-#include "tools/cli/new_folders.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-lint/baseline.h"
 #include "tools/krok-lint/linted_file.h"
-#include "tools/krok-lint/reports.h"
 
 namespace krok::cli::lint {
 
 namespace {
 
+using krok::lint::facts_of;
 using krok::lint::Finding;
 using krok::lint::Rule;
 
@@ -43,7 +40,7 @@ std::string mend(const LintedFile& file, const RoleMap& roles, int jobs, Clip& c
     auto removed = filter::remove_spikes(clip, {}, {}, jobs);
     if (removed && !removed->spikes.empty()) {
       clip = std::move(removed->clip);
-      add(counted(static_cast<long long>(removed->spikes.size()), "spike") + " removed");
+      add(counted(removed->spikes.size(), "spike") + " removed");
     }
   }
   if (has(file, Rule::foot_slide)) {
@@ -89,8 +86,8 @@ Status fix_all(const Options& options, const krok::lint::MotionOptions& how,
         outputs.add(path, [&](OutputFile& out) { return anim::write(*clip, {}, out); });
     if (!status) return status;
     const auto left = krok::lint::lint_motion(*clip, *roles, how).findings.size();
-    context.log(fmt::format("{}: {}; {} left of {}", path, done,
-                            counted(static_cast<long long>(left), "fault"), file.findings.size()));
+    context.log(fmt::format("{}: {}; {} left of {}", path, done, counted(left, "fault"),
+                            file.findings.size()));
     list.push_back({{"path", path}, {"done", done}, {"faults_left", left}});
   }
   context.report.result["fixed"] = std::move(list);
@@ -98,9 +95,6 @@ Status fix_all(const Options& options, const krok::lint::MotionOptions& how,
   folders.keep();
   return {};
 }
-
-using krok::lint::facts_of;
-using krok::lint::Finding;
 
 // Files that cannot be read first, then by their worst fault.
 std::vector<const LintedFile*> worst_first(const std::vector<LintedFile>& files) {
@@ -172,7 +166,7 @@ Status write_reports(const Options& options, const std::vector<LintedFile>& file
   const auto add = [&](const std::string& path, const auto& make) -> Status {
     if (path.empty()) return {};
     const std::string text = make();
-    return outputs.add(path, [&](OutputFile& file) { return file.write(text); });
+    return outputs.add(path, text);
   };
   for (const Status& status :
        {add(options.table, [&] { return table_of(order); }),
@@ -185,9 +179,7 @@ Status write_reports(const Options& options, const std::vector<LintedFile>& file
   if (!options.html.empty()) {
     const auto page = page_of(order, context);
     if (!page) return page.error();
-    if (Status status =
-            outputs.add(options.html, [&](OutputFile& file) { return file.write(*page); });
-        !status) {
+    if (Status status = outputs.add(options.html, *page); !status) {
       return status;
     }
   }
@@ -195,10 +187,9 @@ Status write_reports(const Options& options, const std::vector<LintedFile>& file
 }
 
 std::string summary_of(const std::vector<LintedFile>& files, const Counts& counts) {
-  const auto number = [](std::size_t count) { return static_cast<long long>(count); };
-  std::string line = fmt::format(
-      "{}, {} with faults: {}, {}", counted(number(files.size()), "file"), counts.faulty,
-      counted(number(counts.errors), "error"), counted(number(counts.warnings), "warning"));
+  std::string line =
+      fmt::format("{}, {} with faults: {}, {}", counted(files.size(), "file"), counts.faulty,
+                  counted(counts.errors, "error"), counted(counts.warnings, "warning"));
   if (counts.unreadable > 0) line += fmt::format("; {} unreadable", counts.unreadable);
   if (counts.known > 0) line += fmt::format("; {} known", counts.known);
   if (counts.suppressed > 0) line += fmt::format("; {} suppressed", counts.suppressed);

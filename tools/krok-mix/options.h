@@ -5,7 +5,7 @@
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::mix {
 

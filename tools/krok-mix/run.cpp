@@ -26,7 +26,7 @@
 #include "tools/cli/renamed_options.h"
 #include "tools/krok-mix/face.h"
 #include "tools/shared/keys_sidecar.h"
-#include "tools/shared/plant_result.h"
+#include "tools/shared/planting.h"
 
 namespace krok::cli::mix {
 
@@ -163,8 +163,6 @@ std::string weights_path(const std::string& output) {
 
 Status write_results(const Options& options, const TimelineSources& motions, Mixed& mixed,
                      const MorphWeights& face, ToolContext& context) {
-  const auto keys_path = place_for_keys(mixed.keys, context.output);
-  if (!keys_path) return keys_path.error();
   mixed.clip.provenance = context.provenance();
   for (const timeline::Source& source : motions.sources) {
     for (const std::string& conversion : source.clip->provenance.conversions) {
@@ -176,10 +174,9 @@ Status write_results(const Options& options, const TimelineSources& motions, Mix
     return anim::write(
         mixed.clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
   });
-  if (status && !keys_path->empty()) {
-    status = outputs.add(*keys_path, [&](OutputFile& file) {
-      return file.write(keys::write(mixed.keys, mixed.clip.skeleton, mixed.clip.duration()));
-    });
+  if (status) {
+    status =
+        add_keys(mixed.keys, mixed.clip.skeleton, mixed.clip.duration(), context.output, outputs);
   }
   if (status && !face.values.empty()) {
     status = outputs.add(weights_path(context.output),
@@ -338,13 +335,11 @@ Result<int> run(const Options& options, ToolContext& context) {
     context.report.result["planted"] = to_json(*drift);
     context.log(text_of(*drift));
   }
-  context.log(fmt::format("{} -> {}: {} and {} on {}, {} at {} fps ({} s)", options.input,
-                          context.output,
-                          counted(static_cast<long long>(timeline.base.size()), "item"),
-                          counted(static_cast<long long>(timeline.layers.size()), "layer"),
-                          counted(static_cast<long long>(motions->sources.size()), "motion"),
-                          counted(mixed->clip.frame_count(), "frame"), readable(mixed->clip.rate),
-                          readable(mixed->clip.duration(), 4)));
+  context.log(fmt::format(
+      "{} -> {}: {} and {} on {}, {} at {} fps ({} s)", options.input, context.output,
+      counted(timeline.base.size(), "item"), counted(timeline.layers.size(), "layer"),
+      counted(motions->sources.size(), "motion"), counted(mixed->clip.frame_count(), "frame"),
+      readable(mixed->clip.rate), readable(mixed->clip.duration(), 4)));
   return kExitDone;
 }
 

@@ -19,8 +19,8 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "scene/morph_set.h"
 #include "skin/key_frame_mesh.h"
-#include "tools/krok-morph/actions.h"
 #include "tools/krok-morph/motion_file.h"
+#include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
 
 // Key-frame meshes: interpolates shapes over time.
@@ -284,8 +284,7 @@ void report(const KeyShapes& keys, int frames, ToolContext& context) {
   result["frames"] = frames;
   result["rate"] = keys.rate;
   context.report.result = std::move(result);
-  context.log(fmt::format("{}: {}, {} at {} fps", context.output,
-                          counted(static_cast<long long>(keys.times.size()), "key"),
+  context.log(fmt::format("{}: {}, {} at {} fps", context.output, counted(keys.times.size(), "key"),
                           counted(frames, "frame"), readable(keys.rate)));
 }
 

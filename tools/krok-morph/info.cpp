@@ -5,8 +5,8 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/morph_exr/morph_exr.h"
-#include "tools/krok-morph/actions.h"
 #include "tools/krok-morph/motion_file.h"
+#include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
 
 // Describes an .exr of morph targets.

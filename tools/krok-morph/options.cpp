@@ -16,6 +16,7 @@ constexpr const char *kPack = "action pack", *kUnpack = "action unpack", *kBake 
 
 struct ActionFacts {
   const char* name;
+  Result<int> (*run)(const Options& options, ToolContext& context);
   std::size_t least, most;  // number of files
   const char* files;
   std::vector<std::pair<const char*, const char*>> needs;  // options, and hints
@@ -23,16 +24,21 @@ struct ActionFacts {
 
 // [Action]
 const std::vector<ActionFacts> kActions = {
-    {"pack", 1, 100'000, "BASE TARGET...", {{"--output", "such as -o face.exr"}}},
-    {"unpack", 2, 2, "TARGETS.exr BASE", {{"--out-dir", "the folder for the shapes"}}},
-    {"info", 1, 2, "TARGETS.exr [BASE]", {}},
+    {"pack", pack, 1, 100'000, "BASE TARGET...", {{"--output", "such as -o face.exr"}}},
+    {"unpack", unpack, 2, 2, "TARGETS.exr BASE", {{"--out-dir", "the folder for the shapes"}}},
+    {"info", info, 1, 2, "TARGETS.exr [BASE]", {}},
     {"bake",
+     bake,
      2,
      2,
      "TARGETS.exr BASE",
      {{"--weights", "the target weights over time"}, {"--output", "such as -o face.glb"}}},
-    {"frames", 1, 1, "KEYS.json or FOLDER", {{"--output", "such as -o flag.glb"}}},
+    {"frames", frames, 1, 1, "KEYS.json or FOLDER", {{"--output", "such as -o flag.glb"}}},
 };
+
+const ActionFacts& facts_of(Action action) {
+  return kActions[static_cast<std::size_t>(action)];
+}
 
 void declare_shapes(CommandOptions& command, Options& o) {
   command.group("Shapes");
@@ -123,15 +129,15 @@ void declare(CommandOptions& command, Options& o) {
 
 // What the files and -o have to be for the action.
 Status check(const Options& o) {
-  const ActionFacts& facts = kActions[static_cast<std::size_t>(o.action)];
+  const ActionFacts& facts = facts_of(o.action);
   if (o.given("--output") && (o.action == Action::unpack || o.action == Action::info)) {
     return usage("-o is for pack, bake or frames",
                  o.action == Action::unpack ? "use --out-dir for the folder of the shapes" : "");
   }
   const std::size_t count = o.files.size();
   if (count < facts.least || count > facts.most) {
-    return usage(fmt::format("{} takes {}, but {} given", facts.name, facts.files,
-                             counted(static_cast<long long>(count), "file")));
+    return usage(
+        fmt::format("{} takes {}, but {} given", facts.name, facts.files, counted(count, "file")));
   }
   for (const auto& [option, hint] : facts.needs) {
     if (o.given(option)) continue;
@@ -139,12 +145,16 @@ Status check(const Options& o) {
     return usage(fmt::format("{} needs {}", facts.name, option), hint);
   }
   if (o.action != Action::pack || o.names.empty() || o.names.size() == count - 1) return {};
-  return usage(fmt::format("{} for {}", counted(static_cast<long long>(o.names.size()), "--name"),
-                           counted(static_cast<long long>(count) - 1, "target file")),
+  return usage(fmt::format("{} for {}", counted(o.names.size(), "--name"),
+                           counted(count - 1, "target file")),
                "give one for each target, in order");
 }
 
 }  // namespace
+
+Result<int> run(const Options& options, ToolContext& context) {
+  return facts_of(options.action).run(options, context);
+}
 
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();

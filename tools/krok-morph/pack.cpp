@@ -4,8 +4,8 @@
 #include "core/text.h"
 #include "formats/morph_exr/morph_exr.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-morph/actions.h"
 #include "tools/krok-morph/motion_file.h"
+#include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
 
 // Packs shapes into an .exr of morph targets.

@@ -132,8 +132,7 @@ Status check_same_mesh(const ShapeFile& base, const ShapeFile& shape, const Opti
   }
   return Error("morph-triangles",
                fmt::format("{}, but {} has {}; some are duplicates",
-                           counted(static_cast<long long>(found.size()), "triangle"),
-                           base_name(base.path), known.size()),
+                           counted(found.size(), "triangle"), base_name(base.path), known.size()),
                hint)
       .in_file(shape.path);
 }

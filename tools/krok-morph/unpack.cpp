@@ -13,7 +13,7 @@
 #include "skin/surface_normals.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-morph/actions.h"
+#include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
 
 // Unpacks morph targets, one file each.
@@ -41,15 +41,9 @@ Result<std::vector<int>> chosen_targets(const Options& options, const MorphSet& 
 
 ShapeFormat format_of(const Options& options, const ShapeFile& base) {
   if (options.format != ShapeFormat::as_base) return options.format;
-  switch (base.source) {
-    case Source::obj:
-      return ShapeFormat::obj;
-    case Source::gltf:
-      return ShapeFormat::glb;
-    case Source::model:
-      break;
-  }
-  return ShapeFormat::model;
+  constexpr std::array kFormats = {ShapeFormat::obj, ShapeFormat::glb,
+                                   ShapeFormat::model};  // [Source]
+  return kFormats[static_cast<std::size_t>(base.source)];
 }
 
 const char* ending_of(ShapeFormat format) {
@@ -151,8 +145,7 @@ Result<int> unpack(const Options& options, ToolContext& context) {
         {{"name", morphs.names[static_cast<std::size_t>((*chosen)[i])]}, {"file", paths[i]}});
   }
   context.report.result["targets"] = std::move(list);
-  context.log(fmt::format("{}: {} of {}", options.out_dir,
-                          counted(static_cast<long long>(paths.size()), "shape"),
+  context.log(fmt::format("{}: {} of {}", options.out_dir, counted(paths.size(), "shape"),
                           counted(morphs.vertex_count, "vertex", "vertices")));
   return kExitDone;
 }

@@ -145,7 +145,7 @@ class MotionChart {
     if (cycles.panels.empty()) {
       return Error("plot-cycles",
                    fmt::format("no whole gait cycle, strike to strike of a foot, in {}",
-                               counted(static_cast<long long>(motions_.files.size()), "motion")),
+                               counted(motions_.files.size(), "motion")),
                    "krok keys MOTION shows what is found of steps");
     }
     Json json;
@@ -158,7 +158,7 @@ class MotionChart {
       context_.warn("plot-cycles",
                     fmt::format("{} of {} have no whole gait cycle and are left out",
                                 motions_.files.size() - static_cast<std::size_t>(cycles.motions),
-                                counted(static_cast<long long>(motions_.files.size()), "motion")));
+                                counted(motions_.files.size(), "motion")));
     }
     const auto is_unsteady = [](const draw::ChartedMotion& motion) {
       return !step_measures(*motion.clip, *motion.roles, motion.keys.keytimes).are_steady();

@@ -14,7 +14,7 @@
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-plot/sheet.h"
-#include "tools/shared/ground_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::plot {
 

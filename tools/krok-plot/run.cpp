@@ -107,7 +107,7 @@ Status add_charts(const Options& options, ToolContext& context, OutputSet& outpu
   if (!status) return status;
   context.report.result["panels"] = summary_of(*chart);
   done.push_back(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,
-                             counted(static_cast<long long>(chart->panels.size()), "panel")));
+                             counted(chart->panels.size(), "panel")));
   return {};
 }
 

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
-#include <memory>
 
 #include "core/numbers.h"
 #include "core/parallel.h"

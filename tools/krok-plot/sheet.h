@@ -5,9 +5,9 @@
 
 #include "core/result.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/ground_choice.h"
 #include "tools/shared/image.h"
 #include "tools/shared/moving_actor.h"
+#include "tools/shared/shared_options.h"
 
 // Rendered images: contact sheets and motion strips.
 

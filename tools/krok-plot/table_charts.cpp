@@ -241,7 +241,7 @@ class TableLines {
   static Error too_many(std::size_t columns, std::size_t groups) {
     return Error("plot-lines",
                  fmt::format("a panel would have {} lines, the limit is {}",
-                             grouped(static_cast<long long>(columns * groups)), kMaxLines),
+                             grouped(columns * groups), kMaxLines),
                  "--y selects columns, --where COLUMN=VALUE rows");
   }
 
@@ -266,13 +266,10 @@ void report_choice(const Table& table, const Choice& choice, const TableOptions&
   }
   if (options.y.empty()) add("all numeric columns are drawn");
   if (chosen.empty()) return;
-  Diagnostic note;
+  Diagnostic note =
+      make_warning("plot-columns", std::move(chosen), "use --x, --y and --by to change this");
   note.severity = Severity::note;
-  note.code = "plot-columns";
-  note.message = std::move(chosen);
-  note.hint = "use --x, --y and --by to change this";
-  note.where.file = path;
-  context.diagnose(std::move(note));
+  context.diagnose_in(path, {note});
 }
 
 Status add_table(const std::string& path, const Options& options, ToolContext& context,

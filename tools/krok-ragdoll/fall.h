@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ik/limits.h"
@@ -9,6 +10,8 @@
 #include "ragdoll/simulate.h"
 #include "terrain/terrain.h"
 #include "tools/cli/json.h"
+#include "tools/cli/tool.h"
+#include "tools/krok-ragdoll/options.h"
 
 // One fall of a motion, as far as standing again.
 
@@ -53,5 +56,25 @@ Json report_of(const Subject& subject, const Fallen& fallen);
 // "a fall from 1.20 s, at rest after 2.34 s, up again at 6.10 s".
 std::string summary_of(const Subject& subject, const krok::ragdoll::FallOptions& options,
                        const Fallen& fallen);
+
+// The motion, its roles, ranges and bodies, and motions to get up with. Errors name the file that
+// they are of; a mesh that the bodies do not fill prints a warning (ragdoll-model).
+Result<Subject> read_subject(const Options& options, ToolContext& context);
+
+// A fall of a table: a row.
+struct TableFall {
+  std::string name;       // unique
+  std::string file_name;  // from the name, unique
+  ClipTime at;
+  PushAt push;
+  Location at_place, joint_place, time_place;  // for messages
+};
+
+// Reads a CSV table with a header: name, at (seconds), joint, x, y, z (newton seconds), and maybe
+// time (seconds); units may be given as in "at [ms]". `path` is for messages. Codes, with line and
+// column: those of csv::Table; pushes-column (a column that is not known, missing, twice there or
+// has a unit of another kind), pushes-value (an empty cell, a number out of range, or none),
+// pushes-name (a name twice there).
+Result<std::vector<TableFall>> read_push_table(std::string_view text, const std::string& path);
 
 }  // namespace krok::cli::ragdoll

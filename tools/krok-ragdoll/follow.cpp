@@ -31,6 +31,11 @@ double chance(std::mt19937& random) {
   return random() / 4294967296.0;
 }
 
+bool follows_motion(const std::vector<Body>& bodies) {
+  return std::ranges::any_of(bodies,
+                             [](const Body& body) { return body.mode != BodyMode::simulated; });
+}
+
 // To the character's left, horizontal.
 Vec3 left_of(const Clip& motion, const RoleMap& roles, double time) {
   const int left = roles.joint(Role::left_upper_leg), right = roles.joint(Role::right_upper_leg);
@@ -137,11 +142,6 @@ std::vector<krok::ragdoll::Push> regular_pushes(const FollowOptions& options, co
 }
 
 }  // namespace
-
-bool follows_motion(const std::vector<Body>& bodies) {
-  return std::ranges::any_of(bodies,
-                             [](const Body& body) { return body.mode != BodyMode::simulated; });
-}
 
 Status set_modes(const FollowOptions& options, bool gets_up, const Skeleton& skeleton,
                  const RoleMap& roles, std::vector<Body>& bodies) {

@@ -33,8 +33,6 @@ void declare_follow(CommandOptions& command, FollowOptions& options);
 Status set_modes(const FollowOptions& options, bool gets_up, const Skeleton& skeleton,
                  const RoleMap& roles, std::vector<krok::ragdoll::Body>& bodies);
 
-bool follows_motion(const std::vector<krok::ragdoll::Body>& bodies);
-
 // Sets duration and go_on of a fall that begins at `fall.at`, and adds the pushes of --push-every:
 // at the chest, impulses that give the whole body 1 m/s, alternately to opposite sides of the
 // character, turned by up to 60 degrees by chance. The same seed gives the same pushes. `duration`

@@ -10,7 +10,7 @@
 #include "math/types.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/follow.h"
-#include "tools/shared/ground_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::ragdoll {
 

@@ -1,10 +1,9 @@
-#include "tools/krok-ragdoll/push_table.h"
+#include "tools/krok-ragdoll/fall.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <set>
 

@@ -1,4 +1,4 @@
-#include "tools/krok-ragdoll/read_subject.h"
+#include "tools/krok-ragdoll/fall.h"
 
 #include <fmt/format.h>
 

@@ -21,13 +21,10 @@
 #include "ragdoll/body_meshes.h"
 #include "ragdoll/world.h"
 #include "terrain/surface.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/fall.h"
-#include "tools/krok-ragdoll/push_table.h"
-#include "tools/krok-ragdoll/read_subject.h"
 
 namespace krok::cli::ragdoll {
 

@@ -16,6 +16,9 @@ namespace krok::cli::film {
 
 namespace {
 
+const std::vector<std::pair<std::string, Format>> kFormats = {
+    {"mp4", Format::mp4}, {"gif", Format::gif}, {"webp", Format::webp}, {"png", Format::png}};
+
 constexpr int kMinSize = 32, kMaxSize = 4096;
 
 Result<std::pair<int, int>> parse_size(const std::string& text) {
@@ -34,11 +37,7 @@ Result<std::pair<int, int>> parse_size(const std::string& text) {
 void declare_film(CommandOptions& command, Options& o) {
   command.group("Film");
   command.add(
-      "--format FORMAT", o.format,
-      choice<Format>({{"mp4", Format::mp4},
-                      {"gif", Format::gif},
-                      {"webp", Format::webp},
-                      {"png", Format::png}}),
+      "--format FORMAT", o.format, choice<Format>(kFormats),
       "mp4 (H.264), gif, webp (animated) or png (without ffmpeg; a file per frame for a name "
       "with a number such as 'frame_%04d.png', else the frame of --from alone); default: "
       "from the output's extension, mp4 in batch mode");
@@ -92,6 +91,13 @@ void declare(CommandOptions& command, Options& o) {
       .only_with("--ground");
 }
 
+// Of an output that is not named.
+std::string ending_of(Format format) {
+  if (format == Format::png) return "_%04d.png";
+  const auto named = std::ranges::find(kFormats, format, &decltype(kFormats)::value_type::second);
+  return "." + (named == kFormats.end() ? "mp4" : named->first);
+}
+
 Status check(const Options& o) {
   if (o.camera.empty() || o.image.sides.size() == 1) return {};
   return usage("--cam is one view; give one side");
@@ -102,35 +108,14 @@ Status check(const Options& o) {
 Result<Format> format_of(const Options& options, const std::string& output) {
   if (options.format != Format::from_extension) return options.format;
   const std::string ending = extension(output);
-  if (ending == ".mp4") return Format::mp4;
-  if (ending == ".gif") return Format::gif;
-  if (ending == ".webp") return Format::webp;
-  if (ending == ".png") return Format::png;
+  for (const auto& [word, format] : kFormats) {
+    if (ending == "." + word) return format;
+  }
   return usage(
       ending.empty() ? fmt::format("-o {}: no extension to choose a format by", output)
                      : fmt::format("-o {}: {} is no film", output, shown(ending)),
       "use .mp4, .gif or .webp, .png for one frame, or 'frame_%04d.png' for a file per frame");
 }
-
-namespace {
-
-// Of an output that is not named.
-const char* ending_of(Format format) {
-  switch (format) {
-    case Format::gif:
-      return ".gif";
-    case Format::webp:
-      return ".webp";
-    case Format::png:
-      return "_%04d.png";
-    case Format::mp4:
-    case Format::from_extension:
-      break;
-  }
-  return ".mp4";
-}
-
-}  // namespace
 
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
@@ -154,9 +139,8 @@ ToolSpec make_spec() {
        "a file per frame, filmed by a camera of krok-cam; needs no ffmpeg"},
       {"krok-render captures --out-dir films --format webp --keep-going",
        "a film of each capture in a folder"}};
-  spec.batch = {io::motion_endings(), [options]() -> Result<std::string> {
-                  return std::string(ending_of(options->format));
-                }};
+  spec.batch = {io::motion_endings(),
+                [options]() -> Result<std::string> { return ending_of(options->format); }};
   return spec;
 }
 

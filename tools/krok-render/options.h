@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "core/result.h"
-#include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/ground_choice.h"
 #include "tools/shared/image.h"
 #include "tools/shared/moving_actor.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::film {
 

@@ -7,7 +7,7 @@
 #include "formats/container/packed_orientation.h"
 #include "retarget/retarget.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/ground_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::retarget {
 

@@ -3,23 +3,28 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "core/file.h"
+#include "core/glob.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/alignment/alignment_format.h"
 #include "formats/anim/anim.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
-#include "formats/keys/keys.h"
 #include "formats/registry/registry.h"
 #include "gait/shown_prints.h"
 #include "plant/follow_feet.h"
-#include "tools/cli/output_kind.h"
+#include "retarget/stance.h"
+#include "retarget/take_pool.h"
+#include "tools/cli/folder_inputs.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
-#include "tools/krok-retarget/takes.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/shared/keys_sidecar.h"
 #include "tools/shared/planting.h"
 #include "tools/shared/retarget_outcome.h"
 
@@ -50,6 +55,67 @@ Result<RoleMap> roles_of(const Skeleton& skeleton, const std::string& map_path,
   const auto roles = io::open_role_map(map_path, context);
   if (!roles) return roles.error();
   return (*roles)(skeleton);
+}
+
+// All files, each once.
+Result<std::vector<std::string>> files_of(const std::vector<std::string>& takes,
+                                          ToolContext& context) {
+  std::vector<std::string> files;
+  for (const std::string& given : takes) {
+    std::error_code ignored;
+    const bool is_folder = std::filesystem::is_directory(given, ignored);
+    const bool is_pattern = has_wildcards(given) && !std::filesystem::exists(given, ignored);
+    Result<std::vector<std::string>> found = std::vector{given};
+    if (is_folder) found = find_files_below(given);
+    if (is_pattern) found = find_files(given);
+    if (!found) return found.error();
+    if (is_folder) context.diagnose(keep_inputs(given, io::motion_endings(), *found));
+    if (found->empty()) {
+      return Error("usage", fmt::format("--takes: no {} there", is_folder ? "motion" : "file"))
+          .in_file(given);
+    }
+    files.insert(files.end(), found->begin(), found->end());
+  }
+  std::ranges::sort(files);
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
+}
+
+// The pose that --takes gives a motion: a T-pose built from it and from all takes of the same
+// joints in files, folders and patterns. Others are left out with a warning. Empty if the
+// skeleton's reference pose stands, which then is the pose.
+Result<std::vector<Transform>> pose_of_takes(const std::vector<std::string>& takes,
+                                             const Clip& source, const RoleMap& roles,
+                                             ToolContext& context) {
+  const std::vector<Transform>& reference = source.skeleton.reference;
+  if (!roles.humanoid || krok::retarget::stands({source.skeleton, roles, reference})) {
+    return std::vector<Transform>();
+  }
+  const auto files = files_of(takes, context);
+  if (!files) return files.error();
+  krok::retarget::TakePool pool(1 + files->size(), roles);
+  pool.add(source);
+  std::string stranger, difference;
+  std::size_t left_out = 0;
+  for (const std::string& path : *files) {
+    const auto take = io::open_motion(path, context);
+    if (!take) return take.error();
+    const std::string other = difference_in_structure(source.skeleton, take->skeleton);
+    if (other.empty()) {
+      pool.add(*take);
+    } else if (++left_out == 1) {
+      stranger = path;
+      difference = other;
+    }
+  }
+  if (left_out > 0) {
+    context.warn("retarget-takes",
+                 fmt::format("{} of {} takes have another skeleton and are left out, first {}: {}",
+                             left_out, files->size(), shown(stranger), difference));
+  }
+  auto stance = krok::retarget::find_stance(pool.clip(), roles, std::nullopt);
+  if (!stance) return stance.error();
+  return std::move(stance->pose);
 }
 
 // The pose that an option takes from another motion of the skeleton; none for other values.
@@ -122,17 +188,11 @@ Status write_all(const FrameSource& frames, const std::function<Provenance()>& p
   if (status && followed != nullptr) {
     MotionKeys keys;
     keys.contacts = followed->contacts;
-    const auto path = place_for_keys(keys, context.output);
-    if (!path) return path.error();
-    status = outputs.add(*path, [&](OutputFile& file) {
-      return file.write(keys::write(keys, frames.skeleton, frames.duration()));
-    });
+    status = add_keys(keys, frames.skeleton, frames.duration(), context.output, outputs);
   }
   if (status && !alignment_path.empty()) {
     const alignment::AlignedPoses poses{outcome.report.source_pose, outcome.report.target_pose};
-    status = outputs.add(alignment_path, [&](OutputFile& file) {
-      return file.write(alignment::write(poses, outcome.source, outcome.target));
-    });
+    status = outputs.add(alignment_path, alignment::write(poses, outcome.source, outcome.target));
   }
   if (!status) return status;
   return outputs.finish();

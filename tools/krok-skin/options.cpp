@@ -132,6 +132,10 @@ void declare(CommandOptions& command, Options& o) {
   declare_mesh(command, o);
 }
 
+bool is_character(const std::string& path) {
+  return extension(path) == ".character";
+}
+
 Status check(const Options& options) {
   if (options.has_weights_by_clip() && options.motions.empty()) {
     return usage("{clip} in the name of --weights needs a motion");
@@ -153,10 +157,6 @@ Status check(const Options& options) {
 }
 
 }  // namespace
-
-bool is_character(const std::string& path) {
-  return extension(path) == ".character";
-}
 
 As what_to_write(const Options& options, const std::string& output) {
   if (options.as != As::automatic) return options.as;

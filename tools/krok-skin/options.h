@@ -10,7 +10,6 @@
 #include "formats/pc2/pc2.h"
 #include "scene/clip.h"
 #include "skin/skin.h"
-#include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/twist_joints.h"
 
@@ -47,9 +46,6 @@ struct Options {
 
   bool has_weights_by_clip() const { return weights.find(kClipInName) != std::string::npos; }
 };
-
-// Whether a path is a character, not a model.
-bool is_character(const std::string& path);
 
 // What --as stands for: baked for a point cache (.pc2), else a rig, where it is not given.
 As what_to_write(const Options& options, const std::string& output);

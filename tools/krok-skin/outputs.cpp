@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -20,7 +18,6 @@
 #include "skin/morph.h"
 #include "skin/skin.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-skin/small_rig.h"
 #include "tools/krok-skin/subject.h"
 
 namespace krok::cli::skin {

@@ -1,6 +1,13 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "core/result.h"
+#include "formats/gltf/gltf_writer.h"
+#include "formats/gltf/joint_tracks.h"
 #include "skin/skin.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-skin/subject.h"
@@ -32,5 +39,44 @@ Status write_motion(const Subject& subject, ToolContext& context);
 // "walk_0000.glb to walk_0119.glb".
 Result<std::string> write_frames(const Subject& subject, const SkinBinding& binding,
                                  ToolContext& context);
+
+// Options of krok-skin that make files smaller at a cost that is measured on the mesh.
+
+// Applies --influences to the model, and reports how far vertices move by it over the motion.
+void apply_influence_limit(const Options& options, Subject& subject, ToolContext& context);
+
+// The animations of all motions of a subject.
+struct Clips {
+  std::vector<std::string> names;
+  std::vector<gltf::JointTracks> tracks;
+  std::vector<const MorphWeights*> weights;  // of the subject
+  // Refers to both.
+  std::vector<gltf::NamedTracks> named() const;
+};
+
+// Reports joints that shear. `still_name` is that of a reference pose in which shapes change.
+// Codes: those of joint_tracks().
+Result<Clips> clips_of(const Subject& subject, const std::string& still_name, ToolContext& context);
+
+// What --as rig writes, with --reduce, --quantize and --compress applied.
+struct SmallRig {
+  Model model;
+  MorphSet morphs;
+  Clips clips;
+  std::optional<gltf::Quantization> quantization = {};
+  std::vector<std::uint32_t> places = {};        // of vertices, if reordered
+  std::vector<gltf::JointTracks> all_keys = {};  // as `clips` before --reduce, --quantize
+  Json facts = {};                               // about --reduce and --quantize, if given
+};
+
+// Warns where the file needs a second set of influences. Codes:
+// those of joint_tracks() and reduce_for_mesh().
+Result<SmallRig> small_rig(const Options& options, const Subject& subject,
+                           const std::string& still_name, ToolContext& context);
+
+// Measures what the file that is written at `path` lost of the subject, and reports it. False if
+// that is more than --reduce allows. Codes: those of written_error().
+Result<bool> report_loss(const std::string& path, const Options& options, const Subject& subject,
+                         SmallRig& rig, ToolContext& context);
 
 }  // namespace krok::cli::skin

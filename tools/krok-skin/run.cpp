@@ -9,7 +9,6 @@
 #include "tools/cli/file_name.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-skin/outputs.h"
-#include "tools/krok-skin/small_rig.h"
 #include "tools/krok-skin/subject.h"
 
 namespace krok::cli::skin {

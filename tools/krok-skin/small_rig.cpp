@@ -1,4 +1,4 @@
-#include "tools/krok-skin/small_rig.h"
+#include "tools/krok-skin/outputs.h"
 
 #include <fmt/format.h>
 
@@ -295,9 +295,9 @@ void drop_unused_sets(bool minify, std::span<const Material> materials, Model& m
   const std::size_t first = model.texture_coordinates.empty() ? 0 : 1;
   const std::size_t sets = first + model.more_texture_coordinates.size();
   if (sets <= used) return;
-  context.log(fmt::format("{} that no texture uses left out",
-                          counted(static_cast<long long>(sets - used), "set of texture coordinates",
-                                  "sets of texture coordinates")));
+  context.log(fmt::format(
+      "{} that no texture uses left out",
+      counted(sets - used, "set of texture coordinates", "sets of texture coordinates")));
   model.more_texture_coordinates.resize(used > first ? used - first : 0);
   if (used == 0) model.texture_coordinates.clear();
 }

@@ -288,13 +288,13 @@ class Loader {
     }
     const bool linear = what_to_write(options_, context_.output) == As::rig;
     if (correctives->method != (linear ? SkinMethod::linear : options_.method)) {
-      Diagnostic other = make_warning(
-          "skin-correctives-method",
-          "they were fitted to another skinning method, whose faults they correct instead",
-          linear ? "rigs are skinned by the viewer, with linear blend skinning"
-                 : "use the --method that the description of the correctives has");
-      other.where.file = path;
-      context_.diagnose(std::move(other));
+      context_.diagnose_in(
+          path,
+          {make_warning(
+              "skin-correctives-method",
+              "they were fitted to another skinning method, whose faults they correct instead",
+              linear ? "rigs are skinned by the viewer, with linear blend skinning"
+                     : "use the --method that the description of the correctives has")});
     }
     const auto weights = CorrectiveWeights::create(*correctives, subject_.model.skeleton);
     if (!weights) return Error(weights.error()).in_file(path);
@@ -425,15 +425,15 @@ class Loader {
     const bool odd_size = size > kLarge * usual || size < kSmall * usual;
     if (!odd_size && away <= usual) return;
     const std::string body_size = fmt::format("the body is {} m in size", readable(usual, 3));
-    Diagnostic warning = make_warning(
-        "skin-attach",
-        odd_size ? fmt::format("the mesh is {} m in size, {}", readable(size, 3), body_size)
-                 : fmt::format("the mesh begins {} m from the place '{}' that carries it; {}",
-                               readable(away, 3), shown(given.name), body_size),
-        odd_size ? "scale it where it was made: glTF and OBJ files are in metres"
-                 : "move it to the origin of its file, which is the joint or socket");
-    warning.where.file = given.path;
-    context_.diagnose(std::move(warning));
+    context_.diagnose_in(
+        given.path,
+        {make_warning(
+            "skin-attach",
+            odd_size ? fmt::format("the mesh is {} m in size, {}", readable(size, 3), body_size)
+                     : fmt::format("the mesh begins {} m from the place '{}' that carries it; {}",
+                                   readable(away, 3), shown(given.name), body_size),
+            odd_size ? "scale it where it was made: glTF and OBJ files are in metres"
+                     : "move it to the origin of its file, which is the joint or socket")});
   }
 
   // Adds a thing's materials to the subject's, under names that are not taken.
@@ -460,10 +460,7 @@ class Loader {
   }
 
   void report_differences(const Clip& clip, const std::string& path) {
-    for (Diagnostic difference : reference_differences(subject_.model.skeleton, clip)) {
-      difference.where.file = path;
-      context_.diagnose(std::move(difference));
-    }
+    context_.diagnose_in(path, reference_differences(subject_.model.skeleton, clip));
   }
 
   // Samples the weights at the frames of the motion; a static pose is held for their duration.

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
 #include "core/numbers.h"
@@ -26,6 +24,19 @@ Result<double> parse_value(std::string_view text, std::string_view unit) {
   if (!time) return time.error();
   if (time->in_frames) return Error("quantity-unit", "the unit cannot be frames", "use s or ms");
   return time->value;
+}
+
+// For messages: "length 0.45 to 0.8 m, turn -10 to 30 degrees".
+std::string in_words(const std::vector<NamedParameter>& parameters) {
+  std::string text;
+  for (const NamedParameter& parameter : parameters) {
+    const bool angle = parameter.unit == "rad";
+    const double factor = angle ? 1 / kRadiansPerDegree : 1;
+    text += fmt::format("{}{} {} to {} {}", text.empty() ? "" : ", ", parameter.name,
+                        readable(parameter.least * factor, 3), readable(parameter.most * factor, 3),
+                        angle ? "degrees" : parameter.unit);
+  }
+  return text;
 }
 
 Error misfit(std::string message, const std::vector<NamedParameter>& parameters) {
@@ -61,18 +72,6 @@ std::vector<NamedParameter> parameters_of(const steps::StepsFile& file) {
     parameters.push_back(std::move(parameter));
   }
   return parameters;
-}
-
-std::string in_words(const std::vector<NamedParameter>& parameters) {
-  std::string text;
-  for (const NamedParameter& parameter : parameters) {
-    const bool angle = parameter.unit == "rad";
-    const double factor = angle ? 1 / kRadiansPerDegree : 1;
-    text += fmt::format("{}{} {} to {} {}", text.empty() ? "" : ", ", parameter.name,
-                        readable(parameter.least * factor, 3), readable(parameter.most * factor, 3),
-                        angle ? "degrees" : parameter.unit);
-  }
-  return text;
 }
 
 Result<std::vector<double>> parse_settings(const std::vector<std::string>& words,

@@ -21,9 +21,6 @@ struct NamedParameter {
 
 std::vector<NamedParameter> parameters_of(const steps::StepsFile& file);
 
-// For messages: "length 0.45 to 0.8 m, turn -10 to 30 degrees".
-std::string in_words(const std::vector<NamedParameter>& parameters);
-
 // Parses NAME=VALUE words; quantities with or without a unit. Parameters that are not among them
 // have the examples' mean, which is printed. Code: usage, listing the library's parameters, if a
 // name is unknown or repeated.

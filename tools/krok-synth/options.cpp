@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "tools/krok-synth/asked_parameters.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::synth {

@@ -12,7 +12,6 @@
 #include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
-#include "formats/keys/keys.h"
 #include "formats/steps/steps.h"
 #include "math/types.h"
 #include "parametric/synthesise.h"
@@ -20,9 +19,8 @@
 #include "tools/cli/output_set.h"
 #include "tools/krok-synth/asked_parameters.h"
 #include "tools/krok-synth/sequence.h"
-#include "tools/shared/keys_choice.h"
 #include "tools/shared/keys_sidecar.h"
-#include "tools/shared/plant_result.h"
+#include "tools/shared/planting.h"
 
 namespace krok::cli::synth {
 
@@ -282,12 +280,7 @@ Status write_all(const Options& options, std::vector<Motion>& motions, ToolConte
           clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
     });
     if (!status) return status;
-    const auto keys_path = place_for_keys(motion.made.keys, motion.path);
-    if (!keys_path) return keys_path.error();
-    if (keys_path->empty()) continue;
-    status = outputs.add(*keys_path, [&](OutputFile& file) {
-      return file.write(keys::write(motion.made.keys, clip.skeleton, clip.duration()));
-    });
+    status = add_keys(motion.made.keys, clip.skeleton, clip.duration(), motion.path, outputs);
     if (!status) return status;
   }
   return outputs.finish();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +8,7 @@
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/plant_result.h"
+#include "tools/shared/planting.h"
 
 // Puts motions of a library behind a motion, or behind each other: a walk, then a reach.
 

@@ -5,8 +5,7 @@
 
 #include "core/result.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/body_choice.h"
-#include "tools/shared/ground_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::view {
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -15,7 +14,6 @@
 #include "tools/krok-view/files.h"
 #include "tools/krok-view/options.h"
 #include "tools/shared/shown_ground.h"
-#include "tools/shared/walk_page.h"
 
 namespace krok::cli::view {
 
@@ -172,8 +170,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   }
   auto html = draw::write_viewer_page(page);
   if (!html) return html.error();
-  const Status status =
-      write_output(context, context.output, [&](OutputFile& file) { return file.write(*html); });
+  const Status status = write_output(context, context.output, *html);
   if (!status) return status.error();
 
   Json shown = Json::array();

@@ -10,7 +10,7 @@
 #include "formats/container/packed_orientation.h"
 #include "math/types.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/ground_choice.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::walk {
 

@@ -18,7 +18,6 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
-#include "formats/keys/keys.h"
 #include "formats/path/path_format.h"
 #include "formats/prints/prints.h"
 #include "formats/registry/registry.h"
@@ -35,8 +34,8 @@
 #include "terrain/terrain.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/shared/keys_choice.h"
-#include "tools/shared/walk_page.h"
+#include "tools/shared/keys_sidecar.h"
+#include "tools/shared/shown_ground.h"
 
 namespace krok::cli::walk {
 
@@ -148,11 +147,12 @@ Result<gait::Path> make_path(const Options& options, bool backward, ToolContext&
   if (!path) return std::move(path.error()).in_file(options.path);
   constexpr double kShort = 0.5;  // metres: less than a step
   if (path->length() < kShort && extension(options.path) == ".svg") {
-    Diagnostic small = make_warning(
-        "path-short", fmt::format("the path is {} m long", readable(path->length(), 3)),
-        "--path-scale LENGTH is the length of a unit of the drawing, such as 1m; 1cm without it");
-    small.where.file = options.path;
-    context.diagnose(std::move(small));
+    context.diagnose_in(
+        options.path,
+        {make_warning("path-short",
+                      fmt::format("the path is {} m long", readable(path->length(), 3)),
+                      "--path-scale LENGTH is the length of a unit of the drawing, such as 1m; 1cm "
+                      "without it")});
   }
   return path;
 }
@@ -386,14 +386,8 @@ Status write_all(const Options& options, const gait::Walk& walk,
                        file);
   });
   if (!status) return status;
-  const auto keys_path = place_for_keys(details.keys, context.output);
-  if (!keys_path) return keys_path.error();
-  if (!keys_path->empty()) {
-    status = outputs.add(*keys_path, [&](OutputFile& file) {
-      return file.write(keys::write(details.keys, frames.skeleton, frames.duration()));
-    });
-    if (!status) return status;
-  }
+  status = add_keys(details.keys, frames.skeleton, frames.duration(), context.output, outputs);
+  if (!status) return status;
   const auto write =
       extension(options.save_prints) == ".json" ? prints::write_json : prints::write_csv;
   status = outputs.add(options.save_prints, [&](OutputFile& file) {
@@ -421,8 +415,8 @@ void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prin
   context.log(fmt::format(
       "{}: {}, {} s, at up to {} m/s; feet miss their prints by {} mm, swing {} cm over "
       "the ground or more",
-      context.output, counted(static_cast<long long>(prints.size()) - 2, "step"),
-      readable(frames.duration(), 4), readable(result["largest_speed"].get<double>(), 2),
+      context.output, counted(prints.size() - 2, "step"), readable(frames.duration(), 4),
+      readable(result["largest_speed"].get<double>(), 2),
       missed < 0.001 ? "less than 0.001" : readable(missed, 2),
       readable(100 * result["min_clearance"].get<double>(), 3)));
 }

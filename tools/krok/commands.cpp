@@ -1,4 +1,3 @@
-#include "tools/krok/commands.h"
 
 #include <algorithm>
 #include <array>

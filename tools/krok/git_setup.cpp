@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
 
 #include "core/file.h"
 #include "core/text.h"

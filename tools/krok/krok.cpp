@@ -17,7 +17,6 @@
 #include "tools/cli/command_line.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
-#include "tools/krok/commands.h"
 #include "tools/krok/program.h"
 
 namespace krok::cli {

@@ -6,10 +6,27 @@
 #include <vector>
 
 #include "tools/cli/command_options.h"
+#include "tools/cli/tool.h"
 
-// Completion of krok and its tools in shells, generated from the options that the tools declare.
+// The table of commands, and what krok alone does: completion in shells, git.
 
 namespace krok::cli {
+
+// A row of the table of commands. `krok VERB`, its help, completion in shells and the tests take
+// names, summaries and options from it.
+struct Command {
+  std::string_view verb;  // "import" of krok-import
+  ToolSpec (*make_spec)();
+  // krok-VERB is a program of its own, as it loads libraries that would slow the start of all
+  // others; here it can only be described.
+  bool own_program = false;
+};
+
+// In the order of a project: files, motions, operations, steps, pictures.
+std::span<const Command> commands();
+
+// Null if there is none.
+const Command* find_command(std::string_view verb);
 
 // The main of krok: `krok VERB ...` is `krok-VERB ...`. Returns the exit code.
 int run_krok(int argc, char** argv);
@@ -22,7 +39,7 @@ struct CompletedVerb {
 
 enum class Shell : unsigned char { bash, zsh, fish };
 
-// A script that the shell sources.
+// Completes krok and its tools by the options that they declare; a script that the shell sources.
 std::string completion_script(Shell shell, std::span<const CompletedVerb> verbs);
 
 // `krok git-setup`: prepares the repository of the current folder for motions.

@@ -21,8 +21,7 @@ BodySide side_of(Role role) {
   return BodySide::middle;
 }
 
-}  // namespace
-
+// The side of the body of each joint, from joint roles; middle if unknown.
 std::vector<BodySide> body_sides(const Skeleton& skeleton) {
   const RoleMap roles = find_roles(skeleton);
   std::vector<BodySide> sides;
@@ -35,6 +34,8 @@ std::vector<BodySide> body_sides(const Skeleton& skeleton) {
   }
   return sides;
 }
+
+}  // namespace
 
 render::Colour side_colour(BodySide side) {
   switch (side) {

@@ -10,9 +10,6 @@ namespace krok::cli {
 
 enum class BodySide : unsigned char { middle, left, right };
 
-// The side of the body of each joint, from joint roles; middle if unknown.
-std::vector<BodySide> body_sides(const Skeleton& skeleton);
-
 // Blue for left, orange for right, grey for middle.
 render::Colour side_colour(BodySide side);
 

@@ -38,14 +38,10 @@ Result<int> choose_camera(const nodes::Scene& scene, std::span<const int> camera
                           ToolContext& context) {
   if (wanted.empty()) {
     if (cameras.size() == 1) return cameras[0];
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::warning;
-    diagnostic.code = "import-cameras";
-    diagnostic.message =
-        fmt::format("using the first of {} cameras: {}", cameras.size(), list_of(scene, cameras));
-    diagnostic.hint = "select another with --camera NAME or NUMBER";
-    diagnostic.where.file = path;
-    context.diagnose(std::move(diagnostic));
+    context.diagnose_in(path, {make_warning("import-cameras",
+                                            fmt::format("using the first of {} cameras: {}",
+                                                        cameras.size(), list_of(scene, cameras)),
+                                            "select another with --camera NAME or NUMBER")});
     return cameras[0];
   }
   for (const int camera : cameras) {

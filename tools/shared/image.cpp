@@ -189,7 +189,7 @@ Result<std::vector<ImageMoment>> choose_moments(const std::string& moments, int 
 Status add_image(const render::Image& image, const std::string& path, OutputSet& outputs) {
   const auto bytes = render::write_png(image);
   if (!bytes) return bytes.error();
-  return outputs.add(path, [&](OutputFile& file) { return file.write(*bytes); });
+  return outputs.add(path, *bytes);
 }
 
 Json to_json(const render::CellLayout& cell) {

@@ -9,15 +9,11 @@
 
 #include "contacts/gait_keytimes.h"
 #include "core/numbers.h"
+#include "formats/io/open_role_map.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
 
 namespace krok::cli {
-
-std::string keys_sidecar_path(const std::string& motion_path) {
-  if (motion_path == "-" || motion_path.empty()) return {};
-  return std::filesystem::path(motion_path).replace_extension(".keys.json").string();
-}
 
 namespace {
 
@@ -59,6 +55,11 @@ std::string sign_of_another_motion(const krok::keys::Sidecar& sidecar, const Cli
 
 }  // namespace
 
+std::string keys_sidecar_path(const std::string& motion_path) {
+  if (motion_path == "-" || motion_path.empty()) return {};
+  return std::filesystem::path(motion_path).replace_extension(".keys.json").string();
+}
+
 Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
                                            ToolContext& context) {
   const auto input = context.open_input(path);
@@ -66,10 +67,8 @@ Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& 
   auto sidecar = krok::keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
   if (!sidecar) return sidecar;
   if (std::string sign = sign_of_another_motion(*sidecar, clip); !sign.empty()) {
-    Diagnostic stale = make_warning("keys-stale", std::move(sign),
-                                    "if the motion was changed, run krok-keys again");
-    stale.where.file = path;
-    context.diagnose(std::move(stale));
+    context.diagnose_in(path, {make_warning("keys-stale", std::move(sign),
+                                            "if the motion was changed, run krok-keys again")});
   }
   return sidecar;
 }
@@ -95,12 +94,11 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
     if (!edited) return std::move(edited).error();
     return std::optional<krok::keys::Sidecar>(std::move(*edited));
   }
-  Diagnostic ignored_file = make_warning(
-      "keys-stale",
-      fmt::format("not used, since {}", sidecar ? "it was " + sign : sidecar.error().message),
-      "it was not edited by hand; krok-keys rebuilds it");
-  ignored_file.where.file = path;
-  context.diagnose(std::move(ignored_file));
+  context.diagnose_in(
+      path, {make_warning("keys-stale",
+                          fmt::format("not used, since {}",
+                                      sidecar ? "it was " + sign : sidecar.error().message),
+                          "it was not edited by hand; krok-keys rebuilds it")});
   return std::optional<krok::keys::Sidecar>();
 }
 
@@ -130,6 +128,49 @@ Json to_json(std::span<const Keytime> keytimes) {
   Json list = Json::array();
   for (const Keytime& key : keytimes) list.push_back({{"name", key.name}, {"time", key.time}});
   return list;
+}
+
+Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::string& path,
+                                              const std::string& name, const Clip& clip,
+                                              const io::FindRoles& find_roles,
+                                              ToolContext& context) {
+  std::optional<MotionKeys> none;
+  if (choice == KeysChoice::none) return none;
+  auto sidecar = read_keys_beside(path, clip, context);
+  if (!sidecar) return sidecar.error();
+  if (*sidecar) return std::optional(std::move((*sidecar)->keys));
+  if (choice == KeysChoice::sidecar) {
+    return Error("keys-missing",
+                 fmt::format("{} is missing beside it", base_name(keys_sidecar_path(path))),
+                 "create it with krok-keys, or use --contacts auto to detect keytimes")
+        .in_file(path);
+  }
+  const auto roles = find_roles(clip.skeleton);
+  if (!roles) return roles.error();
+  auto found = find_keys(path, clip, *roles, context);
+  if (!found) {
+    context.warn("keys-none", fmt::format("{}: {}", name, found.error().message));
+    return none;
+  }
+  return std::optional(std::move(*found));
+}
+
+Status add_keys(const MotionKeys& keys, const Skeleton& skeleton, double duration,
+                const std::string& motion_path, OutputSet& outputs) {
+  const std::string path = keys_sidecar_path(motion_path);
+  if (keys.empty() || path.empty()) return {};
+  std::error_code unknown;
+  if (std::filesystem::exists(path, unknown)) {
+    const auto file = InputFile::open(path);
+    if (!file) return file.error();
+    if (krok::keys::has_edits(file->text())) {
+      return Error("keys-edited", "was edited by hand, or is not a keytime file",
+                   "the result's keytimes would overwrite it: move it away, or choose another name "
+                   "for the result")
+          .in_file(path);
+    }
+  }
+  return outputs.add(path, krok::keys::write(keys, skeleton, duration));
 }
 
 }  // namespace krok::cli

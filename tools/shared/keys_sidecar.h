@@ -4,9 +4,12 @@
 #include <span>
 #include <string>
 
+#include "formats/io/open_role_map.h"
 #include "formats/keys/keys.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/motion_keys.h"
+#include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 
 // Sidecars: the contacts and keytimes of a motion, stored beside it as NAME.keys.json.
@@ -40,5 +43,24 @@ void place_contacts(const Clip& clip, std::span<Contact> contacts);
 
 // Names and times for the report.
 Json to_json(std::span<const Keytime> keytimes);
+
+// --contacts: where a tool that combines motions gets their contacts and keytimes, and where it
+// writes those of the result.
+
+enum class KeysChoice : unsigned char { automatic, sidecar, none };
+
+// The keys of a motion read from `path`: from its sidecar, or detected if there is none and
+// `choice` allows it. Empty for KeysChoice::none, or with a warning (code keys-none) if detection
+// fails. `name` is for messages. Codes: keys-missing, and those of reading the sidecar.
+Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::string& path,
+                                              const std::string& name, const Clip& clip,
+                                              const io::FindRoles& find_roles,
+                                              ToolContext& context);
+
+// Adds the keys of a result that is written to `motion_path` to its outputs, beside it; does
+// nothing if there are none or the motion has no path. Fails (code keys-edited) if that file was
+// edited by hand.
+Status add_keys(const MotionKeys& keys, const Skeleton& skeleton, double duration,
+                const std::string& motion_path, OutputSet& outputs);
 
 }  // namespace krok::cli

@@ -9,8 +9,8 @@
 #include "render/actor.h"
 #include "skin/skin.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/body_choice.h"
 #include "tools/shared/image.h"
+#include "tools/shared/shared_options.h"
 
 // Reads input files as actors that can be rendered.
 

@@ -91,8 +91,7 @@ Json planting_json(const PlantedFeet& planted, bool contacts_given) {
 }
 
 std::string planting_line(const PlantedFeet& planted) {
-  std::string line = fmt::format("feet planted in {}",
-                                 counted(static_cast<long long>(planted.stays.size()), "stay"));
+  std::string line = fmt::format("feet planted in {}", counted(planted.stays.size(), "stay"));
   if (planted.stance_share) {
     line += fmt::format(", {:.0f} % of the time from strike to toe-off",
                         std::floor(100 * *planted.stance_share));
@@ -115,6 +114,32 @@ std::string planting_line(const PlantedFeet& planted) {
     line += fmt::format("; jitter of {} taken out of the body", millimetres(planted.body_steadied));
   }
   return line;
+}
+
+Result<PlantDrift> plant_result(Clip& clip, MotionKeys& keys, const RoleMap& roles,
+                                ToolContext& context) {
+  std::optional<std::span<const Contact>> contacts;
+  if (!keys.contacts.empty()) contacts = keys.contacts;
+  auto planted = plant_feet(clip, roles, contacts);
+  if (!planted && planted.error().code == "plant-contacts") {
+    context.warn(planted.error().code, planted.error().message, planted.error().hint);
+    return PlantDrift{};
+  }
+  if (!planted) return std::move(planted).error();
+  context.diagnose(planted->warnings);
+  planted->clip.provenance = std::move(clip.provenance);
+  clip = std::move(planted->clip);
+  place_contacts(clip, keys.contacts);
+  return PlantDrift{planted->drift_before, planted->drift_after};
+}
+
+Json to_json(const PlantDrift& drift) {
+  return {{"drift_before", drift.before}, {"drift", drift.after}};
+}
+
+std::string text_of(const PlantDrift& drift) {
+  return fmt::format("feet planted: largest drift {} mm instead of {} mm",
+                     readable(1e3 * drift.after, 3), readable(1e3 * drift.before, 3));
 }
 
 }  // namespace krok::cli

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -16,15 +17,8 @@ namespace {
 constexpr double kTurnedFoot = 40 * kRadiansPerDegree;
 
 std::string method_name(krok::retarget::Method method) {
-  switch (method) {
-    case krok::retarget::Method::same_skeleton:
-      return "same skeleton";
-    case krok::retarget::Method::roles:
-      return "roles";
-    case krok::retarget::Method::names:
-      break;
-  }
-  return "names";
+  constexpr std::array kNames = {"same skeleton", "roles", "names"};  // [Method]
+  return kNames[static_cast<std::size_t>(method)];
 }
 
 std::string label_of(const RoleMap& roles, int joint) {
@@ -231,11 +225,8 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
   Diagnostics choices;
   const krok::retarget::Report& report = outcome.report;
   const auto note = [&](std::string code, std::string message, std::string hint = {}) {
-    Diagnostic diagnostic;
+    Diagnostic diagnostic = make_warning(std::move(code), std::move(message), std::move(hint));
     diagnostic.severity = Severity::note;
-    diagnostic.code = std::move(code);
-    diagnostic.message = std::move(message);
-    diagnostic.hint = std::move(hint);
     choices.push_back(std::move(diagnostic));
   };
   const std::vector<Transform>& reference = outcome.source.reference;

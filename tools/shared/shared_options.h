@@ -1,18 +1,72 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
+#include "body/body.h"
 #include "capture/conventions.h"
 #include "formats/container/packed_orientation.h"
+#include "formats/io/open_terrain.h"
 #include "skin/skin.h"
 #include "tools/cli/option_kinds.h"
-#include "tools/shared/body_choice.h"
-#include "tools/shared/ground_choice.h"
-#include "tools/shared/keys_choice.h"
+#include "tools/cli/tool.h"
+#include "tools/shared/keys_sidecar.h"
 
 // Options that several tools have, each declared here alone. `help` is what differs between tools.
 
 namespace krok::cli {
+
+// A ground that the user names, for io::open_terrain().
+struct GroundChoice {
+  std::string text;  // empty for none
+  height_field::Placement placement;
+
+  bool empty() const { return text.empty(); }
+  Result<std::unique_ptr<Terrain>> open(io::Inputs& inputs) const {
+    return io::open_terrain(text, placement, inputs);
+  }
+};
+
+// --body, for tools that show motions: the generated body for a motion without one. The meaning of
+// automatic depends on the tool.
+enum class BodyChoice : unsigned char { automatic, none, low, medium, high };
+
+// Options for generating the body; `choice` is low, medium or high.
+inline BodyOptions body_options(BodyChoice choice, const ToolContext& context) {
+  BodyOptions how;
+  how.detail = choice == BodyChoice::low      ? BodyDetail::low
+               : choice == BodyChoice::medium ? BodyDetail::medium
+                                              : BodyDetail::high;
+  how.jobs = context.jobs;
+  how.progress = context.progress;
+  return how;
+}
+
+// How values between keys are made: on straight lines, or on cubics (positions by Hermite's,
+// rotations by squad) whose velocities at the keys are 1 - tension of those between the neighbours.
+struct Interpolation {
+  bool hermite = false;
+  double tension = 0;  // 0 to 1
+};
+
+// linear, hermite or hermite:0.5.
+inline ValueKind<Interpolation> interpolation() {
+  return {"interpolation",
+          "linear|hermite[:TENSION]",
+          [](const std::string& text) -> Result<Interpolation> {
+            if (text == "linear") return Interpolation{};
+            if (text == "hermite") return Interpolation{.hermite = true};
+            if (text.starts_with("hermite:")) {
+              const auto tension = number({0, 1}).read(text.substr(8));
+              if (!tension) return tension.error();
+              return Interpolation{.hermite = true, .tension = *tension};
+            }
+            return usage("'" + text + "' is neither linear nor hermite",
+                         "write linear, hermite, or hermite:0.5 with a tension from 0 (smooth) to "
+                         "1 (stops at each key)");
+          },
+          {"linear", "hermite"}};
+}
 
 // A unit of length of a file: m, cm, ..., or a length.
 ValueKind<Unit> length_unit();

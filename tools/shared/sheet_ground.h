@@ -8,8 +8,8 @@
 #include "draw/viewer_page.h"
 #include "render/actor.h"
 #include "terrain/terrain.h"
-#include "tools/shared/ground_choice.h"
 #include "tools/shared/moving_actor.h"
+#include "tools/shared/shared_options.h"
 
 // The ground and the footprints in images.
 

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/numbers.h"
 #include "formats/prints/prints.h"
 #include "roles/roles.h"
 #include "terrain/level.h"
 #include "terrain/surface.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli {
 
@@ -68,12 +67,11 @@ Result<ShownPrints> show_prints(std::span<const gait::Print> prints, const Terra
     shown.numbers.push_back(static_cast<int>(i) + 1);
   }
   if (left_out > 0) {
-    context.warn("prints-many",
-                 fmt::format("{} of {} footprints are not shown: farther than {} m from the "
-                             "motion, or more than {}",
-                             grouped(static_cast<long long>(left_out)),
-                             grouped(static_cast<long long>(placed->size())), kNear,
-                             grouped(static_cast<long long>(kMaxPrints))));
+    context.warn(
+        "prints-many",
+        fmt::format("{} of {} footprints are not shown: farther than {} m from the "
+                    "motion, or more than {}",
+                    grouped(left_out), grouped(placed->size()), kNear, grouped(kMaxPrints)));
   }
   return shown;
 }
@@ -120,6 +118,29 @@ Status add_ground(const Terrain* ground, std::span<const gait::Print> prints,
   page.ground = {std::move(surface->positions), std::move(surface->normals),
                  std::move(surface->triangles)};
   return {};
+}
+
+std::string facts_of(const Clip& clip) {
+  if (clip.frame_count() == 0) return fmt::format("{} joints, no motion", clip.joint_count());
+  return fmt::format("{} s, {} fps, {} frames, {} joints", readable(clip.duration(), 3),
+                     readable(clip.rate), clip.frame_count(), clip.joint_count());
+}
+
+Result<std::string> walk_page(const std::string& name, const Clip& clip, const MotionKeys& keys,
+                              const Terrain& ground, std::span<const gait::Print> prints,
+                              ToolContext& context) {
+  const auto body = make_body(clip, body_options(BodyChoice::medium, context));
+  if (!body) return body.error();
+  draw::ViewerPage page;
+  page.title = name;
+  draw::ViewedMotion& motion = page.motions.emplace_back();
+  motion.name = name;
+  motion.facts = facts_of(clip);
+  motion.clip = &clip;
+  motion.body = &body->model;
+  motion.keys = keys;
+  if (Status status = add_ground(&ground, prints, page, context); !status) return status.error();
+  return draw::write_viewer_page(page);
 }
 
 }  // namespace krok::cli

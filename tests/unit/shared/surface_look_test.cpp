@@ -1,8 +1,6 @@
 // If these fail, pictures of figures show materials in another colour, without their texture, or
 // with holes where there are none.
 
-#include "tools/shared/surface_look.h"
-
 #include <gtest/gtest.h>
 
 #include "skin/scene_of.h"

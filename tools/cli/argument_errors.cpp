@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+#include "core/nearest_name.h"
+#include "core/text.h"
+#include "tools/cli/command_line.h"
+#include "tools/cli/renamed_options.h"
+#include "tools/cli/usage.h"
+
+// What is wrong with arguments that cannot be parsed, and what was probably meant.
+
+namespace krok::cli {
+
+namespace {
+
+// "'a' 'b'", of at most three.
+std::string shown_list(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size() && i < 3; ++i) {
+    list += fmt::format("{}'{}'", i == 0 ? "" : " ", shown(words[i]));
+  }
+  return list + (words.size() > 3 ? " ..." : "");
+}
+
+}  // namespace
+
+// The first option whose value would be the option after it: "--size -o x.png".
+std::optional<Error> CommandLine::option_without_value(
+    const std::vector<std::string>& arguments) const {
+  for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i] != "--"; ++i) {
+    const std::string& next = arguments[i + 1];
+    if (!arguments[i].starts_with('-') || !next.starts_with('-') || next == "-") continue;
+    const CLI::Option* option = app_.get_option_no_throw(arguments[i]);
+    if (option == nullptr || option->get_items_expected_min() < 1) continue;
+    if (app_.get_option_no_throw(next.substr(0, next.find('='))) == nullptr) continue;
+    return usage(fmt::format("{} has no value", arguments[i]),
+                 fmt::format("write {} {}; '{}' is the next option", arguments[i],
+                             option->get_type_name(), next));
+  }
+  return std::nullopt;
+}
+
+// "-json" would be -j with the value "son".
+std::optional<Error> CommandLine::option_with_one_dash(
+    const std::vector<std::string>& arguments) const {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    if (argument.size() < 3 || argument[0] != '-' || argument[1] == '-') continue;
+    const std::string name = "-" + argument.substr(0, argument.find('='));
+    if (app_.get_option_no_throw(name) == nullptr) continue;
+    return usage(fmt::format("unknown option '{}'", name.substr(1)),
+                 fmt::format("did you mean '{}'?", name));
+  }
+  return std::nullopt;
+}
+
+// The first word before "--" that looks like an option and is none.
+std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>& arguments) const {
+  std::vector<std::string> names;
+  for (const OptionFacts& option : options_.facts()) {
+    names.insert(names.end(), option.names.begin(), option.names.end());
+  }
+  for (const std::string& argument : arguments) {
+    if (argument == "--") break;
+    const bool is_long = argument.starts_with("--");
+    const bool letter = argument.size() == 2 && argument[0] == '-' &&
+                        std::isalpha(static_cast<unsigned char>(argument[1])) != 0;
+    if (!is_long && !letter) continue;
+    const std::string name = argument.substr(0, argument.find('='));
+    if (app_.get_option_no_throw(name) != nullptr) continue;
+    const auto is_now = [&](const RenamedOption& option) {
+      if (option.before != name || (!option.tool.empty() && option.tool != spec_.name))
+        return false;
+      const std::string now(option.now.substr(0, option.now.find(' ')));
+      return !option.tool.empty() || !now.starts_with('-') ||
+             app_.get_option_no_throw(now) != nullptr;
+    };
+    // A tool's own rows come after those of any.
+    const auto none = std::rend(kRenamedOptions);
+    if (const auto row = std::find_if(std::rbegin(kRenamedOptions), none, is_now); row != none) {
+      return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
+    }
+    const std::string near = is_long ? nearest_name(name, names) : std::string();
+    return Error("usage", fmt::format("unknown option '{}'", shown(name)),
+                 near.empty() ? fmt::format("see {} --help", spec_.name)
+                              : fmt::format("did you mean '{}'?", near));
+  }
+  return std::nullopt;
+}
+
+Error CommandLine::parse_error(const std::vector<std::string>& arguments,
+                               const CLI::ParseError& error) const {
+  if (auto unknown = unknown_option(arguments)) return *std::move(unknown);
+  auto left = app_.remaining();
+  std::erase(left, "--");  // before the input of a file of a batch
+  if (!left.empty()) {
+    const bool file = form_ == Form::single && spec_.batch;
+    for (const CLI::Option* option : app_.get_options()) {
+      if (!option->get_required() || !option->empty() || option->get_positional()) continue;
+      return Error("usage", fmt::format("{} is missing", option->get_name()),
+                   fmt::format("{} is an argument too many; perhaps it is the value of {}",
+                               shown_list(left), option->get_name()));
+    }
+    constexpr std::string_view kUnits = " m cm mm in ft s ms f deg rad fps Hz ";
+    if (kUnits.find(" " + left.front() + " ") != std::string_view::npos) {
+      return usage(fmt::format("unexpected argument {}", shown_list(left)),
+                   "write a number and its unit as one word: 1s");
+    }
+    return Error(
+        "usage",
+        fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),
+        !too_many_hint(spec_.name).empty() ? too_many_hint(spec_.name)
+        : file ? fmt::format("a file to be written is given with -o; for several inputs, use "
+                             "--out-dir DIR; see {} --help",
+                             spec_.name)
+               : fmt::format("see {} --help", spec_.name));
+  }
+  const bool too_many = form_ == Form::single && spec_.batch &&
+                        dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  std::string missing;
+  for (const CLI::Option* option : app_.get_options()) {
+    if (!option->get_required() || !option->empty()) continue;
+    const std::string& type = option->get_type_name();
+    missing = fmt::format("give {}{}; ", option->get_positional() ? "" : option->get_name() + " ",
+                          type.empty() ? option->get_name() : type);
+    break;
+  }
+  return Error("usage", error.what(),
+               fmt::format("{}see {} --help{}", missing, spec_.name,
+                           too_many ? "; for several inputs, use --out-dir DIR" : ""));
+}
+
+}  // namespace krok::cli
