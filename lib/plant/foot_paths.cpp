@@ -372,6 +372,10 @@ TwoBoneSolution solve(const Leg& leg, const LegNow& now) {
   const double give_way = straight * std::min(1.0, added / std::max(bend, 1e-9));
   const Vec3 captured = bend * chain.hinge + added * agree * usual;
   const Vec3 axis = (1 - give_way) * captured + give_way * then * usual;
+  // So does where thigh and shank turn from: a knee that was bent backwards, or to a side, and now
+  // bends does not turn them over.
+  const double alike = axis.stableNormalized().dot(chain.hinge);
+  chain.hinge = (1 - give_way) * alike * chain.hinge + give_way * usual;
   const Vec3 line = goal.target - chain.root;
   const Quat swing = shortest_arc(chain.end - chain.root, line);
   goal.pole = line.cross(swing * (axis.norm() > 1e-9 ? axis : usual));

@@ -103,6 +103,43 @@ TEST(PlantFeet, KneesDoNotTakeOverWhatFeetShakeBy) {
   EXPECT_LT(measures.knee_99, 1.2);
 }
 
+// Captured knees are at times bent backwards by a few degrees. Would fail if thigh and shank turned
+// over, by 180 degrees about themselves, where planting bends such a knee.
+TEST(PlantFeet, KneesBentBackwardsTurnNoLegOver) {
+  const samples::Walk walk = plain_walk();
+  const RoleMap roles = find_roles(walk.clip.skeleton);
+  Clip input = test::with_skate(walk, {.body_jitter = 0});
+  for (int f = 0; f < input.frame_count(); ++f) {
+    for (const test::LegRoles& leg : test::legs_of(roles)) {
+      const Vec3 hip = test::joint_of(input, f, leg.upper).position;
+      const Vec3 knee = test::joint_of(input, f, leg.lower).position;
+      const Vec3 ankle = test::joint_of(input, f, leg.foot).position;
+      const Vec3 line = (ankle - hip).normalized();
+      const Vec3 out = knee - hip - line * line.dot(knee - hip);
+      if (out.norm() > 0.03) continue;
+      const Vec3 behind = knee - 2 * out;
+      const auto turn = [&](int joint, const Vec3& from, const Vec3& to) {
+        Quatf& orientation = input.frame_orientations(f)[static_cast<std::size_t>(joint)];
+        orientation = (shortest_arc(from, to) * orientation.cast<double>()).cast<float>();
+      };
+      turn(leg.upper, knee - hip, behind - hip);
+      turn(leg.lower, ankle - knee, ankle - behind);
+      input.frame_positions(f)[static_cast<std::size_t>(leg.lower)] = behind.cast<float>();
+    }
+  }
+  const PlantedFeet feet = planted(input);
+  double largest = 0;
+  for (int f = 0; f < input.frame_count(); ++f) {
+    for (const test::LegRoles& leg : test::legs_of(roles)) {
+      const Quat before = test::joint_of(input, f, leg.upper).orientation;
+      const Quat after = test::joint_of(feet.clip, f, leg.upper).orientation;
+      largest = std::max(largest, before.angularDistance(after));
+    }
+  }
+  EXPECT_GT(largest, 0.05);
+  EXPECT_LT(largest, 0.6);
+}
+
 // All walks of the generator, at all its rates, 20 mm of slides and 5 mm of jitter.
 TEST(PlantFeet, ManyWalks) {
   for (unsigned seed = 0; seed < 24; ++seed) {
