@@ -85,7 +85,7 @@ std::unique_ptr<CommandLine> ReadyLines::take(std::size_t set) {
 void ReadyLines::put_back(std::size_t set, std::unique_ptr<CommandLine> line) {
   Kept oldest;  // destroyed after the mutex is released
   const std::lock_guard lock(mutex_);
-  if (kept_.size() >= most_) {
+  if (kept_.size() >= max_) {
     oldest = std::move(kept_.front());
     kept_.erase(kept_.begin());
   }

@@ -54,9 +54,9 @@ std::vector<std::string> arguments_for_file(const std::vector<GivenOption>& opti
 // that is not given keeps its previous value. Running a tool does not change its options.
 class ReadyLines {
  public:
-  // Keeps at most `most` lines, one per thread, for any number of option sets.
-  ReadyLines(MakeToolSpec make_spec, std::size_t most)
-      : make_spec_(std::move(make_spec)), most_(most) {}
+  // Keeps at most `max` lines, one per thread, for any number of option sets.
+  ReadyLines(MakeToolSpec make_spec, std::size_t max)
+      : make_spec_(std::move(make_spec)), max_(max) {}
 
   // Takes a line for an option set. Thread-safe, as is put_back().
   std::unique_ptr<CommandLine> take(std::size_t set);
@@ -68,7 +68,7 @@ class ReadyLines {
     std::unique_ptr<CommandLine> line;
   };
   MakeToolSpec make_spec_;
-  std::size_t most_;
+  std::size_t max_;
   std::mutex mutex_;
   std::vector<Kept> kept_;  // most recently returned last
 };

@@ -7,9 +7,7 @@
 
 #include "blend/warp_by_shape.h"
 #include "core/numbers.h"
-#include "core/parallel.h"
 #include "core/text.h"
-#include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "tools/cli/file_name.h"
@@ -131,15 +129,8 @@ Status write_results(const Options& options, const std::vector<Motion>& motions,
     }
   }
   OutputSet outputs(context);
-  Status status = outputs.add(context.output, [&](OutputFile& file) {
-    return anim::write(blended.clip,
-                       {.orientation = options.orientation, .jobs = thread_count(context.jobs)},
-                       file);
-  });
-  if (status) {
-    status = add_keys(blended.keys, blended.clip.skeleton, blended.clip.duration(), context.output,
-                      outputs);
-  }
+  Status status = add_motion(blended.clip, blended.keys, options.orientation, context.output,
+                             context.jobs, outputs);
   if (status && !options.save_warp.empty()) {
     status = outputs.add(options.save_warp, warp_table(motions, blended));
   }

@@ -61,9 +61,7 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
   const auto capture = read_bvh(file, options, frame_count);
   if (!capture) return capture.error();
   context.diagnose(capture->diagnostics);
-  Description out;
-  out.what = "a capture (BVH), as read by krok-import";
-  out.json["kind"] = "bvh";
+  Description out("a capture (BVH), as read by krok-import", "bvh");
   add_timing(frame_count, capture->clip.rate, out);
   out.json["frames_announced"] = capture->frames_announced;
   out.json["frame_time"] = capture->frame_time;
@@ -106,9 +104,7 @@ Result<Description> describe_motion(const InputFile& file, const SkeletonOptions
   const auto clip = io::open_motion(file, context);
   if (!clip) return clip.error();
   const std::string ending = extension(file.path());
-  Description out;
-  out.what = fmt::format("a motion ({})", ending);
-  out.json["kind"] = ending.empty() ? ending : ending.substr(1);
+  Description out(fmt::format("a motion ({})", ending), ending.empty() ? ending : ending.substr(1));
   add_timing(clip->frame_count(), clip->rate, out);
   if (Status status = add_skeleton(clip->skeleton, how, out); !status) return status.error();
   std::vector<Vec3> positions;

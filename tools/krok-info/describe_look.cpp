@@ -176,9 +176,7 @@ Result<Description> describe_material(const InputFile& file, const SkeletonOptio
                                       ToolContext& context) {
   const auto materials = material::read(file.text());
   if (!materials) return materials.error();
-  Description out;
-  out.what = "materials (.material)";
-  out.json["kind"] = "material";
+  Description out("materials (.material)", "material");
   ImageSizes sizes(file.path(), context);
   Json list = Json::array();
   for (const Material& material : *materials) {
@@ -195,9 +193,7 @@ Result<Description> describe_character(const InputFile& file, const SkeletonOpti
   if (!loaded) return loaded.error();
   const Character& character = loaded->character;
   const Model& model = loaded->model;
-  Description out;
-  out.what = "a character (.character)";
-  out.json["kind"] = "character";
+  Description out("a character (.character)", "character");
   out.json["name"] = character.name;
   if (!character.name.empty()) out.add("name", shown(character.name));
   out.add("model", fmt::format("{}: {}, {}", shown(character.model),

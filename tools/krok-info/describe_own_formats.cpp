@@ -91,9 +91,7 @@ Result<Description> describe_anim(const InputFile& file, const SkeletonOptions& 
   } else if (Status status = read_through(frames, context.jobs); !status) {
     return status.error();
   }
-  Description out;
-  out.what = "a motion (.anim)";
-  out.json["kind"] = "anim";
+  Description out("a motion (.anim)", "anim");
   add_timing(frames.frame_count, frames.rate, out);
   if (Status status = add_skeleton(frames.skeleton, how, out); !status) return status.error();
   if (!stretches.empty()) {
@@ -113,9 +111,7 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
                                    ToolContext&) {
   const auto model = model::read(file.bytes());
   if (!model) return model.error();
-  Description out;
-  out.what = "a model (.model)";
-  out.json["kind"] = "model";
+  Description out("a model (.model)", "model");
   const auto vertices = model->positions.size(), triangles = model->triangles.size();
   std::vector<std::string> with;
   if (!model->normals.empty()) with.emplace_back("normals");
@@ -150,9 +146,7 @@ Result<Description> describe_model(const InputFile& file, const SkeletonOptions&
 Result<Description> describe_cam(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto camera = cam::read(file.bytes());
   if (!camera) return camera.error();
-  Description out;
-  out.what = "a camera (.cam)";
-  out.json["kind"] = "cam";
+  Description out("a camera (.cam)", "cam");
   add_timing(camera->frame_count(), camera->rate, out);
   if (camera->frame_count() > 0) {
     const auto [low, high] =
@@ -179,9 +173,7 @@ Result<Description> describe_correctives(const InputFile& file, const SkeletonOp
                                          ToolContext&) {
   const auto read = correctives_file::read(file.text());
   if (!read) return read.error();
-  Description out;
-  out.what = "shapes by pose (.correctives)";
-  out.json["kind"] = "correctives";
+  Description out("shapes by pose (.correctives)", "correctives");
   std::vector<std::string> lines;
   Json joints = Json::array();
   for (const JointCorrective& joint : read->joints) {
@@ -202,9 +194,7 @@ Result<Description> describe_correctives(const InputFile& file, const SkeletonOp
 Result<Description> describe_morphs(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto morphs = morph_exr::read(file.bytes());
   if (!morphs) return morphs.error();
-  Description out;
-  out.what = "morph targets (.exr)";
-  out.json["kind"] = "morphs";
+  Description out("morph targets (.exr)", "morphs");
   out.add("vertices", fmt::format("{}, of the model", grouped(morphs->vertex_count)));
   out.json["vertices"] = morphs->vertex_count;
   out.json["normals"] = !morphs->normals.empty();
@@ -220,9 +210,7 @@ Result<Description> describe_morphs(const InputFile& file, const SkeletonOptions
 Result<Description> describe_textgrid(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto grid = textgrid::read(file.text(), file.path());
   if (!grid) return grid.error();
-  Description out;
-  out.what = "labels over time (TextGrid)";
-  out.json["kind"] = "textgrid";
+  Description out("labels over time (TextGrid)", "textgrid");
   out.add("duration", readable(grid->end - grid->start, 4) + " s");
   out.json["duration"] = grid->end - grid->start;
   std::vector<std::string> lines;
@@ -244,9 +232,7 @@ Result<Description> describe_textgrid(const InputFile& file, const SkeletonOptio
 Result<Description> describe_ragdoll(const InputFile& file, const SkeletonOptions&, ToolContext&) {
   const auto read = ragdoll_file::read(file.text(), nullptr);
   if (!read) return read.error();
-  Description out;
-  out.what = "bodies and joints (.ragdoll.json)";
-  out.json["kind"] = "ragdoll";
+  Description out("bodies and joints (.ragdoll.json)", "ragdoll");
   double mass = 0;
   int soft = 0;
   std::map<std::string, int> shapes, kinds, modes;

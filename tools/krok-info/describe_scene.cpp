@@ -225,9 +225,8 @@ Result<Description> describe_scene(const InputFile& file, registry::Kind kind,
   const auto scene = io::open_scene(file, context);
   if (!scene) return scene.error();
   context.diagnose(scene->diagnostics);
-  Description out;
-  out.what = name_of(kind, file);
-  out.json["kind"] = registry::is_read_through_assimp(kind) ? registry::kind_name(kind) : "gltf";
+  Description out(name_of(kind, file),
+                  registry::is_read_through_assimp(kind) ? registry::kind_name(kind) : "gltf");
   out.add("nodes", grouped(std::ssize(scene->nodes)));
   out.json["nodes"] = scene->nodes.size();
   add_meshes(*scene, out);

@@ -137,9 +137,7 @@ Result<Description> describe_steps(const InputFile& file, const SkeletonOptions&
   const auto steps = steps::read(file.bytes());
   if (!steps) return steps.error();
   const parametric::Library& library = steps->library;
-  Description out;
-  out.what = "a step library (.steps)";
-  out.json["kind"] = "steps";
+  Description out("a step library (.steps)", "steps");
   const bool left = library.swing == FootSide::left;
   out.add("steps", left ? "with the left foot" : "with the right foot");
   out.json["swing"] = left ? "left" : "right";

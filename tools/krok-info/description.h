@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "capture/convention_choice.h"
@@ -18,6 +19,11 @@ namespace krok::cli::info {
 
 // Rows with a label and one or more lines.
 struct Description {
+  Description() = default;
+  Description(std::string it_is, std::string_view kind) : what(std::move(it_is)) {
+    json["kind"] = kind;
+  }
+
   std::string what;  // "a motion (.anim)"
   struct Row {
     std::string label;

@@ -207,13 +207,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!settings) return settings.error();
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
-  std::unique_ptr<Terrain> ground;
-  if (!options.ground.empty()) {
-    auto opened = options.ground.open(context);
-    if (!opened) return opened.error();
-    ground = *std::move(opened);
-  }
-  const auto how = judging(options, *settings, ground.get());
+  const auto ground = options.ground.open(context);
+  if (!ground) return ground.error();
+  const auto how = judging(options, *settings, ground->get());
   std::vector<LintedFile> files = lint_all(options, how, *find_roles, context);
   if (Status status = leave_out_accepted(options, files, context); !status) return status.error();
   const auto order = worst_first(files);

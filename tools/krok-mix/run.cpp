@@ -10,9 +10,7 @@
 #include <vector>
 
 #include "core/numbers.h"
-#include "core/parallel.h"
 #include "core/text.h"
-#include "formats/anim/anim.h"
 #include "formats/csv/csv_writer.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_character.h"
@@ -170,14 +168,8 @@ Status write_results(const Options& options, const TimelineSources& motions, Mix
     }
   }
   OutputSet outputs(context);
-  Status status = outputs.add(context.output, [&](OutputFile& file) {
-    return anim::write(
-        mixed.clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
-  });
-  if (status) {
-    status =
-        add_keys(mixed.keys, mixed.clip.skeleton, mixed.clip.duration(), context.output, outputs);
-  }
+  Status status = add_motion(mixed.clip, mixed.keys, options.orientation, context.output,
+                             context.jobs, outputs);
   if (status && !face.values.empty()) {
     status = outputs.add(weights_path(context.output),
                          [&](OutputFile& file) { return csv::write(face, file); });

@@ -9,7 +9,6 @@
 
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_role_map.h"
 #include "formats/steps/steps.h"
@@ -275,12 +274,8 @@ Status write_all(const Options& options, std::vector<Motion>& motions, ToolConte
   for (Motion& motion : motions) {
     Clip& clip = motion.made.clip;
     clip.provenance = context.provenance();
-    Status status = outputs.add(motion.path, [&](OutputFile& file) {
-      return anim::write(
-          clip, {.orientation = options.orientation, .jobs = thread_count(context.jobs)}, file);
-    });
-    if (!status) return status;
-    status = add_keys(motion.made.keys, clip.skeleton, clip.duration(), motion.path, outputs);
+    Status status =
+        add_motion(clip, motion.made.keys, options.orientation, motion.path, context.jobs, outputs);
     if (!status) return status;
   }
   return outputs.finish();

@@ -126,19 +126,15 @@ Status check_layout(const Options& options, const Files& files) {
 }
 
 Status add_walk(const Options& options, ToolContext& context, draw::ViewerPage& page) {
-  std::unique_ptr<Terrain> ground;
-  if (!options.ground.empty()) {
-    auto opened = options.ground.open(context);
-    if (!opened) return opened.error();
-    ground = *std::move(opened);
-  }
+  const auto ground = options.ground.open(context);
+  if (!ground) return ground.error();
   std::vector<gait::Print> prints;
   if (!options.prints.empty()) {
     auto opened = open_prints(options.prints, context);
     if (!opened) return opened.error();
     prints = *std::move(opened);
   }
-  Status status = add_ground(ground.get(), prints, page, context);
+  Status status = add_ground(ground->get(), prints, page, context);
   if (!status && status.error().code.starts_with("walk-")) {
     return std::move(status).error().in_file(options.prints);
   }

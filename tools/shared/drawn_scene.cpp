@@ -35,10 +35,10 @@ void warn(Error error, const std::string& message, const std::string& path, Tool
 }
 
 std::shared_ptr<const render::Mipmap> decoded(const Material& material, const std::string& path,
-                                              std::size_t most_pixels, ToolContext& context) {
+                                              std::size_t max_pixels, ToolContext& context) {
   const EncodedImage& image = *material.base_color_texture.image;
   const std::string words = words_for(material, image);
-  auto pixels = image::decode(image.bytes, std::min(most_pixels, image::kMaxPixels));
+  auto pixels = image::decode(image.bytes, std::min(max_pixels, image::kMaxPixels));
   if (!pixels) {
     warn(pixels.error(),
          fmt::format("{}: {}; the plain colour is used", words, pixels.error().message), path,

@@ -9,6 +9,8 @@
 
 #include "contacts/gait_keytimes.h"
 #include "core/numbers.h"
+#include "core/parallel.h"
+#include "formats/anim/anim.h"
 #include "formats/io/open_role_map.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
@@ -171,6 +173,14 @@ Status add_keys(const MotionKeys& keys, const Skeleton& skeleton, double duratio
     }
   }
   return outputs.add(path, krok::keys::write(keys, skeleton, duration));
+}
+
+Status add_motion(const Clip& clip, const MotionKeys& keys, OrientationEncoding orientation,
+                  const std::string& path, int jobs, OutputSet& outputs) {
+  Status status = outputs.add(path, [&](OutputFile& file) {
+    return anim::write(clip, {.orientation = orientation, .jobs = thread_count(jobs)}, file);
+  });
+  return status ? add_keys(keys, clip.skeleton, clip.duration(), path, outputs) : status;
 }
 
 }  // namespace krok::cli

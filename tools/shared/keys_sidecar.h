@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "formats/container/packed_orientation.h"
 #include "formats/io/open_role_map.h"
 #include "formats/keys/keys.h"
 #include "roles/roles.h"
@@ -62,5 +63,9 @@ Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::stri
 // edited by hand.
 Status add_keys(const MotionKeys& keys, const Skeleton& skeleton, double duration,
                 const std::string& motion_path, OutputSet& outputs);
+
+// Adds a motion and its keys to the outputs.
+Status add_motion(const Clip& clip, const MotionKeys& keys, OrientationEncoding orientation,
+                  const std::string& path, int jobs, OutputSet& outputs);
 
 }  // namespace krok::cli

@@ -101,10 +101,9 @@ std::string summary(const Outcome& outcome) {
   const auto& left = report.left_foot;
   const auto& right = report.right_foot;
   if (left || right) {
-    const double left_most = left ? left->largest_correction : 0;
-    const double right_most = right ? right->largest_correction : 0;
-    text +=
-        fmt::format(", feet corrected by up to {}", millimetres(std::max(left_most, right_most)));
+    const double left_max = left ? left->largest_correction : 0;
+    const double right_max = right ? right->largest_correction : 0;
+    text += fmt::format(", feet corrected by up to {}", millimetres(std::max(left_max, right_max)));
     const double miss = std::max(left ? left->largest_miss : 0, right ? right->largest_miss : 0);
     if (report.largest_drop > 0.001) {
       text += fmt::format(", hips lowered by up to {}", millimetres(report.largest_drop));

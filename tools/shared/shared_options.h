@@ -22,7 +22,9 @@ struct GroundChoice {
   height_field::Placement placement;
 
   bool empty() const { return text.empty(); }
+  // Null if it is empty.
   Result<std::unique_ptr<Terrain>> open(io::Inputs& inputs) const {
+    if (empty()) return std::unique_ptr<Terrain>();
     return io::open_terrain(text, placement, inputs);
   }
 };
