@@ -65,7 +65,18 @@ class ConventionChooser {
       positions = choose_positions(hierarchy_, samples, file_.options.up);
     } else {
       const bool given = file_.options.positions != Positions::automatic;
-      if (given) positions.positions = file_.options.positions;
+      if (given) {
+        const PositionChoice seen = choose_positions(hierarchy_, samples, file_.options.up);
+        positions.positions = file_.options.positions;
+        if (seen.has_evidence && seen.positions != positions.positions &&
+            seen.choice.confidence != Confidence::guess) {
+          report(Severity::warning, "bvh-positions",
+                 fmt::format("position channels are taken as given; they are {} ({}): {}",
+                             seen.choice.choice, confidence_name(seen.choice.confidence),
+                             seen.choice.reason),
+                 "without --positions they are detected");
+        }
+      }
       positions.choice.choice =
           positions.positions == Positions::absolute ? "absolute" : "additive";
       positions.choice.reason = given ? "as given" : "as krok-export writes them";

@@ -41,6 +41,13 @@ void apply_given(const GivenConventions& given, Conventions& conventions) {
     conventions.up_reason = axes_reason;
   }
   if (given.forward) {
+    // With another up axis, what is ahead was looked for along the wrong ones.
+    if (given.axes_given(given.forward) && conventions.forward != *given.forward &&
+        conventions.forward_confidence != Confidence::guess && conventions.up_doubt.empty()) {
+      conventions.forward_doubt =
+          fmt::format("{} is {}: {}", direction_name(conventions.forward),
+                      confidence_name(conventions.forward_confidence), conventions.forward_reason);
+    }
     conventions.forward = conventions.reference_forward = *given.forward;
     conventions.forward_confidence = given.forward_confidence;
     conventions.forward_reason = axes_reason;
@@ -120,14 +127,17 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
   };
   report(given.unit.has_value(), "unit", "the unit", conventions.unit.name,
          conventions.unit_confidence, conventions.unit_reason);
-  if (!conventions.up_doubt.empty()) {
-    Diagnostic doubt = make_warning(
-        code_prefix + "-up",
-        fmt::format("up is {}, as given; {}", direction_name(conventions.up), conventions.up_doubt),
-        "without --up it is detected");
-    doubt.where.file = file_name;
-    diagnostics.push_back(std::move(doubt));
-  }
+  const auto doubt = [&](const char* name, Direction is, const std::string& why) {
+    if (why.empty()) return;
+    Diagnostic warning =
+        make_warning(fmt::format("{}-{}", code_prefix, name),
+                     fmt::format("{} is {}, as given; {}", name, direction_name(is), why),
+                     fmt::format("without --{} it is detected", name));
+    warning.where.file = file_name;
+    diagnostics.push_back(std::move(warning));
+  };
+  doubt("up", conventions.up, conventions.up_doubt);
+  doubt("forward", conventions.forward, conventions.forward_doubt);
   report(given.axes_given(given.up), "up", "up", std::string(direction_name(conventions.up)),
          conventions.up_confidence, conventions.up_reason);
   report(given.axes_given(given.forward), "forward", "forward",

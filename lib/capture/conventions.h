@@ -54,7 +54,8 @@ struct Conventions {
   Confidence forward_confidence = Confidence::guess;
   // One sentence each on the evidence, for the report.
   std::string unit_reason, up_reason, forward_reason;
-  std::string up_doubt;  // what the data say against a given up axis; empty: nothing
+  // What the data say against given axes; empty: nothing.
+  std::string up_doubt, forward_doubt;
 };
 
 // Detects the conventions from the skeleton (reference pose in the file's unit and axes) and up to

@@ -75,6 +75,7 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
   if (up_from_file) {
     found.up_reason = kFromFile;
     found.up_doubt.clear();
+    found.forward_doubt.clear();
   }
   return found;
 }

@@ -91,6 +91,8 @@ TEST_F(Mistakes, ValuesThatMeanSomethingElse) {
       {"krok-cam", {"--orbit", "1", "-o", "a.cam"}, "1.5turns or 540deg"},
       {"krok-info", {"-json"}, "did you mean '--json'?"},
       {"krok-plot", {"--sheet", "s.png", "--show", "angles"}, "add -o OUT.svg"},
+      {"krok-plot", {"--show", "cycles", "--joint", "Spine", "-o", "a.svg"}, "add angles"},
+      {"krok-render", {"--format", "png", "-o", "a.jpg"}, "write -o NAME.png"},
       {"krok-view", {"--out-dir", "pages"}, "-o OUT.html"},
       {"krok-import", {"--skeleton", "smpl24", "-o", "a.anim"}, "a BVH file has its skeleton"}};
   for (const Row& row : rows) {

@@ -252,6 +252,7 @@ Status settle_on_ground(const Options& options, ToolContext& context, Edit& edit
       counted(static_cast<int>(settled->touches.size()), "touch", "touches"),
       mm(settled->after.depth), mm(settled->before.depth), mm(settled->after.hover),
       mm(settled->before.hover));
+  if (how.model == nullptr) line += ", by bodies of usual sizes (--model measures a mesh)";
   if (settled->turned_joint >= 0) {
     line += fmt::format("; largest turn {} ({})", in_degrees(settled->largest_turn),
                         edit.clip.skeleton.names[static_cast<std::size_t>(settled->turned_joint)]);

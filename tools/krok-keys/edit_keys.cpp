@@ -16,8 +16,6 @@ namespace krok::cli::keys {
 
 namespace {
 
-constexpr double kSameKeytime = 0.15;  // seconds
-
 struct MarkedKeytime {
   Keytime key;
   bool by_hand = false;

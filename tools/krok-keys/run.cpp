@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 #include "contacts/contacts.h"
@@ -155,6 +157,20 @@ Result<bool> is_to_find(const Options& options, const std::optional<krok::keys::
                "the keytime file has unmarked edits, which finding steps again "
                "would discard",
                "mark them with \"by\": \"hand\", or use --discard-edits");
+}
+
+// A keytime that is set far from those of its name is one more.
+void log_added(const std::vector<Keytime>& before, const std::vector<Keytime>& now,
+               ToolContext& context) {
+  for (const Keytime& key : now) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Keytime& other : before) {
+      if (other.name == key.name) nearest = std::min(nearest, std::abs(other.time - key.time));
+    }
+    if (nearest <= kSameKeytime || !std::isfinite(nearest)) continue;
+    context.log(fmt::format("{} at {} s is one more; the nearest that was found is {} s away",
+                            key.name, readable(key.time), readable(nearest, 3)));
+  }
 }
 
 std::string as_table(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton) {
@@ -366,7 +382,9 @@ Result<int> run(const Options& options, ToolContext& context) {
     context.log("the keys were edited by hand and are kept; --find steps detects the rest again");
   }
   sidecar.duration = clip->duration();
+  const std::vector<Keytime> found_keys = sidecar.keys.keytimes;
   if (Status status = change(options.changes, *clip, sidecar); !status) return status.error();
+  log_added(found_keys, sidecar.keys.keytimes, context);
   if (Status status = krok::check(sidecar.keys, clip->skeleton, clip->duration()); !status) {
     return status.error();
   }

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/numbers.h"
 #include "formats/weights/weights.h"
 #include "skin/morph.h"
@@ -12,6 +14,8 @@
 namespace krok::cli::morph {
 
 namespace {
+
+constexpr float kMaxPlausible = 10;  // times a target
 
 MeshMotion motion_of(const Model& model, const MorphSet& morphs, const MorphWeights& weights) {
   MeshMotion motion;
@@ -72,6 +76,15 @@ Result<int> bake(const Options& options, ToolContext& context) {
   const auto weights =
       weights::read_weights(weights_file->text(), options.weights, morphs, options.rate);
   if (!weights) return weights.error();
+  for (std::size_t i = 0; i < weights->values.size(); ++i) {
+    if (std::abs(weights->values[i]) <= kMaxPlausible) continue;
+    context.warn(
+        "morph-weights",
+        fmt::format("the weight of {} is {}, where 1 is the whole target",
+                    weights->names[i % weights->names.size()], readable(weights->values[i])),
+        "divide per cent by 100");
+    break;
+  }
 
   OutputSet outputs(context);
   const Status status = options.as == As::targets

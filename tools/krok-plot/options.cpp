@@ -206,6 +206,16 @@ Status check_inputs(const Options& o) {
                              table ? "motions" : "tables", table ? "a table" : "a motion"),
                  table ? "see krok-plot --help" : "--as-table reads the input as a table");
   }
+  const auto draws_joints = [](const std::vector<ChartKind>& charts) {
+    return std::ranges::any_of(charts, [](ChartKind chart) {
+      return chart == ChartKind::positions || chart == ChartKind::angles ||
+             chart == ChartKind::difference;
+    });
+  };
+  if (o.given("--joint") && o.given("--show") &&
+      std::ranges::none_of(o.motion.shown, draws_joints)) {
+    return usage("--joint is for --show positions or angles", "leave out --show, or add angles");
+  }
   if (o.sheet.wanted() && !o.given("--output")) {
     for (const char* option :
          {"--show", "--joint", "--euler", "--difference", "--log-y", "--panel"}) {

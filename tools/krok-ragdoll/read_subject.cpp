@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
@@ -21,6 +22,7 @@ namespace krok::cli::ragdoll {
 namespace {
 
 constexpr double kMinCovered = 0.9;
+constexpr double kMaxPlausibleMass = 500;  // kilograms
 
 class SubjectReader {
  public:
@@ -89,6 +91,12 @@ Status SubjectReader::read_bodies() {
   if (!options_.bodies.empty()) return read_given_bodies();
   krok::ragdoll::BodyOptions how;
   how.mass = options_.mass;
+  if (how.mass.value_or(0) > kMaxPlausibleMass && subject_.roles.humanoid) {
+    context_.warn(
+        "ragdoll-mass",
+        fmt::format("{} kg is no person's mass: pushes hardly move it", readable(*how.mass)),
+        "--mass is in kilograms");
+  }
   std::optional<Model> model;
   if (!options_.model.empty()) {
     auto actor =

@@ -106,8 +106,13 @@ Status check(const Options& o) {
 }  // namespace
 
 Result<Format> format_of(const Options& options, const std::string& output) {
-  if (options.format != Format::from_extension) return options.format;
   const std::string ending = extension(output);
+  if (options.format != Format::from_extension) {
+    const std::string own = extension(ending_of(options.format));
+    if (ending.empty() || ending == own) return options.format;
+    return usage(fmt::format("-o {} is not {}, as --format says", output, own),
+                 "leave out --format, or write -o NAME" + own);
+  }
   for (const auto& [word, format] : kFormats) {
     if (ending == "." + word) return format;
   }

@@ -32,6 +32,8 @@ namespace krok::cli::retarget {
 
 namespace {
 
+constexpr double kSunk = 0.05;  // metres: steeper ground than that which its feet stood on
+
 struct Target {
   Clip clip;                // without frames if it is a model
   std::vector<Vec3f> mesh;  // of a model
@@ -159,6 +161,15 @@ Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
   if (followed && followed->out_of_reach > 0) {
     context.warn("plant-reach", fmt::format("in {} of {} frames a leg is too short for its place",
                                             followed->out_of_reach, source.frame_count()));
+  }
+  if (followed && followed->sunk > kSunk) {
+    context.warn(
+        "retarget-ground",
+        fmt::format("a foot that is over the ground goes {} mm into it: the input does not "
+                    "walk on this ground",
+                    readable(1e3 * followed->sunk, 3)),
+        "--ground is that of the input; krok-walk makes a walk on another, krok-edit "
+        "--settle --ground lays other motions on it");
   }
   return followed;
 }
