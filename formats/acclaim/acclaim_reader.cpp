@@ -10,17 +10,15 @@
 #include <vector>
 
 #include "capture/far_values.h"
-#include "capture/fill_frames.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/result.h"
 #include "core/text.h"
+#include "formats/acclaim/files_internal.h"
 #include "formats/acclaim/kinematics_internal.h"
-#include "formats/acclaim/motion_file_internal.h"
-#include "formats/acclaim/skeleton_file_internal.h"
 #include "formats/acclaim/source_text_internal.h"
 #include "scene/clip.h"
-#include "scene/farthest.h"
+#include "scene/skeleton.h"
 
 namespace krok::acclaim {
 
@@ -129,13 +127,8 @@ class Reader {
  private:
   void tell(Severity severity, const SourceText& source, std::string code, std::string message,
             std::string hint = {}) {
-    Diagnostic diagnostic;
-    diagnostic.severity = severity;
-    diagnostic.code = std::move(code);
-    diagnostic.message = std::move(message);
-    diagnostic.hint = std::move(hint);
-    diagnostic.where.file = source.file_name();
-    capture_.diagnostics.push_back(std::move(diagnostic));
+    capture_.diagnostics.push_back(make_diagnostic(severity, std::move(code), std::move(message),
+                                                   std::move(hint), source.file_name()));
   }
 
   Status choose_conventions(const Kinematics& kinematics) {

@@ -1,8 +1,7 @@
-#include "formats/acclaim/bone_tree_internal.h"
+#include "formats/acclaim/files_internal.h"
 
 #include <fmt/format.h>
 
-#include "capture/joint_name.h"
 #include "capture/unique_names.h"
 #include "core/text.h"
 

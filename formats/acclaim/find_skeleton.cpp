@@ -1,4 +1,4 @@
-#include "formats/acclaim/find_skeleton.h"
+#include "formats/acclaim/acclaim_reader.h"
 
 #include <fmt/format.h>
 

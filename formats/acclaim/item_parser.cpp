@@ -1,4 +1,4 @@
-#include "formats/acclaim/item_parser_internal.h"
+#include "formats/acclaim/files_internal.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "formats/acclaim/skeleton_file_internal.h"
+#include "formats/acclaim/files_internal.h"
 #include "math/transform.h"
 #include "scene/skeleton.h"
 

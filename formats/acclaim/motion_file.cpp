@@ -1,4 +1,4 @@
-#include "formats/acclaim/motion_file_internal.h"
+#include "formats/acclaim/files_internal.h"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>

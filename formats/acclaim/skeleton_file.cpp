@@ -1,4 +1,4 @@
-#include "formats/acclaim/skeleton_file_internal.h"
+#include "formats/acclaim/files_internal.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,6 @@
 #include "core/numbers.h"
 #include "core/result.h"
 #include "core/text.h"
-#include "formats/acclaim/bone_tree_internal.h"
-#include "formats/acclaim/item_parser_internal.h"
 #include "formats/acclaim/source_text_internal.h"
 
 namespace krok::acclaim {

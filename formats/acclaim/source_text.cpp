@@ -43,10 +43,9 @@ Status SourceText::fault(const TextLocation& place, std::string code, std::strin
 
 void SourceText::finish() {
   if (warnings_ <= kMaxWarnings) return;
-  Diagnostic more = make_warning(
-      "acclaim-more", fmt::format("{} more warnings are not shown", warnings_ - kMaxWarnings));
-  more.where.file = file_name_;
-  diagnostics_.push_back(std::move(more));
+  diagnostics_.push_back(make_warning(
+      "acclaim-more", fmt::format("{} more warnings are not shown", warnings_ - kMaxWarnings), "",
+      file_name_));
 }
 
 Token TokenCursor::next() {

@@ -4,11 +4,10 @@
 #include <fmt/ranges.h>
 
 #include "core/index.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/fields.h"
-#include "formats/json/json_text.h"
+#include "formats/json/located_json.h"
 
 namespace krok::alignment {
 

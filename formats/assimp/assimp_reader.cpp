@@ -19,8 +19,7 @@
 #include "core/path_inside.h"
 #include "core/result.h"
 #include "core/text.h"
-#include "formats/assimp/fbx_text_internal.h"
-#include "formats/assimp/mend_input_internal.h"
+#include "formats/assimp/fbx_elements_internal.h"
 #include "formats/assimp/run_assimp_internal.h"
 #include "formats/assimp/scene_transfer.h"
 #include "formats/registry/registry.h"
@@ -58,12 +57,8 @@ class CompanionFinder {
   Companions found;
 
   void tell(Severity severity, std::string message, std::string hint = {}) {
-    Diagnostic diagnostic;
-    diagnostic.severity = severity;
-    diagnostic.code = "assimp-companion";
-    diagnostic.message = std::move(message);
-    diagnostic.hint = std::move(hint);
-    found.diagnostics.push_back(std::move(diagnostic));
+    found.diagnostics.push_back(
+        make_diagnostic(severity, "assimp-companion", std::move(message), std::move(hint)));
   }
 
   // Files in the folder with this extension, sorted by name.

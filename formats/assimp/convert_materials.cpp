@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
-#include "formats/assimp/materials_internal.h"
+#include "formats/assimp/conversion_internal.h"
 
 namespace krok::assimp {
 

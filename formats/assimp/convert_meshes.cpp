@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "formats/assimp/conversion_internal.h"
-#include "formats/assimp/fbx_text_internal.h"
-#include "formats/assimp/materials_internal.h"
+#include "formats/assimp/fbx_elements_internal.h"
 #include "formats/assimp/ms3d_file_internal.h"
-#include "nodes/materials.h"
+#include "nodes/scene.h"
 
 namespace krok::assimp {
 

@@ -1,11 +1,9 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/text.h"
 #include "formats/assimp/collada_text_internal.h"
 #include "formats/assimp/conversion_internal.h"
-#include "formats/assimp/fbx_text_internal.h"
+#include "formats/assimp/fbx_elements_internal.h"
 #include "math/quaternion.h"
 #include "nodes/evaluate.h"
 

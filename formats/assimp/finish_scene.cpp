@@ -7,7 +7,7 @@
 
 #include "formats/assimp/collada_text_internal.h"
 #include "formats/assimp/conversion_internal.h"
-#include "formats/assimp/fbx_text_internal.h"
+#include "formats/assimp/fbx_elements_internal.h"
 
 namespace krok::assimp {
 

@@ -1,4 +1,4 @@
-#include "formats/assimp/mend_input_internal.h"
+#include "formats/assimp/run_assimp_internal.h"
 
 #include <fmt/format.h>
 

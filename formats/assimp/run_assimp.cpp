@@ -6,6 +6,7 @@
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <new>
 #include <span>
 
@@ -13,7 +14,6 @@
 #include "formats/assimp/collada_text_internal.h"
 #include "formats/assimp/conversion_internal.h"
 #include "formats/assimp/curve_internal.h"
-#include "formats/assimp/mend_input_internal.h"
 #include "nodes/evaluate.h"
 #include "nodes/scene.h"
 
@@ -43,6 +43,39 @@ void cut(Channel& channel, float start, float end) {
   channel.values = std::make_shared<const std::vector<float>>(std::move(new_values));
 }
 
+class MemoryStream : public Assimp::IOStream {
+ public:
+  explicit MemoryStream(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  size_t Read(void* buffer, size_t size, size_t count) override {
+    if (size == 0) return 0;
+    const std::size_t whole = std::min(count, (bytes_.size() - position_) / size);
+    if (whole == 0) return 0;
+    std::memcpy(buffer, bytes_.data() + position_, whole * size);
+    position_ += whole * size;
+    return whole;
+  }
+
+  size_t Write(const void*, size_t, size_t) override { return 0; }
+
+  aiReturn Seek(size_t offset, aiOrigin origin) override {
+    std::size_t position = offset;
+    if (origin == aiOrigin_CUR) position = position_ + offset;
+    if (origin == aiOrigin_END) position = bytes_.size() - offset;
+    if (position > bytes_.size()) return aiReturn_FAILURE;
+    position_ = position;
+    return aiReturn_SUCCESS;
+  }
+
+  size_t Tell() const override { return position_; }
+  size_t FileSize() const override { return bytes_.size(); }
+  void Flush() override {}
+
+ private:
+  std::span<const std::byte> bytes_;
+  std::size_t position_ = 0;
+};
+
 }  // namespace
 
 // Sets the animation's name to the clip's and, if the clip has a time range, trims the animation to
@@ -58,15 +91,6 @@ void shape_clip(const ColladaClip& clip, Animation& animation) {
 using registry::Kind;
 
 namespace {
-
-Diagnostic diagnostic(Severity severity, std::string code, std::string message, std::string hint) {
-  Diagnostic diagnostic;
-  diagnostic.severity = severity;
-  diagnostic.code = std::move(code);
-  diagnostic.message = std::move(message);
-  diagnostic.hint = std::move(hint);
-  return diagnostic;
-}
 
 void configure(Assimp::Importer& importer) {
   // No dummy meshes for skeletons without a mesh.
@@ -115,12 +139,11 @@ void throw_on_bad_alloc(const Assimp::Importer& importer) {
 
 void Conversion::note(std::string code, std::string message, std::string hint) {
   scene.diagnostics.push_back(
-      diagnostic(Severity::note, std::move(code), std::move(message), std::move(hint)));
+      make_diagnostic(Severity::note, std::move(code), std::move(message), std::move(hint)));
 }
 
 void Conversion::warn(std::string code, std::string message, std::string hint) {
-  scene.diagnostics.push_back(
-      diagnostic(Severity::warning, std::move(code), std::move(message), std::move(hint)));
+  scene.diagnostics.push_back(make_warning(std::move(code), std::move(message), std::move(hint)));
 }
 
 namespace {
@@ -276,6 +299,29 @@ Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
   report_curves(to, input->curves);
   report_what_is_missing(to);
   return std::move(to.scene);
+}
+
+const MemoryFile* MemoryFiles::find(const char* path) const {
+  std::string_view name = path;
+  name.remove_prefix(name.find_last_of("/\\") + 1);  // npos + 1 is 0
+  for (const MemoryFile& file : files_) {
+    if (same_word(file.name, name)) return &file;
+  }
+  return nullptr;
+}
+
+bool MemoryFiles::Exists(const char* path) const {
+  return find(path) != nullptr;
+}
+
+Assimp::IOStream* MemoryFiles::Open(const char* path, const char* mode) {
+  if (std::strchr(mode, 'r') == nullptr || std::strchr(mode, '+') != nullptr) return nullptr;
+  const MemoryFile* file = find(path);
+  return file == nullptr ? nullptr : new MemoryStream(file->bytes);
+}
+
+void MemoryFiles::Close(Assimp::IOStream* stream) {
+  delete stream;
 }
 
 }  // namespace krok::assimp

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "capture/far_values.h"
-#include "capture/fill_frames.h"
 #include "capture/rest_frame.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
@@ -22,11 +21,11 @@
 #include "formats/bvh/choose_conventions_internal.h"
 #include "formats/bvh/hierarchy.h"
 #include "formats/bvh/kinematics.h"
-#include "formats/bvh/mended_numbers_internal.h"
 #include "formats/bvh/motion_rows.h"
 #include "formats/bvh/row_frames.h"
 #include "formats/bvh/row_lines_internal.h"
-#include "scene/farthest.h"
+#include "scene/clip.h"
+#include "scene/skeleton.h"
 
 namespace krok::bvh {
 

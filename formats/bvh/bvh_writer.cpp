@@ -1,5 +1,5 @@
 #include "formats/bvh/bvh_writer.h"
-#include "formats/bvh/unit_mark.h"
+#include "formats/bvh/motion_rows.h"
 
 #include <fmt/format.h>
 

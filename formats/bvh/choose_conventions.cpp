@@ -12,10 +12,8 @@
 #include "capture/far_values.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/bvh/frame_rate.h"
 #include "formats/bvh/hierarchy.h"
-#include "formats/bvh/position_choice.h"
-#include "formats/bvh/unit_mark.h"
+#include "formats/bvh/motion_rows.h"
 #include "math/types.h"
 
 namespace krok::bvh {

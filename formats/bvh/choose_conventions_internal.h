@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,5 +40,50 @@ Result<ChosenConventions> choose_conventions(const IndexedFile& file, Hierarchy&
 
 // The joints with their reference pose.
 Skeleton skeleton_of(const Hierarchy& hierarchy, const Kinematics& kinematics);
+
+// The frame rate inferred from a printed frame time.
+struct PrintedRate {
+  double rate = 0;          // frames per second
+  bool snapped = false;     // not 1 / frame time as printed
+  bool few_digits = false;  // the digits also fit rates half a percent or more away
+  bool also_ntsc = false;   // the digits also fit the NTSC rate beside it
+  bool unusual = false;     // below 4 or above 1000 fps; see the reason
+  std::string reason;
+};
+
+// The nearest common rate whose frame time agrees with the number in all printed digits (trailing
+// zeros do not count): a whole rate (24, 25, 30, 48, 50, 60, 90, 100, 120, 240), else an NTSC rate
+// (24, 30, 48, 60, 120 and 240 / 1.001); else the only rate up to 1000 with no decimals, or with
+// two or three, that agrees; else 1 / frame time. A whole rate that the number gives exactly wins
+// over a common one more than half a percent away. `text` is the number as printed, `frame_time`
+// its value, > 0.
+PrintedRate rate_of_frame_time(std::string_view text, double frame_time);
+
+// Some rows of a file, shape [rows x channels].
+struct SampleRows {
+  std::vector<double> values;
+  std::size_t channels = 0;
+  std::size_t count() const { return channels == 0 ? 0 : values.size() / channels; }
+  std::span<const double> row(std::size_t i) const {
+    return std::span(values).subspan(i * channels, channels);
+  }
+};
+
+struct PositionChoice {
+  Positions positions = Positions::absolute;
+  Choice choice;
+  bool depends_on_up = false;  // the root decides
+  bool by_ground = false;      // the character is on it in one mode alone
+  bool has_evidence = false;   // false: no joint decides, and both modes give the same result
+};
+
+// Whether position channels replace OFFSETs or are added to them. Each joint with position channels
+// and a non-zero OFFSET votes: in the median row, are its values near the OFFSET (absolute) or near
+// zero (additive)? Joints below the root decide, if there are any. A root travels, and so does a
+// joint that carries the whole skeleton: the mode that puts the character on the ground is chosen;
+// if that is inconclusive, only the root's height is compared, if its OFFSET has one. Without `up`,
+// where it is unclear, the positions of a root replace its OFFSET, as in most files.
+PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& rows,
+                                std::optional<Direction> up);
 
 }  // namespace krok::bvh

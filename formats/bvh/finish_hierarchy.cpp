@@ -1,4 +1,4 @@
-#include "formats/bvh/finish_hierarchy_internal.h"
+#include "formats/bvh/hierarchy.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "capture/unique_names.h"
 #include "core/numbers.h"
-#include "formats/bvh/names.h"
+#include "core/text.h"
 
 namespace krok::bvh {
+
+namespace {
+
+// Limits the number of messages.
+constexpr int kMaxWarnings = 20;
+
+}  // namespace
 
 void report_in_file(Severity severity, std::string code, std::string message,
                     const std::string& file_name, Diagnostics& diagnostics) {
@@ -59,13 +67,65 @@ void join_roots(Hierarchy& hierarchy, std::vector<std::size_t>& name_places,
 
 void name_joints(Hierarchy& hierarchy, std::span<const std::size_t> name_places,
                  std::string_view text, const std::string& file_name, Diagnostics& diagnostics) {
-  std::vector<JointName> places;
-  places.reserve(hierarchy.joints.size());
-  for (std::size_t i = 0; i < hierarchy.joints.size(); ++i) {
-    auto& joint = hierarchy.joints[i];
-    places.push_back({&joint.name, joint.parent, joint.end_site, name_places[i]});
+  std::vector<Hierarchy::Joint>& joints = hierarchy.joints;
+  Locator locate(text, file_name);
+  int duplicates = 0;
+  int recoded = 0;
+  int cleaned = 0;
+  int nameless = 0;
+  const auto warn = [&](std::size_t joint, const char* code, std::string message) {
+    Diagnostic warning = make_warning(code, std::move(message));
+    warning.where = locate(name_places[joint]);
+    warning.joint = joints[joint].name;
+    diagnostics.push_back(std::move(warning));
+  };
+
+  UniqueNames names;
+  std::vector<std::size_t> renamed;
+  // Claims names from the file first, so that a generated name never displaces one of them.
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].end_site) continue;
+    std::string& name = joints[i].name;
+    if (!is_utf8(name)) {
+      name = to_utf8(name);
+      if (++recoded <= kMaxWarnings) {
+        warn(i, "bvh-name",
+             fmt::format("the name of joint {} is not UTF-8 and was read as Latin-1", name));
+      }
+    }
+    std::string cleaned_name = readable_joint_name(name);
+    if (cleaned_name != name) {
+      name = std::move(cleaned_name);
+      if (++cleaned <= kMaxWarnings) {
+        warn(i, "bvh-name",
+             fmt::format("a joint name has control characters; renamed to {}", name));
+      }
+    }
+    if (name.empty() || !names.claim(name)) renamed.push_back(i);
   }
-  make_names_unique(places, text, file_name, diagnostics);
+  for (const std::size_t i : renamed) {
+    std::string& name = joints[i].name;
+    const std::string given = name;
+    name = names.make(given.empty() ? "joint" : given);
+    if (given.empty() && ++nameless <= kMaxWarnings) {
+      warn(i, "bvh-name", fmt::format("a joint without a name is named {}", name));
+    }
+    if (!given.empty() && ++duplicates <= kMaxWarnings) {
+      warn(i, "bvh-name-duplicate",
+           fmt::format("duplicate joint name {}; renamed to {}", given, name));
+    }
+  }
+  if (duplicates > kMaxWarnings) {
+    diagnostics.push_back(
+        make_warning("bvh-name-duplicate",
+                     fmt::format("{} with a duplicate name",
+                                 counted(duplicates - kMaxWarnings, "more joint", "more joints")),
+                     "", file_name));
+  }
+  for (auto& joint : joints) {
+    if (!joint.end_site) continue;
+    joint.name = names.make(joints[static_cast<std::size_t>(joint.parent)].name + "_end");
+  }
 }
 
 void report_zero_bones(const Hierarchy& hierarchy, const std::string& file_name,
@@ -110,6 +170,10 @@ void report_long_ends(const Hierarchy& hierarchy, const std::string& file_name,
                                readable(length, 4), readable(box.sizes().maxCoeff(), 4)),
                    file_name, diagnostics);
   }
+}
+
+std::string readable_name(std::string_view name) {
+  return name.empty() ? "a joint without a name" : shown(name);
 }
 
 }  // namespace krok::bvh

@@ -15,10 +15,7 @@
 #include "core/numbers.h"
 #include "core/result.h"
 #include "core/text.h"
-#include "formats/bvh/finish_hierarchy_internal.h"
-#include "formats/bvh/mended_numbers_internal.h"
-#include "formats/bvh/names.h"
-#include "formats/bvh/row_faults_internal.h"
+#include "formats/bvh/row_lines_internal.h"
 #include "formats/bvh/text_cursor.h"
 #include "formats/registry/registry.h"
 

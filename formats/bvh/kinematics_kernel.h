@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 // Interface between Kinematics and its vectorised kernel: plain pointers and numbers. No inline
 // functions here: the kernel is compiled for several instruction sets, and the linker may keep a

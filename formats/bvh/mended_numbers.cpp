@@ -1,7 +1,6 @@
 #include <algorithm>
 
 #include "core/text.h"
-#include "formats/bvh/mended_numbers_internal.h"
 #include "formats/bvh/row_lines_internal.h"
 
 namespace krok::bvh {

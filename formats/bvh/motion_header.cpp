@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "core/numbers.h"
+#include "formats/bvh/hierarchy.h"
 #include "formats/bvh/motion_rows.h"
-#include "formats/bvh/names.h"
 #include "formats/bvh/text_cursor.h"
 #include "scene/frame_moment.h"
 
@@ -225,12 +226,35 @@ class HeaderParser {
   bool count_rows_ = false;  // the value of Frames: is not a number
 };
 
+constexpr std::array kMarkedUnits = {"m", "dm", "cm", "mm", "in", "ft", "cmu"};
+
+std::string mark_of(std::size_t unit) {
+  std::string mark = "\t ";
+  for (const std::size_t bit : {4U, 2U, 1U}) mark += (unit & bit) != 0 ? '\t' : ' ';
+  return mark + '\t';
+}
+
 }  // namespace
 
 Result<MotionHeader> parse_motion_header(std::string_view text, std::size_t begin,
                                          const std::string& file_name, const ReadOptions& options,
                                          Diagnostics& diagnostics) {
   return HeaderParser(text, begin, file_name, options, diagnostics).parse();
+}
+
+std::string unit_mark(double metres) {
+  for (std::size_t u = 0; u < kMarkedUnits.size(); ++u) {
+    if (std::abs(parse_unit(kMarkedUnits[u])->metres / metres - 1) < 1e-9) return mark_of(u);
+  }
+  return {};
+}
+
+std::optional<Unit> marked_unit(std::string_view rest) {
+  if (rest.ends_with('\r')) rest.remove_suffix(1);
+  for (std::size_t u = 0; u < kMarkedUnits.size(); ++u) {
+    if (rest == mark_of(u)) return *parse_unit(kMarkedUnits[u]);
+  }
+  return std::nullopt;
 }
 
 }  // namespace krok::bvh

@@ -3,11 +3,13 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "capture/conventions.h"
 #include "core/result.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/bvh/hierarchy.h"
@@ -55,5 +57,15 @@ std::vector<std::size_t> index_lines(std::string_view text, std::size_t begin, i
 Result<RowIndex> index_rows_with_care(std::string_view text, const MotionHeader& header,
                                       const Hierarchy& hierarchy, const std::string& file_name,
                                       const ReadOptions& options, Diagnostics& diagnostics);
+
+// BVH has no place for the unit of length. What this project writes has it in blanks after the
+// Frame Time, which readers skip: a tab, a space, the unit in three blanks (a tab is a one) and a
+// tab.
+
+// Empty for units without a mark: all but m, dm, cm, mm, in, ft and cmu.
+std::string unit_mark(double metres);
+
+// `rest` is what follows the Frame Time on its line; nullopt if it is no mark.
+std::optional<Unit> marked_unit(std::string_view rest);
 
 }  // namespace krok::bvh

@@ -11,8 +11,6 @@
 // Order matters: foreach_target.h sets macros that highway.h uses.
 #include <hwy/highway.h>
 
-#include <cstring>
-
 #include "core/simd.h"
 
 HWY_BEFORE_NAMESPACE();

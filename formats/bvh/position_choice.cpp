@@ -1,4 +1,4 @@
-#include "formats/bvh/position_choice.h"
+#include "formats/bvh/choose_conventions_internal.h"
 
 #include <fmt/format.h>
 

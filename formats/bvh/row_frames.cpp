@@ -4,7 +4,7 @@
 
 #include "core/text.h"
 #include "formats/bvh/number_kernel.h"
-#include "scene/farthest.h"
+#include "scene/skeleton.h"
 
 namespace krok::bvh {
 

@@ -5,7 +5,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/bvh/motion_rows.h"
-#include "formats/bvh/row_faults_internal.h"
 #include "formats/bvh/row_lines_internal.h"
 
 namespace krok::bvh {

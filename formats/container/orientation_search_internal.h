@@ -40,3 +40,12 @@ inline constexpr double kOneRing = 0.02;
 inline constexpr double kThreeRings = 1e-4;
 
 }  // namespace krok::orientation_search
+
+namespace krok::pack_transforms_detail {
+
+// Scalar reference for the SIMD version of write_transforms with encoding xyz: write_transform for
+// each of `count` positions (3 floats each) and orientations (x, y, z, w).
+void pack_scalar(const float* positions, const float* orientations, std::size_t count,
+                 std::byte* out);
+
+}  // namespace krok::pack_transforms_detail

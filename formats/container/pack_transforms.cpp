@@ -12,17 +12,13 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <utility>
 
 #include "core/simd.h"
 #include "formats/container/orientation_search_internal.h"
-#include "formats/container/pack_transforms_internal.h"
 // Needs highway.h and the headers above.
 #include "formats/container/orientation_search_lanes.inc"
 

@@ -1,4 +1,4 @@
-#include "formats/container/pack_transforms_internal.h"
+#include "formats/container/orientation_search_internal.h"
 #include "formats/container/sections.h"
 
 namespace krok::pack_transforms_detail {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,24 @@
 #include "formats/csv/field.h"
 
 namespace krok::csv {
+
+namespace {
+
+constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
+
+void add_value(float value, std::string& text) {
+  text += ',';
+  if (std::isfinite(value)) text += shortest(value);
+}
+
+Status flush_long_text(std::string& text, OutputFile& file) {
+  if (text.size() < kFlushBytes) return {};
+  Status status = file.write(text);
+  text.clear();
+  return status;
+}
+
+}  // namespace
 
 Status write(const Clip& clip, OutputFile& file) {
   if (Status status = check(clip); !status) return status;
@@ -60,6 +80,46 @@ Status write(const MorphWeights& weights, OutputFile& file) {
       text += shortest(weights.values[static_cast<std::size_t>(frame) * weights.names.size() + t]);
     }
     text += '\n';
+  }
+  return file.write(text);
+}
+
+Status write_long(const SeriesTable& table, OutputFile& file) {
+  assert(table.values.size() == static_cast<std::size_t>(table.frames) * table.columns());
+  std::vector<std::string> names;
+  for (const std::string& item : table.items) names.push_back(field(item));
+  std::string text = "frame,time," + field(table.item_name);
+  for (const std::string& quantity : table.quantities) (text += ',') += field(quantity);
+  text += '\n';
+  const float* value = table.values.data();
+  for (int frame = 0; frame < table.frames; ++frame) {
+    const std::string start = fmt::format("{},{},", frame, shortest(frame / table.rate));
+    for (const std::string& name : names) {
+      text += start + name;
+      for (std::size_t q = 0; q < table.quantities.size(); ++q) add_value(*value++, text);
+      text += '\n';
+    }
+    if (Status status = flush_long_text(text, file); !status) return status;
+  }
+  return file.write(text);
+}
+
+Status write_wide(const SeriesTable& table, OutputFile& file) {
+  assert(table.values.size() == static_cast<std::size_t>(table.frames) * table.columns());
+  std::string text = "frame,time";
+  for (const std::string& item : table.items) {
+    for (const std::string& quantity : table.quantities) {
+      text += ',';
+      text += field(table.quantities.size() == 1 ? item : fmt::format("{}.{}", item, quantity));
+    }
+  }
+  text += '\n';
+  const float* value = table.values.data();
+  for (int frame = 0; frame < table.frames; ++frame) {
+    text += fmt::format("{},{}", frame, shortest(frame / table.rate));
+    for (std::size_t c = 0; c < table.columns(); ++c) add_value(*value++, text);
+    text += '\n';
+    if (Status status = flush_long_text(text, file); !status) return status;
   }
   return file.write(text);
 }

@@ -8,7 +8,7 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/csv/formula_internal.h"
+#include "formats/csv/field.h"
 
 namespace krok::csv {
 

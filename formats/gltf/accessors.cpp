@@ -6,7 +6,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "formats/gltf/reader_words_internal.h"
+#include "formats/gltf/reader_internal.h"
 
 namespace krok::gltf {
 

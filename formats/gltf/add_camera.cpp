@@ -11,10 +11,9 @@
 #include "core/json_internal.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/gltf/assemble_glb_internal.h"
-#include "formats/gltf/glb_container.h"
+#include "formats/gltf/glb_container_internal.h"
+#include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/joint_tracks.h"
-#include "formats/gltf/pack_glb.h"
 #include "math/quaternion.h"
 
 namespace krok::gltf {

@@ -1,4 +1,4 @@
-#include "formats/gltf/animation_reader_internal.h"
+#include "formats/gltf/reader_internal.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +7,6 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/gltf/reader_words_internal.h"
 
 namespace krok::gltf {
 

@@ -1,4 +1,4 @@
-#include "formats/gltf/baked_writer.h"
+#include "formats/gltf/gltf_writer.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/joint_tracks.h"
-#include "formats/gltf/mesh_shape_internal.h"
 #include "math/vector_arrays.h"
 
 namespace krok::gltf {

@@ -1,12 +1,10 @@
-#include "formats/gltf/coloured_meshes.h"
+#include "formats/gltf/gltf_writer.h"
 
 #include <algorithm>
 #include <cassert>
-#include <map>
 #include <vector>
 
 #include "formats/gltf/document_internal.h"
-#include "formats/gltf/mesh_shape_internal.h"
 
 namespace krok::gltf {
 

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <tuple>
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/gltf/assemble_glb_internal.h"
-#include "formats/gltf/baked_writer.h"
-#include "formats/gltf/compression_internal.h"
+#include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/document_internal.h"
+#include "formats/gltf/glb_container_internal.h"
 #include "formats/gltf/gltf_writer.h"
 
 // EXT_meshopt_compression. Buffer views of one kind are put together into one, which makes the JSON

@@ -7,8 +7,8 @@
 
 #include "core/bytes.h"
 #include "core/child_process.h"
-#include "formats/gltf/compression_internal.h"
-#include "formats/gltf/reader_words_internal.h"
+#include "formats/gltf/buffers_internal.h"
+#include "formats/gltf/reader_internal.h"
 
 namespace krok::gltf {
 

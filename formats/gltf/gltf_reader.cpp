@@ -14,14 +14,10 @@
 #include "core/result.h"
 #include "core/text.h"
 #include "formats/gltf/accessors_internal.h"
-#include "formats/gltf/animation_reader_internal.h"
 #include "formats/gltf/buffers_internal.h"
-#include "formats/gltf/compression_internal.h"
-#include "formats/gltf/glb_container.h"
+#include "formats/gltf/glb_container_internal.h"
 #include "formats/gltf/json_text_internal.h"
-#include "formats/gltf/material_reader_internal.h"
-#include "formats/gltf/mesh_reader_internal.h"
-#include "formats/gltf/reader_words_internal.h"
+#include "formats/gltf/reader_internal.h"
 #include "math/quaternion.h"
 #include "nodes/scene.h"
 
@@ -247,33 +243,24 @@ class Builder {
   Scene scene_;
 };
 
-// An animated lens that is not in Krok's form is ignored: it was written by another program.
-void take_lens(const CameraEntry& entry, Camera& camera) {
-  const bool good = std::isfinite(entry.lens_rate) && entry.lens_rate > 0 &&
-                    std::ranges::all_of(entry.lens, [](float angle) {
-                      return angle > 0 && angle < static_cast<float>(kPi);
-                    });
-  if (!good || entry.lens.empty()) return;
-  camera.lens_rate = entry.lens_rate;
-  camera.lens = entry.lens;
-}
-
 Status Builder::read_cameras() {
-  for (std::size_t i = 0; i < parsed_.cameras.size(); ++i) {
-    const CameraEntry& entry = parsed_.cameras[i];
-    Camera& camera = scene_.cameras.emplace_back();
-    camera.name = entry.name;
-    camera.perspective = entry.perspective;
-    if (!entry.perspective) continue;
-    camera.field_of_view = entry.field_of_view;
-    if (entry.field_of_view > 0 && entry.field_of_view < kPi) {
-      take_lens(entry, camera);
-      continue;
+  const auto is_angle = [](double angle) { return angle > 0 && angle < kPi; };
+  scene_.cameras = parsed_.cameras;
+  for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+    Camera& camera = scene_.cameras[i];
+    const bool good = camera.perspective && is_angle(camera.field_of_view);
+    // An animated lens that is not in Krok's form was written by another program.
+    if (!good || camera.lens.empty() || !(camera.lens_rate > 0) ||
+        !std::isfinite(camera.lens_rate) || !std::ranges::all_of(camera.lens, is_angle)) {
+      camera.lens_rate = 0;
+      camera.lens.clear();
     }
-    camera.field_of_view = kUsualFieldOfView;
+    if (good) continue;
+    camera.field_of_view = camera.perspective ? kUsualFieldOfView : 0;
+    if (!camera.perspective) continue;
     warn(scene_.diagnostics, "gltf-camera",
          fmt::format("{} has no field of view between 0 and 180 degrees; 45 degrees are used",
-                     label("camera", i, entry.name)));
+                     label("camera", i, camera.name)));
   }
   return {};
 }
@@ -512,6 +499,15 @@ Result<Scene> read_file(const std::string& path, ReadOptions options) {
   if (!asset) return std::move(asset.error()).in_file(path);
   for (Diagnostic& diagnostic : asset->diagnostics) diagnostic.where.file = path;
   return asset;
+}
+
+std::string label(const char* kind, std::size_t index, const std::string& name) {
+  return name.empty() ? fmt::format("{} {}", kind, index)
+                      : fmt::format("{} {} ({})", kind, index, name);
+}
+
+void warn(Diagnostics& diagnostics, std::string code, std::string message, std::string hint) {
+  diagnostics.push_back(make_warning(std::move(code), std::move(message), std::move(hint)));
 }
 
 }  // namespace krok::gltf

@@ -46,4 +46,16 @@ Result<nodes::Scene> read(std::span<const std::byte> bytes, const ReadOptions& o
 // Opens and reads `path`, with its folder as ReadOptions::folder. Also the codes of InputFile.
 Result<nodes::Scene> read_file(const std::string& path, ReadOptions options = {});
 
+struct PackedGlb {
+  std::vector<std::byte> bytes;
+  std::vector<std::string> files;  // external files that were read
+  Diagnostics diagnostics;
+};
+
+// Packs a .gltf with its buffers and images into one GLB, otherwise unchanged, for consumers that
+// cannot open external files. An unreadable image becomes a grey pixel, with a warning
+// (gltf-image). The input must be valid for read(). Codes: those of read(); gltf-too-large from
+// 4 GiB.
+Result<PackedGlb> pack_glb(std::span<const std::byte> gltf, const ReadOptions& options);
+
 }  // namespace krok::gltf

@@ -9,9 +9,7 @@
 #include "core/result.h"
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/joint_tracks.h"
-#include "formats/gltf/mesh_shape_internal.h"
 #include "formats/gltf/quantize_internal.h"
-#include "scene/influences.h"
 #include "scene/model.h"
 
 namespace krok::gltf {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -7,9 +8,11 @@
 #include <vector>
 
 #include "core/file.h"
+#include "core/progress.h"
 #include "core/result.h"
 #include "formats/gltf/joint_tracks.h"
 #include "formats/gltf/quantize.h"
+#include "math/types.h"
 #include "scene/character.h"
 #include "scene/clip.h"
 #include "scene/material.h"
@@ -103,5 +106,48 @@ std::vector<std::uint32_t> order_for_compression(Model& model, MorphSet& morphs,
 // `shape`, which must be the model's own shape if there are morph targets.
 Status write_mesh(const Model& model, const MeshShape& shape, const WriteOptions& options,
                   OutputFile& file);
+
+// An animated mesh without a skeleton, in the shape of the first frame, with one morph target for
+// each further frame. Weights are keyed so that each frame is shown exactly at its time, with
+// linear blending in between.
+//
+// Vertices are streamed into the file: memory holds a few frames, plus some kilobytes of JSON per
+// frame. With `jobs` other than 1 (as in parallel_for) frames are computed while others are
+// written; the bytes are the same. A GLB to a stream (see OutputFile) computes all frames twice,
+// because the bounds of all frames precede the vertices.
+//
+// Codes besides those above: gltf-structure for a motion without frames or a vertex that
+// is not finite.
+Status write_baked(const Model& model, const MeshMotion& motion, const WriteOptions& options,
+                   OutputFile& file, Progress* progress = nullptr, int jobs = 1);
+
+// Bytes of vertices and weights of a baked motion, for checking its size before writing. Includes
+// tangents if `materials` need them.
+std::uint64_t baked_bytes(const Model& model, std::int64_t frames,
+                          std::span<const Material> materials = {});
+
+// Max bytes of binary data that the writers put into a file (code gltf-too-large): GLB lengths have
+// 32 bits, and some room is left for the JSON.
+inline constexpr std::uint64_t kMaxDataBytes =
+    (std::uint64_t{4} << 30) - (std::uint64_t{256} << 20);
+
+// WebGL 2 viewers store morph targets in the layers of a texture array; this is a common limit.
+inline constexpr int kMaxMorphTargets = 2048;
+
+// A mesh with vertex colours, in scene coordinates (metres).
+struct ColouredMesh {
+  std::string name;  // of the node; made unique
+  std::span<const Vec3f> positions;
+  std::span<const Vec3f> normals;                           // [vertices] or empty
+  std::span<const Vec3f> colours;                           // [vertices], linear RGB, 0 .. 1
+  std::span<const std::array<std::uint32_t, 3>> triangles;  // empty: drawn as points
+  std::string mesh_name{};                                  // if not that of the node
+};
+
+// Writes static meshes with vertex colours (COLOR_0) and a white, rough, lit material called
+// `material`. Meshes without vertices are skipped. Codes: gltf-empty-mesh if none remains,
+// gltf-too-large, gltf-name, gltf-value for values that are not finite.
+Status write_coloured(std::span<const ColouredMesh> meshes, const std::string& material,
+                      const WriteOptions& options, OutputFile& file);
 
 }  // namespace krok::gltf

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/result.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
+#include "scene/skeleton.h"
 #include "scene/stretch.h"
+#include "tracks/reduce_keys.h"
 
 // Converts a clip's joint_to_world transforms to glTF animation tracks: float transforms relative
 // to the parent, from which a viewer rebuilds the clip's joint positions.
@@ -80,5 +83,31 @@ JointTracks rest_tracks(const Skeleton& rest);
 
 // frame / rate for each frame, as floats. Code: gltf-times, as above.
 Result<std::vector<float>> key_times(int frames, double rate);
+
+// Removes keys with choose_keys(): what a viewer shows stays within the tolerance of the full
+// tracks, at every frame and for all joints. `rest` is the skeleton that the tracks were made for.
+// A track keeps all its keys if a separate time accessor would make it larger, none if it stays
+// at rest. Uses up to `jobs`
+// threads (as in parallel_for), which do not affect the result. Code: reduce-tolerance.
+Result<Reduction> reduce_tracks(const Skeleton& rest, const ReduceOptions& options, int jobs,
+                                JointTracks& tracks);
+
+// joint_to_world of tracks at any time, as a viewer computes it: each track is interpolated between
+// its own keys (rotations by slerp), then scales, rotations and translations are combined down the
+// hierarchy. In double precision.
+class TrackPoses {
+ public:
+  // Both must outlive it.
+  TrackPoses(std::span<const int> parents, const JointTracks& tracks)
+      : parents_(parents), tracks_(tracks) {}
+
+  // At `frame`, which may be between two frames, from 0 to the number of frames - 1;
+  // [joints]. Without frames the rest pose. Thread-safe.
+  void at(double frame, std::span<Mat4> joint_to_world) const;
+
+ private:
+  std::span<const int> parents_;
+  const JointTracks& tracks_;
+};
 
 }  // namespace krok::gltf

@@ -80,6 +80,13 @@ Result<Json> parse_text(const Container& container) {
   }
 }
 
+// The entries of a list of the file; none if it has no such list.
+std::span<const Json> entries_of(const Json& object, const char* list_name) {
+  const Json& list = member(object, list_name);
+  if (!list.is_array()) return {};
+  return list.get_ref<const Json::array_t&>();
+}
+
 Status check_asset(const Json& json) {
   const auto asset = json.find("asset");
   if (asset == json.end()) {
@@ -118,9 +125,7 @@ bool is_supported(std::string_view extension) {
 }
 
 Status check_extensions(const Json& json) {
-  const auto required = json.find("extensionsRequired");
-  if (required == json.end() || !required->is_array()) return {};
-  for (const Json& extension : *required) {
+  for (const Json& extension : entries_of(json, "extensionsRequired")) {
     const std::string name = extension.is_string() ? extension.get<std::string>() : "?";
     if (is_supported(name)) continue;
     return Error("gltf-extension",
@@ -133,23 +138,14 @@ Status check_extensions(const Json& json) {
 
 // An extension of an object, if it has it.
 const Json* extension_of(const Json& object, std::string_view extension) {
-  const auto all = object.is_object() ? object.find("extensions") : object.end();
-  if (!object.is_object() || all == object.end() || !all->is_object()) return nullptr;
-  const auto found = all->find(extension);
-  return found == all->end() || !found->is_object() ? nullptr : &*found;
+  const Json& found = member(member(object, "extensions"), extension);
+  return found.is_object() ? &found : nullptr;
 }
 
 // That of meshopt under either of its names.
 const Json* meshopt_of(const Json& object) {
   const Json* const first = extension_of(object, kMeshopt[0]);
   return first != nullptr ? first : extension_of(object, kMeshopt[1]);
-}
-
-// The entries of a list of the file; none if it has no such list.
-std::span<const Json> entries_of(const Json& object, const char* list_name) {
-  const auto list = object.is_object() ? object.find(list_name) : object.end();
-  if (!object.is_object() || list == object.end() || !list->is_array()) return {};
-  return list->get_ref<const Json::array_t&>();
 }
 
 // An unsigned integer; `otherwise` if there is none, an error if it is something else.
@@ -200,9 +196,9 @@ Result<std::vector<PackedPrimitive>> read_packed_primitives(const Json& json) {
       const auto view = unsigned_member(*source, "bufferView");
       if (!view) return view.error();
       packed.view = *view;
-      const auto attributes = source->find("attributes");
-      if (attributes == source->end() || !attributes->is_object()) continue;
-      for (const auto& [name, id] : attributes->items()) {
+      const Json& attributes = member(*source, "attributes");
+      if (!attributes.is_object()) continue;
+      for (const auto& [name, id] : attributes.items()) {
         if (id.is_number_unsigned()) packed.attributes[name] = id.get<std::uint64_t>();
       }
     }
@@ -218,9 +214,9 @@ std::vector<InstancedNode> read_instanced(const Json& json) {
     if (source == nullptr) continue;
     InstancedNode& instanced = all.emplace_back();
     instanced.node = i;
-    const auto attributes = source->find("attributes");
-    if (attributes == source->end() || !attributes->is_object()) continue;
-    for (const auto& [name, accessor] : attributes->items()) {
+    const Json& attributes = member(*source, "attributes");
+    if (!attributes.is_object()) continue;
+    for (const auto& [name, accessor] : attributes.items()) {
       const bool fits =
           accessor.is_number_unsigned() && accessor.get<std::uint64_t>() <= 0x7FFFFFFFu;
       instanced.attributes[name] = fits ? accessor.get<int>() : -1;
@@ -261,9 +257,8 @@ std::vector<PointerChannel> take_pointers(Json& json) {
         target = {{"node", node}, {"path", path}};
         continue;
       }
-      const auto sampler = channel.find("sampler");
-      const bool given = sampler != channel.end() && sampler->is_number_integer();
-      all.push_back({i, given ? sampler->get<int>() : -1, pointer,
+      const Json& sampler = member(channel, "sampler");
+      all.push_back({i, sampler.is_number_integer() ? sampler.get<int>() : -1, pointer,
                      index_between("/cameras/", pointer, "/perspective/yfov")});
     }
   }
@@ -293,9 +288,9 @@ std::vector<std::string> read_not_shown(const Json& json, const ParsedJson& pars
   }
   for (const Json& mesh : entries_of(json, "meshes")) {
     for (const Json& primitive : entries_of(mesh, "primitives")) {
-      const auto named = primitive.is_object() ? primitive.find("attributes") : primitive.end();
-      if (!primitive.is_object() || named == primitive.end() || !named->is_object()) continue;
-      for (const auto& [name, accessor] : named->items()) {
+      const Json& named = member(primitive, "attributes");
+      if (!named.is_object()) continue;
+      for (const auto& [name, accessor] : named.items()) {
         const bool more_colours = name.starts_with("COLOR_") && name != "COLOR_0";
         attributes += name.starts_with('_') || more_colours ? 1 : 0;
       }
@@ -318,15 +313,15 @@ Result<std::vector<BufferEntry>> read_buffers(const Json& json) {
   if (list == json.end()) return buffers;
   if (!list->is_array()) return Error("gltf-structure", "'buffers' is not an array");
   for (const Json& entry : *list) {
-    const auto length = entry.is_object() ? entry.find("byteLength") : entry.end();
-    if (!entry.is_object() || length == entry.end() || !length->is_number_unsigned()) {
+    const Json& length = member(entry, "byteLength");
+    if (!length.is_number_unsigned()) {
       return Error("gltf-structure",
                    fmt::format("buffer {} has no valid byteLength", buffers.size()));
     }
-    const auto uri = entry.find("uri");
     const Json* fallback = meshopt_of(entry);
-    buffers.push_back({length->get<std::uint64_t>(), uri != entry.end(), text_member(entry, "uri"),
-                       fallback != nullptr && fallback->value("fallback", Json()) == true});
+    buffers.push_back({length.get<std::uint64_t>(), entry.contains("uri"),
+                       text_member(entry, "uri"),
+                       fallback != nullptr && member(*fallback, "fallback") == true});
   }
   return buffers;
 }
@@ -335,10 +330,9 @@ Result<std::vector<BufferEntry>> read_buffers(const Json& json) {
 void mark_fallbacks(const Json& json, std::vector<BufferEntry>& buffers) {
   std::vector<std::size_t> views(buffers.size(), 0), packed(buffers.size(), 0);
   for (const Json& view : entries_of(json, "bufferViews")) {
-    const auto index = view.is_object() ? view.find("buffer") : view.end();
-    if (!view.is_object() || index == view.end() || !index->is_number_unsigned()) continue;
-    const auto buffer = index->get<std::uint64_t>();
-    if (buffer >= buffers.size()) continue;
+    const Json& index = member(view, "buffer");
+    if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= buffers.size()) continue;
+    const auto buffer = index.get<std::uint64_t>();
     ++views[buffer];
     const Json* const source = meshopt_of(view);
     packed[buffer] += source != nullptr ? 1 : 0;
@@ -372,27 +366,11 @@ void make_whole(Json& json) {
   }
 }
 
-// Names of the entries of a list.
-std::vector<std::string> names_of(const Json& json, const char* list_name) {
-  std::vector<std::string> names;
-  const auto list = json.find(list_name);
-  if (list == json.end() || !list->is_array()) return names;
-  for (const Json& entry : *list) names.push_back(text_member(entry, "name"));
-  return names;
-}
-
 std::vector<std::vector<std::string>> read_target_names(const Json& json) {
   std::vector<std::vector<std::string>> all;
-  const auto meshes = json.find("meshes");
-  if (meshes == json.end() || !meshes->is_array()) return all;
-  for (const Json& mesh : *meshes) {
+  for (const Json& mesh : entries_of(json, "meshes")) {
     std::vector<std::string>& names = all.emplace_back();
-    if (!mesh.is_object() || !mesh.contains("extras")) continue;
-    const Json& extras = mesh.at("extras");
-    if (!extras.is_object() || !extras.contains("targetNames")) continue;
-    const Json& list = extras.at("targetNames");
-    if (!list.is_array()) continue;
-    for (const Json& name : list) {
+    for (const Json& name : entries_of(member(mesh, "extras"), "targetNames")) {
       names.push_back(name.is_string() ? name.get<std::string>() : std::string());
     }
   }
@@ -400,31 +378,26 @@ std::vector<std::vector<std::string>> read_target_names(const Json& json) {
 }
 
 // The animated lens, if there is one; only types are checked.
-void read_lens(const Json& entry, CameraEntry& camera) {
-  const Json::json_pointer place("/extras/fieldsOfView");
-  if (!entry.contains(place) || !entry.at(place).is_object()) return;
-  const Json& lens = entry.at(place);
-  if (!lens.contains("rate") || !lens.at("rate").is_number()) return;
-  if (!lens.contains("values") || !lens.at("values").is_array()) return;
-  camera.lens_rate = lens.at("rate").get<double>();
-  for (const Json& value : lens.at("values")) {
+void read_lens(const Json& entry, nodes::Camera& camera) {
+  const Json& lens = member(member(entry, "extras"), "fieldsOfView");
+  const Json& rate = member(lens, "rate");
+  if (!rate.is_number() || !member(lens, "values").is_array()) return;
+  camera.lens_rate = rate.get<double>();
+  for (const Json& value : entries_of(lens, "values")) {
     camera.lens.push_back(value.is_number() ? static_cast<float>(value.get<double>()) : 0.0f);
   }
 }
 
 // Not read by tinygltf, which rejects a whole file if a camera has no clipping planes.
-std::vector<CameraEntry> read_cameras(const Json& json) {
-  std::vector<CameraEntry> cameras;
-  const auto list = json.find("cameras");
-  if (list == json.end() || !list->is_array()) return cameras;
-  for (const Json& entry : *list) {
-    CameraEntry& camera = cameras.emplace_back();
+std::vector<nodes::Camera> read_cameras(const Json& json) {
+  std::vector<nodes::Camera> cameras;
+  for (const Json& entry : entries_of(json, "cameras")) {
+    nodes::Camera& camera = cameras.emplace_back();
     camera.name = text_member(entry, "name");
     camera.perspective = text_member(entry, "type") != "orthographic";
-    if (!entry.is_object() || !entry.contains("perspective")) continue;
-    const Json& lens = entry.at("perspective");
-    if (!lens.is_object() || !lens.contains("yfov") || !lens.at("yfov").is_number()) continue;
-    camera.field_of_view = lens.at("yfov").get<double>();
+    const Json& angle = member(member(entry, "perspective"), "yfov");
+    if (!angle.is_number()) continue;
+    camera.field_of_view = angle.get<double>();
     read_lens(entry, camera);
   }
   return cameras;
@@ -488,10 +461,7 @@ Status check_integers(const Json& json, bool in_sparse = false) {
 Status check_primitives(const Json& json, const tinygltf::Model& model) {
   const auto meshes = json.find("meshes");
   for (std::size_t i = 0; i < model.meshes.size(); ++i) {
-    const Json& mesh = (*meshes)[i];
-    const auto primitives = mesh.find("primitives");
-    const std::size_t listed =
-        primitives != mesh.end() && primitives->is_array() ? primitives->size() : 0;
+    const std::size_t listed = entries_of((*meshes)[i], "primitives").size();
     if (listed == model.meshes[i].primitives.size() && listed > 0) continue;
     return Error("gltf-structure",
                  fmt::format("mesh {} has no primitives, or one without attributes", i));
@@ -506,10 +476,16 @@ std::string first_line(const std::string& text) {
 
 }  // namespace
 
+const Json& member(const Json& object, std::string_view name) {
+  static const Json none;
+  if (!object.is_object()) return none;
+  const auto found = object.find(name);
+  return found == object.end() ? none : *found;
+}
+
 std::string text_member(const Json& object, const char* name) {
-  const auto found = object.is_object() ? object.find(name) : object.end();
-  if (!object.is_object() || found == object.end() || !found->is_string()) return {};
-  return found->get<std::string>();
+  const Json& text = member(object, name);
+  return text.is_string() ? text.get<std::string>() : std::string();
 }
 
 Result<ParsedJson> parse_json(const Container& container) {
@@ -527,18 +503,16 @@ Result<ParsedJson> parse_json(const Container& container) {
   result.buffers = std::move(*buffers);
   for (const Json& node : entries_of(json, "nodes")) {
     result.lights.push_back(extension_of(node, "KHR_lights_punctual") != nullptr);
-    const Json::json_pointer mark(std::string("/extras/") + kMark);
-    result.marked.push_back(node.is_object() && node.contains(mark) &&
-                            (node.at(mark) == kEye || node.at(mark) == kSocket));
+    const Json& mark = member(member(node, "extras"), kMark);
+    result.marked.push_back(mark == kEye || mark == kSocket);
     const Json* visibility = extension_of(node, kVisibility);
-    result.hidden.push_back(visibility != nullptr && visibility->value("visible", Json()) == false);
+    result.hidden.push_back(visibility != nullptr && member(*visibility, "visible") == false);
   }
   result.instanced = read_instanced(json);
   result.pointers = take_pointers(json);
   for (const Json& animation : entries_of(json, "animations")) {
-    const Json::json_pointer place(std::string("/extras/") + kRate);
-    const bool given = animation.contains(place) && animation.at(place).is_number();
-    result.rates.push_back(given ? animation.at(place).get<double>() : 0);
+    const Json& rate = member(member(animation, "extras"), kRate);
+    result.rates.push_back(rate.is_number() ? rate.get<double>() : 0);
   }
   result.not_shown = read_not_shown(json, result);
   auto views = read_packed_views(json);
@@ -547,7 +521,9 @@ Result<ParsedJson> parse_json(const Container& container) {
   auto primitives = read_packed_primitives(json);
   if (!primitives) return primitives.error();
   result.packed_primitives = std::move(*primitives);
-  result.material_names = names_of(json, "materials");
+  for (const Json& material : entries_of(json, "materials")) {
+    result.material_names.push_back(text_member(material, "name"));
+  }
   result.target_names = read_target_names(json);
   result.cameras = read_cameras(json);
 

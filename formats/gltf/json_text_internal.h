@@ -9,7 +9,8 @@
 
 #include "core/json_internal.h"
 #include "core/result.h"
-#include "formats/gltf/glb_container.h"
+#include "formats/gltf/glb_container_internal.h"
+#include "nodes/scene.h"
 
 // Private to this folder: parses the JSON of a glTF file into tinygltf's structures.
 //
@@ -57,15 +58,6 @@ inline constexpr const char* kSocket = "socket";
 // extras of animations: the rate of the frames that their keys are on, {"rate": 7}.
 inline constexpr const char* kRate = "rate";
 
-struct CameraEntry {
-  std::string name;
-  bool perspective = true;
-  double field_of_view = 0;  // vertical, radians; 0 if missing or not a number
-  // From extras.fieldsOfView (see add_camera.h); not checked.
-  double lens_rate = 0;
-  std::vector<float> lens;
-};
-
 // An animation channel of KHR_animation_pointer. Its values are not checked.
 struct PointerChannel {
   std::size_t animation = 0;
@@ -79,7 +71,9 @@ struct ParsedJson {
   std::vector<BufferEntry> buffers;
   std::vector<std::string> material_names;
   nlohmann::json look;  // an object: the file's materials, textures, images and samplers
-  std::vector<CameraEntry> cameras;
+  // With values as they are: the field of view is 0 if missing or not a number, the lens is that of
+  // extras.fieldsOfView (see add_camera.h).
+  std::vector<nodes::Camera> cameras;
   std::vector<std::vector<std::string>> target_names;  // [meshes], may be empty
   std::vector<bool> lights;  // [nodes], whether they carry a light (KHR_lights_punctual)
   std::vector<bool> marked;  // [nodes], whether Krok wrote them to name a joint as an eye
@@ -93,6 +87,8 @@ struct ParsedJson {
   std::vector<PackedPrimitive> packed_primitives;
 };
 
+// A member of an object; null if it is none or has no such member.
+const nlohmann::json& member(const nlohmann::json& object, std::string_view name);
 // A string member; empty if there is none.
 std::string text_member(const nlohmann::json& object, const char* name);
 

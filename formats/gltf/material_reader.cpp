@@ -1,4 +1,4 @@
-#include "formats/gltf/material_reader_internal.h"
+#include "formats/gltf/reader_internal.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -21,18 +20,18 @@
 #include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/json_text_internal.h"
-#include "formats/gltf/reader_words_internal.h"
-#include "nodes/materials.h"
+#include "nodes/scene.h"
 #include "scene/encoded_image.h"
 
 namespace krok::gltf {
 
 namespace {
 
-// Private to this folder: loads images from buffers, data URIs and external files.
+using Json = nlohmann::json;
 
-// Nothing in the file is trusted. Memory is proportional to the input: all images from buffers
-// together take at most the size of the buffers.
+// Loads images from buffers, data URIs and external files. Nothing in the file is trusted. Memory
+// is proportional to the input: all images from buffers together take at most the size of the
+// buffers.
 class Images {
  public:
   Images(const ParsedJson& parsed, std::span<const std::span<const std::byte>> buffers,
@@ -47,7 +46,7 @@ class Images {
 
  private:
   Result<std::shared_ptr<const EncodedImage>> read(std::size_t image);
-  Result<std::vector<std::byte>> bytes_of_view(const nlohmann::json& number);
+  Result<std::vector<std::byte>> bytes_of_view(const Json& number);
   Result<std::shared_ptr<const EncodedImage>> beside(const std::string& uri,
                                                      const std::string& name);
 
@@ -59,8 +58,6 @@ class Images {
   std::map<std::string, std::shared_ptr<const EncodedImage>> by_file_;
   std::vector<std::string> files_;
 };
-
-using Json = nlohmann::json;
 
 Error bad_image(std::string message, std::string hint = {}) {
   return Error("gltf-picture", std::move(message), std::move(hint));
@@ -96,11 +93,9 @@ std::shared_ptr<const EncodedImage> Images::get(std::size_t index, Diagnostics& 
 }
 
 Result<std::shared_ptr<const EncodedImage>> Images::read(std::size_t image) {
-  const auto images = parsed_.look.find("images");
-  if (images == parsed_.look.end() || !images->is_array() || image >= images->size()) {
-    return bad_image("it does not exist");
-  }
-  const Json& entry = (*images)[image];
+  const Json& images = member(parsed_.look, "images");
+  if (!images.is_array() || image >= images.size()) return bad_image("it does not exist");
+  const Json& entry = images[image];
   if (!entry.is_object()) return bad_image("it is not an object");
   const std::string name = text_member(entry, "name");
   if (const auto view = entry.find("bufferView"); view != entry.end()) {
@@ -149,28 +144,20 @@ Result<std::shared_ptr<const EncodedImage>> Images::beside(const std::string& ur
   return by_file_[place] = made(name, file->path, {bytes.begin(), bytes.end()});
 }
 
-using Json = nlohmann::json;
-
 const Json kNothing = Json::object();
 
 // A member that is an object; an empty object if there is none.
 const Json& object_in(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_object() ? *found : kNothing;
+  const Json& found = member(object, key);
+  return found.is_object() ? found : kNothing;
 }
 
 // The list entry with an index given in the JSON; null if there is none.
 const Json* entry_of(const Json& root, const char* list, const Json& number) {
-  const auto entries = root.find(list);
-  if (entries == root.end() || !entries->is_array() || !number.is_number_unsigned()) return nullptr;
+  const Json& entries = member(root, list);
+  if (!entries.is_array() || !number.is_number_unsigned()) return nullptr;
   const auto index = number.get<std::uint64_t>();
-  if (index >= entries->size() || !(*entries)[index].is_object()) return nullptr;
-  return &(*entries)[index];
-}
-
-bool truth_in(const Json& object, const char* key) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_boolean() && found->get<bool>();
+  return index < entries.size() && entries[index].is_object() ? &entries[index] : nullptr;
 }
 
 class MaterialReader {
@@ -180,11 +167,11 @@ class MaterialReader {
       : parsed_(parsed), scene_(scene), images_(parsed, buffers, options) {}
 
   void read() {
-    const auto list = parsed_.look.find("materials");
-    if (list == parsed_.look.end() || !list->is_array()) return;
-    for (std::size_t m = 0; m < list->size(); ++m) {
+    const Json& list = member(parsed_.look, "materials");
+    if (!list.is_array()) return;
+    for (std::size_t m = 0; m < list.size(); ++m) {
       parameters_.clear();
-      scene_.materials.push_back(read_material((*list)[m]));
+      scene_.materials.push_back(read_material(list[m]));
       scene_.material_parameters.push_back(std::move(parameters_));
       scene_.materials.back().name = parsed_.material_names[m];
     }
@@ -207,11 +194,11 @@ class MaterialReader {
     material.occlusion_strength = factor(occlusion, "strength", 1);
     material.emissive_texture = texture(object_in(json, "emissiveTexture"));
     material.emissive = factors<3>(json, "emissiveFactor", 0);
-    const auto mode = json.find("alphaMode");
-    if (mode != json.end() && *mode == "BLEND") material.alpha = Material::Alpha::blend;
-    if (mode != json.end() && *mode == "MASK") material.alpha = Material::Alpha::mask;
+    const Json& mode = member(json, "alphaMode");
+    if (mode == "BLEND") material.alpha = Material::Alpha::blend;
+    if (mode == "MASK") material.alpha = Material::Alpha::mask;
     material.alpha_cutoff = factor(json, "alphaCutoff", 0.5f);
-    material.double_sided = truth_in(json, "doubleSided");
+    material.double_sided = member(json, "doubleSided") == true;
     return material;
   }
 
@@ -335,31 +322,29 @@ class MaterialReader {
   }
 
   bool has_image(const Json& info) const {
-    const Json* entry = entry_of(parsed_.look, "textures", info.value("index", Json()));
-    return entry != nullptr && entry->value("source", Json()).is_number_unsigned();
+    const Json* entry = entry_of(parsed_.look, "textures", member(info, "index"));
+    return entry != nullptr && member(*entry, "source").is_number_unsigned();
   }
 
   // The image and sampler of a texture; empty without a usable image.
   Texture texture_of(const Json& info) {
     Texture texture;
-    const Json* entry = entry_of(parsed_.look, "textures", info.value("index", Json()));
+    const Json* entry = entry_of(parsed_.look, "textures", member(info, "index"));
     if (!has_image(info)) return texture;
     texture.image = images_.get(entry->at("source").get<std::size_t>(), scene_.diagnostics);
-    const Json* sampler = entry_of(parsed_.look, "samplers", entry->value("sampler", Json()));
+    const Json* sampler = entry_of(parsed_.look, "samplers", member(*entry, "sampler"));
     if (sampler == nullptr || !texture) return texture;
     texture.wrap_u = wrap(*sampler, "wrapS");
     texture.wrap_v = wrap(*sampler, "wrapT");
-    const auto filter = sampler->find("magFilter");
-    texture.smooth = filter == sampler->end() || *filter != TINYGLTF_TEXTURE_FILTER_NEAREST;
+    texture.smooth = member(*sampler, "magFilter") != TINYGLTF_TEXTURE_FILTER_NEAREST;
     return texture;
   }
 
   static Texture::Wrap wrap(const Json& sampler, const char* key) {
-    const auto found = sampler.find(key);
-    if (found == sampler.end()) return Texture::Wrap::repeat;
-    if (*found == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Texture::Wrap::clamp;
-    return *found == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Texture::Wrap::mirror
-                                                           : Texture::Wrap::repeat;
+    const Json& found = member(sampler, key);
+    if (found == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Texture::Wrap::clamp;
+    return found == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Texture::Wrap::mirror
+                                                          : Texture::Wrap::repeat;
   }
 
   // The number clamped to its range.

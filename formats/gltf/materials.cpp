@@ -6,7 +6,6 @@
 #include "core/text.h"
 #include "formats/gltf/document_internal.h"
 #include "formats/gltf/json_text_internal.h"
-#include "formats/gltf/mesh_shape_internal.h"
 
 // Writes materials, textures, eyes, sockets and what joints carry.
 

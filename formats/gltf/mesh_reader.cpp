@@ -1,4 +1,4 @@
-#include "formats/gltf/mesh_reader_internal.h"
+#include "formats/gltf/reader_internal.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "core/numbers.h"
-#include "formats/gltf/reader_words_internal.h"
 #include "nodes/scene.h"
 
 namespace krok::gltf {

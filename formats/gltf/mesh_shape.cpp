@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/gltf/mesh_shape_internal.h"
+#include "formats/gltf/document_internal.h"
 
 namespace krok::gltf {
 

@@ -2,8 +2,8 @@
 #include <meshoptimizer.h>
 
 #include "core/text.h"
-#include "formats/gltf/compression_internal.h"
-#include "formats/gltf/reader_words_internal.h"
+#include "formats/gltf/buffers_internal.h"
+#include "formats/gltf/reader_internal.h"
 
 namespace krok::gltf {
 

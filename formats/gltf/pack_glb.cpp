@@ -1,8 +1,8 @@
-#include "formats/gltf/pack_glb.h"
+#include "formats/gltf/gltf_reader.h"
 
 #include "core/json_internal.h"
-#include "formats/gltf/assemble_glb_internal.h"
 #include "formats/gltf/buffers_internal.h"
+#include "formats/gltf/glb_container_internal.h"
 
 namespace krok::gltf {
 

@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
+#include "formats/gltf/document_internal.h"
 #include "formats/gltf/filters_internal.h"
-#include "formats/gltf/mesh_shape_internal.h"
 #include "formats/gltf/quantize_internal.h"
-#include "scene/influences.h"
+#include "scene/model.h"
 
 namespace krok::gltf {
 

@@ -7,10 +7,9 @@
 #include <set>
 
 #include "core/index.h"
-#include "formats/gltf/compression_internal.h"
+#include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/filters_internal.h"
-#include "formats/gltf/reduce_tracks.h"
-#include "formats/gltf/track_poses.h"
+#include "formats/gltf/joint_tracks.h"
 #include "skin/morph.h"
 
 namespace krok::gltf {

@@ -1,4 +1,4 @@
-#include "formats/gltf/reduce_tracks.h"
+#include "formats/gltf/joint_tracks.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "formats/gltf/track_poses.h"
+#include "formats/gltf/joint_tracks.h"
 
 #include <algorithm>
 

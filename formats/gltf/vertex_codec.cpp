@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
-#include <vector>
 
-#include "formats/gltf/compression_internal.h"
+#include "formats/gltf/buffers_internal.h"
 
 namespace krok::gltf {
 

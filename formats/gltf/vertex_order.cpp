@@ -1,7 +1,6 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <map>
 #include <string_view>
 #include <unordered_map>
 

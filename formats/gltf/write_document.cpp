@@ -7,11 +7,10 @@
 #include <charconv>
 #include <sstream>
 
-#include "core/base64.h"
-#include "core/json_controls_internal.h"
 #include "core/json_internal.h"
-#include "formats/gltf/baked_writer.h"
+#include "core/text.h"
 #include "formats/gltf/document_internal.h"
+#include "formats/gltf/gltf_writer.h"
 
 namespace krok::gltf {
 

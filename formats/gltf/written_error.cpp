@@ -1,4 +1,4 @@
-#include "formats/gltf/written_error.h"
+#include "formats/gltf/reduce_for_mesh.h"
 
 #include <algorithm>
 #include <limits>

@@ -14,8 +14,7 @@
 
 #include "core/text.h"
 #include "formats/image/decode_image.h"
-#include "formats/morph_exr/bytes_in_internal.h"
-#include "formats/morph_exr/header_scan_internal.h"
+#include "formats/morph_exr/exr_input_internal.h"
 
 namespace krok::height_field {
 

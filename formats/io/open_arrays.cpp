@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
 #include "formats/io/readers_internal.h"

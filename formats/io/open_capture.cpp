@@ -5,7 +5,6 @@
 #include <atomic>
 
 #include "formats/acclaim/acclaim_reader.h"
-#include "formats/acclaim/find_skeleton.h"
 #include "formats/io/formats.h"
 #include "formats/io/readers_internal.h"
 #include "formats/io/takes.h"
@@ -56,13 +55,10 @@ Result<Companion> find_companion(const InputFile& motion, Inputs& inputs) {
     error.hint = "put its skeleton beside it";
     return error;
   }
-  Diagnostic note;
-  note.severity = Severity::note;
-  note.code = "acclaim-skeleton";
-  note.message = fmt::format("{} is used as the skeleton: {}", found->path, found->reason);
-  note.hint = "krok-import with --skeleton FILE.asf selects another";
-  note.where.file = motion.path();
-  inputs.diagnose(std::move(note));
+  inputs.diagnose(
+      make_diagnostic(Severity::note, "acclaim-skeleton",
+                      fmt::format("{} is used as the skeleton: {}", found->path, found->reason),
+                      "krok-import with --skeleton FILE.asf selects another", motion.path()));
   return Companion{found->path, found->reason};
 }
 
@@ -175,13 +171,11 @@ Result<OpenedCapture> open_amc(const InputFile& file, Inputs& inputs, const Capt
     companion = *std::move(found);
   } else if (const auto own = acclaim::find_skeleton(file.path());
              own && own->by_name && base_name(own->path) != base_name(reading.skeleton)) {
-    Diagnostic doubt = make_warning(
+    inputs.diagnose(make_warning(
         "acclaim-skeleton",
         fmt::format("{} has the motion's name, and {} is used as its skeleton, as given", own->path,
                     reading.skeleton),
-        "without --skeleton the motion's own is used");
-    doubt.where.file = file.path();
-    inputs.diagnose(std::move(doubt));
+        "without --skeleton the motion's own is used", file.path()));
   }
   const auto skeleton = inputs.open_input(companion ? companion->path : reading.skeleton);
   if (!skeleton) return skeleton.error();

@@ -6,12 +6,11 @@
 #include <set>
 
 #include "core/index.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/character/character_format.h"
-#include "formats/io/open_role_map.h"
+#include "formats/io/open_motion.h"
 #include "formats/io/readers_internal.h"
 #include "formats/material/material_format.h"
 #include "formats/model/model_format.h"
@@ -205,15 +204,14 @@ class Loader {
     const Vec3& place = loaded_.model.skeleton.reference[at(joint)].position;
     const double away = (eye.position.cast<double>() - place).norm();
     if (away <= kFar * box.sizes().maxCoeff()) return;
-    Diagnostic warning = make_warning(
+    inputs_.diagnose(make_warning(
         "character-eye",
         fmt::format("eye '{}' is {} m from its joint '{}'", shown(eye.name), readable(away, 3),
                     shown(eye.joint)),
         fmt::format("its position is in the model's reference pose, in metres; the joint is at "
                     "{}, {}, {}",
-                    readable(place.x(), 4), readable(place.y(), 4), readable(place.z(), 4)));
-    warning.where.file = path_;
-    inputs_.diagnose(std::move(warning));
+                    readable(place.x(), 4), readable(place.y(), 4), readable(place.z(), 4)),
+        path_));
   }
 
   Status check_joint(const char* what, const std::string& name, const std::string& joint) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "formats/io/inputs.h"
 #include "roles/roles.h"

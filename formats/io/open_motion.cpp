@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <new>
 
 #include "core/index.h"
@@ -9,6 +10,7 @@
 #include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/io/readers_internal.h"
+#include "formats/role_map/role_map.h"
 
 namespace krok::io {
 
@@ -68,10 +70,9 @@ Result<Clip> read_anim(const InputFile& file, Inputs& inputs, const MotionOption
                     "they are taken as rigid",
                     shown(clip->skeleton.names[at(worst.joint)]), readable(100 * worst.size, 3),
                     worst.frame),
-        "krok-skin and krok-export to glTF keep the scale");
+        "krok-skin and krok-export to glTF keep the scale", file.path());
     dropped.joint = clip->skeleton.names[at(worst.joint)];
     dropped.frame = worst.frame;
-    dropped.where.file = file.path();
     inputs.diagnose(std::move(dropped));
   }
   return clip;
@@ -171,6 +172,19 @@ Result<MotionSummary> stream_motion(const InputFile& file, Inputs& inputs,
                                                       : std::vector<std::string>());
   summary.removed_root_motion = clip->provenance.removed_root_motion;
   return summary;
+}
+
+Result<FindRoles> open_role_map(const std::string& path, Inputs& inputs) {
+  if (path.empty()) {
+    return FindRoles(
+        [](const Skeleton& skeleton) { return Result<RoleMap>(find_roles(skeleton)); });
+  }
+  auto opened = inputs.open_input(path);
+  if (!opened) return opened.error();
+  const auto file = std::make_shared<const InputFile>(std::move(*opened));
+  return FindRoles([file](const Skeleton& skeleton) {
+    return role_map::read(file->text(), file->path(), skeleton);
+  });
 }
 
 }  // namespace krok::io

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "formats/io/inputs.h"
+#include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
+#include "scene/skeleton.h"
 #include "scene/stretch.h"
 
 // Motions from any file that holds one: .anim, BVH, AMC with the ASF beside it, scenes (glTF, FBX
@@ -73,5 +75,12 @@ class ChecksumAtEnd {
   const InputFile& input_;
   Inputs& inputs_;
 };
+
+using FindRoles = std::function<Result<RoleMap>(const Skeleton& skeleton)>;
+
+// Opens a role map (formats/role_map). The result maps a skeleton's joints to roles as the file
+// says and may be used on several skeletons and threads; for an empty path it is find_roles(). Its
+// errors are those of role_map::read().
+Result<FindRoles> open_role_map(const std::string& path, Inputs& inputs);
 
 }  // namespace krok::io

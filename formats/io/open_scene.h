@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "formats/io/inputs.h"
 #include "formats/registry/registry.h"
 #include "nodes/scene.h"

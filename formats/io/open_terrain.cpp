@@ -58,12 +58,9 @@ Ground ground_of(std::vector<terrain::GroundTriangle> triangles, const std::stri
   auto ground = terrain::mesh_ground(std::move(triangles), &reversed);
   if (!ground) return std::move(ground.error()).in_file(path);
   if (reversed) {
-    Diagnostic note;
-    note.severity = Severity::note;
-    note.code = "ground-reversed";
-    note.message = "most of the mesh faces down; it is taken to be wound the other way round";
-    note.where.file = path;
-    inputs.diagnose(std::move(note));
+    inputs.diagnose(make_diagnostic(
+        Severity::note, "ground-reversed",
+        "most of the mesh faces down; it is taken to be wound the other way round", "", path));
   }
   return ground;
 }

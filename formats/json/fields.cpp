@@ -5,11 +5,10 @@
 
 #include <algorithm>
 
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/path_inside.h"
 #include "core/text.h"
-#include "formats/json/json_text.h"
+#include "formats/json/located_json.h"
 #include "scene/frame_moment.h"
 
 namespace krok::json {

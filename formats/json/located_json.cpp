@@ -209,4 +209,8 @@ Error error_at(std::string_view text, std::size_t offset, std::string code, std:
       .at_line(place.line, place.column);
 }
 
+std::string in_quotes(std::string_view text) {
+  return krok::json_text(nlohmann::json(text));
+}
+
 }  // namespace krok::json

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "core/result.h"
@@ -46,5 +45,8 @@ Result<Value> parse(std::string_view text, std::size_t largest = std::size_t{16}
 // An error about the value that begins at `offset` of `text`, with its line and column.
 Error error_at(std::string_view text, std::size_t offset, std::string code, std::string message,
                std::string hint = {});
+
+// A quoted JSON string; bytes that are not UTF-8 become U+FFFD.
+std::string in_quotes(std::string_view text);
 
 }  // namespace krok::json

@@ -10,7 +10,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/fields.h"
-#include "formats/json/json_text.h"
+#include "formats/json/located_json.h"
 
 namespace krok::keys {
 

@@ -8,7 +8,7 @@
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/json/fields.h"
-#include "formats/json/json_text.h"
+#include "formats/json/located_json.h"
 
 namespace krok::material {
 

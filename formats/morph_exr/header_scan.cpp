@@ -7,7 +7,7 @@
 
 #include "core/bytes.h"
 #include "core/text.h"
-#include "formats/morph_exr/header_scan_internal.h"
+#include "formats/morph_exr/exr_input_internal.h"
 
 // Source: OpenEXR File Layout, https://openexr.com/en/latest/OpenEXRFileLayout.html
 

@@ -17,8 +17,7 @@
 #include <new>
 
 #include "formats/container/sections.h"
-#include "formats/morph_exr/bytes_in_internal.h"
-#include "formats/morph_exr/header_scan_internal.h"
+#include "formats/morph_exr/exr_input_internal.h"
 
 namespace krok::morph_exr {
 

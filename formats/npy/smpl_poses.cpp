@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "core/index.h"
 #include "formats/npy/array_motion_internal.h"

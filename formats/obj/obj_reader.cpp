@@ -285,9 +285,7 @@ class Reader {
   }
 
   void warn(const char* code, std::string message) {
-    Diagnostic diagnostic = make_warning(code, std::move(message));
-    diagnostic.where.file = path_;
-    shape_.diagnostics.push_back(std::move(diagnostic));
+    shape_.diagnostics.push_back(make_warning(code, std::move(message), "", path_));
   }
 
   Result<Shape> finish() {

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "core/result.h"
-#include "formats/csv/series.h"
+#include "formats/csv/csv_writer.h"
 
 // Writes OpenSim's storage files, .sto and .mot. Source: OpenSim documentation, "Storage (.sto)
 // Files" and "Motion (.mot) Files"; the header is that of version 1, which OpenSim 3 and 4 read.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/nearest_name.h"
 #include "core/quantity.h"
 #include "core/text.h"
 #include "formats/csv/table.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"

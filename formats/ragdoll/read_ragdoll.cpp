@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/index.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/fields.h"

@@ -5,7 +5,7 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "formats/json/json_text.h"
+#include "formats/json/located_json.h"
 #include "formats/ragdoll/ragdoll_format.h"
 
 namespace krok::ragdoll_file {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <utility>
 #include <vector>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "formats/json/located_json.h"
 

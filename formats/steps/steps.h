@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/file.h"
 #include "core/result.h"
@@ -40,5 +41,10 @@ struct WriteOptions {
 // Writes to `file`, which must be empty; the caller commits. Deterministic; a library that was read
 // from a file gives the bytes of that file. An Error if check() fails, before anything is written.
 Status write(const StepsFile& steps, const WriteOptions& options, OutputFile& file);
+
+// Names of the library's parameters, [parameters]: from its report (the member "parameters", an
+// array of objects with a "name"), or else the part after the last dot of the measure: "length" for
+// "step.length".
+std::vector<std::string> parameter_names(const StepsFile& steps);
 
 }  // namespace krok::steps

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/table.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/table.h"

@@ -15,7 +15,6 @@
 #include "motion/hips_root.h"
 #include "pose/blend_pose.h"
 #include "pose/packed_pose.h"
-#include "pose/sample_pose.h"
 #include "scene/clip.h"
 #include "scene/frame_moment.h"
 

@@ -57,12 +57,10 @@ void thin_out(std::span<const KeyedMotion> motions, Correspondence& moments) {
       continue;
     }
     const std::size_t left_out = k + 1 == moments.names.size() && k > 1 ? k - 1 : k;
-    Diagnostic note;
-    note.severity = Severity::note;
-    note.code = "blend-keys";
-    note.message = fmt::format("{} is left out: it is within two frames of another keytime",
-                               moments.names[left_out]);
-    moments.notes.push_back(std::move(note));
+    moments.notes.push_back(
+        make_diagnostic(Severity::note, "blend-keys",
+                        fmt::format("{} is left out: it is within two frames of another keytime",
+                                    moments.names[left_out])));
     const auto place = static_cast<std::ptrdiff_t>(left_out);
     moments.names.erase(moments.names.begin() + place);
     for (auto& times : moments.times) times.erase(times.begin() + place);
@@ -202,14 +200,11 @@ Result<Correspondence> match_keytimes(std::span<const KeyedMotion> motions) {
     for (const int k : common[m]) {
       times.push_back(motions[m].keys->keytimes[static_cast<std::size_t>(k)].time);
     }
-    Diagnostic note;
-    note.severity = Severity::note;
-    note.code = "blend-keys";
-    note.message =
+    result.notes.push_back(make_diagnostic(
+        Severity::note, "blend-keys",
         fmt::format("{}: uses {} s to {} s of {} s, from {} to {}, the range common to all motions",
                     motions[m].name, readable(times.front()), readable(times.back()),
-                    readable(motions[m].duration), result.names.front(), result.names.back());
-    result.notes.push_back(std::move(note));
+                    readable(motions[m].duration), result.names.front(), result.names.back())));
   }
   thin_out(motions, result);
   return result;

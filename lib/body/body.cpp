@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <span>
 
-#include "body/build_pose.h"
 #include "body/human_parts.h"
 #include "body/polygonise.h"
 #include "body/shapes.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "roles/stature.h"
-#include "scene/influences.h"
 #include "scene/model.h"
 
 namespace krok::body {

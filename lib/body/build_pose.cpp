@@ -1,4 +1,4 @@
-#include "body/build_pose.h"
+#include "body/shapes.h"
 
 #include <fmt/format.h>
 #include <algorithm>

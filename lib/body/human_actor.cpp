@@ -8,7 +8,7 @@
 #include "math/quaternion.h"
 #include "math/window.h"
 #include "roles/joint_names.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 namespace krok::body {
 

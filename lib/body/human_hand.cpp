@@ -1,7 +1,6 @@
 #include "body/human_parts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "body/human_actor.h"

@@ -1,7 +1,6 @@
 #include "body/shapes.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "body/human_parts.h"
 

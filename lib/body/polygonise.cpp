@@ -1,7 +1,6 @@
 #include "body/polygonise.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <unordered_map>
 

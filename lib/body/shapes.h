@@ -1,9 +1,12 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "body/human_actor.h"
 #include "body/implicit.h"
+#include "scene/clip.h"
 #include "scene/skeleton.h"
 
 namespace krok::body {
@@ -27,5 +30,24 @@ Shape human_shape(const Skeleton& skeleton, const HumanActor& actor,
 // becomes a ball of radius `lone_radius` metres.
 Shape general_shape(const Skeleton& skeleton, std::span<const Transform> pose,
                     double lone_radius = 0.1);
+
+// Selects the pose that a body is built in.
+
+struct BuildPose {
+  std::vector<Transform> joint_to_world;
+  std::string name;  // for display: "reference", "frame 12, limbs turned aside"
+};
+
+// One frame of a clip, joint_to_world.
+std::vector<Transform> clip_pose(const Clip& clip, int frame);
+
+// The reference pose, standing upright with limbs apart (see human_pose.h); a T-pose built from the
+// skeleton (retarget::neutral_skeleton) if the reference pose needs so much rotation that the twist
+// of the limbs would be arbitrary.
+BuildPose human_build_pose(const Clip& clip, const RoleMap& roles, const HumanActor& actor);
+
+// The reference pose or, if that folds bones onto each other, the frame of the clip with the
+// largest spread of bones.
+BuildPose general_build_pose(const Clip& clip);
 
 }  // namespace krok::body

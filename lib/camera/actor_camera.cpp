@@ -11,7 +11,6 @@
 #include "camera/look_at.h"
 #include "camera/spring.h"
 #include "core/index.h"
-#include "core/numbers.h"
 #include "motion/ground_frame.h"
 
 namespace krok {

@@ -1,4 +1,4 @@
-#include "camera/actor_shape.h"
+#include "camera/actor_camera.h"
 
 #include <fmt/format.h>
 

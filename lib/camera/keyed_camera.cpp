@@ -11,7 +11,6 @@
 #include "core/numbers.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/squad.h"
 #include "scene/frame_moment.h"
 
 namespace krok {

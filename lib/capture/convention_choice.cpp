@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/numbers.h"
 
 namespace krok {
@@ -129,12 +127,10 @@ void report_conventions(const Conventions& conventions, const GivenConventions& 
          conventions.unit_confidence, conventions.unit_reason);
   const auto doubt = [&](const char* name, Direction is, const std::string& why) {
     if (why.empty()) return;
-    Diagnostic warning =
+    diagnostics.push_back(
         make_warning(fmt::format("{}-{}", code_prefix, name),
                      fmt::format("{} is {}, as given; {}", name, direction_name(is), why),
-                     fmt::format("without --{} it is detected", name));
-    warning.where.file = file_name;
-    diagnostics.push_back(std::move(warning));
+                     fmt::format("without --{} it is detected", name), file_name));
   };
   doubt("up", conventions.up, conventions.up_doubt);
   doubt("forward", conventions.forward, conventions.forward_doubt);

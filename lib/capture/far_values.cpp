@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/numbers.h"
-#include "scene/farthest.h"
+#include "scene/skeleton.h"
 
 namespace krok {
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/text.h"
+
 namespace krok {
 
 std::string UniqueNames::make(const std::string& name) {
@@ -11,6 +13,15 @@ std::string UniqueNames::make(const std::string& name) {
     std::string candidate = fmt::format("{}_{}", name, ++number);
     if (claim(candidate)) return candidate;
   }
+}
+
+std::string readable_joint_name(std::string_view bytes) {
+  std::string name = to_utf8(bytes);
+  for (char& c : name) {
+    const auto code = static_cast<unsigned char>(c);
+    if ((code < 32 && c != '\t') || code == 127) c = '_';
+  }
+  return name;
 }
 
 }  // namespace krok

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -19,5 +20,9 @@ class UniqueNames {
   std::unordered_set<std::string> taken_;
   std::unordered_map<std::string, int> numbers_;
 };
+
+// Converts a joint name to valid UTF-8 (other text is read as Latin-1) and replaces each
+// control character except tab by '_'.
+std::string readable_joint_name(std::string_view bytes);
 
 }  // namespace krok

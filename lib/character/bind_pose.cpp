@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "character/bind_pose_internal.h"
+#include "character/joints.h"
 #include "character/rig.h"
 #include "core/index.h"
 #include "core/numbers.h"
@@ -19,10 +19,7 @@ namespace {
 
 void report_joint(Diagnostics& diagnostics, Severity severity, std::string code,
                   std::string message, std::string joint = {}) {
-  Diagnostic diagnostic;
-  diagnostic.severity = severity;
-  diagnostic.code = std::move(code);
-  diagnostic.message = std::move(message);
+  Diagnostic diagnostic = make_diagnostic(severity, std::move(code), std::move(message));
   diagnostic.joint = std::move(joint);
   diagnostics.push_back(std::move(diagnostic));
 }

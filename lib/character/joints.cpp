@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <numeric>
 
-#include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "nodes/moving.h"
+#include "nodes/animation_choice.h"
 #include "roles/joint_names.h"
 
 namespace krok::character {
@@ -255,15 +254,12 @@ void Chooser::report_choice(int chosen, const std::vector<std::vector<int>>& ske
     if (skeleton[0] == chosen || others.size() == kMaxNamed) continue;
     others.push_back(skin_label(skeleton[0]));
   }
-  Diagnostic diagnostic;
-  diagnostic.severity = by_name ? Severity::note : Severity::warning;
-  diagnostic.code = "scene-skeletons";
-  diagnostic.message =
-      fmt::format("the file has {} skeletons; using that of {}{}", skeletons.size(),
-                  skin_label(chosen), by_name ? "" : ", which has the most joints");
-  diagnostic.hint = fmt::format("use --skin to select another: {}{}", fmt::join(others, ", "),
-                                others.size() + 1 < skeletons.size() ? ", ..." : "");
-  diagnostics_.push_back(std::move(diagnostic));
+  diagnostics_.push_back(
+      make_diagnostic(by_name ? Severity::note : Severity::warning, "scene-skeletons",
+                      fmt::format("the file has {} skeletons; using that of {}{}", skeletons.size(),
+                                  skin_label(chosen), by_name ? "" : ", which has the most joints"),
+                      fmt::format("use --skin to select another: {}{}", fmt::join(others, ", "),
+                                  others.size() + 1 < skeletons.size() ? ", ..." : "")));
 }
 
 void Chooser::take_without_skin() {
@@ -384,9 +380,10 @@ void Chooser::report_left_out() {
       names.resize(kMaxNamed);
       names.emplace_back("...");
     }
-    tell(diagnostics_, severity, "scene-left-out",
-         fmt::format("{} outside of the skeleton, left out: {}",
-                     counted(count, fmt::format("{} node", what)), fmt::join(names, ", ")));
+    diagnostics_.push_back(make_diagnostic(
+        severity, "scene-left-out",
+        fmt::format("{} outside of the skeleton, left out: {}",
+                    counted(count, fmt::format("{} node", what)), fmt::join(names, ", "))));
   };
   report(Severity::warning, "animated", moved);
   report(Severity::note, "bare", bare);

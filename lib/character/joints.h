@@ -50,4 +50,13 @@ Result<Joints> choose_joints(const nodes::Scene& scene, const nodes::Evaluator& 
 // Names a part of a scene in messages: "skin 2 (Body)", "node 7".
 std::string label(const char* kind, int index, const std::string& name);
 
+struct BindPose {
+  std::vector<Mat4> joint_to_world;  // F_j of rig.h, [joints]
+  std::vector<char> weighted;        // [joints] whether a vertex is bound to it
+};
+
+// See make_rig in rig.h; `to_axes` as in Rig. Warnings and notes: scene-bind, scene-pose.
+BindPose find_bind_pose(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                        const Joints& joints, const Mat4& to_axes, Diagnostics& diagnostics);
+
 }  // namespace krok::character

@@ -5,21 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <utility>
 
 #include "capture/unique_names.h"
-#include "character/mesh_placement_internal.h"
-#include "character/mesh_vertices_internal.h"
-#include "character/morph_targets_internal.h"
+#include "character/mesh_internal.h"
 #include "character/motion.h"
-#include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "scene/farthest.h"
-#include "scene/influences.h"
+#include "scene/model.h"
+#include "scene/skeleton.h"
 
 namespace krok::character {
 
@@ -166,8 +162,8 @@ Status MeshBuilder::check_growth() const {
 void MeshBuilder::report_what_is_left() {
   const auto left_out = [&](const NameList& names, const char* why) {
     if (names.empty()) return;
-    tell(diagnostics_, Severity::warning, "scene-mesh",
-         fmt::format("meshes skipped because {}: {}", why, names.text()));
+    diagnostics_.push_back(make_warning(
+        "scene-mesh", fmt::format("meshes skipped because {}: {}", why, names.text())));
   };
   left_out(elsewhere_, "no joint moves them");
   left_out(other_skeleton_, "they are bound to another skeleton");
@@ -183,9 +179,10 @@ void MeshBuilder::report_what_is_left() {
     sets = std::max(sets, std::ssize(evaluator_.primitive(instance).more_texture_coordinates) + 1);
   }
   if (sets > Model::kMaxCoordinateSets) {
-    tell(diagnostics_, Severity::warning, "scene-mesh-attributes",
-         fmt::format("{} sets of texture coordinates, a model holds {}: the others are left out",
-                     sets, Model::kMaxCoordinateSets));
+    diagnostics_.push_back(make_warning(
+        "scene-mesh-attributes",
+        fmt::format("{} sets of texture coordinates, a model holds {}: the others are left out",
+                    sets, Model::kMaxCoordinateSets)));
   }
   if (!options_.with_morphs) return;
   long long tangents = 0;
@@ -195,8 +192,9 @@ void MeshBuilder::report_what_is_left() {
     }
   }
   if (tangents > 0) {
-    tell(diagnostics_, Severity::warning, "scene-morph-tangents",
-         fmt::format("the tangents of {} are left out", counted(tangents, "morph target")));
+    diagnostics_.push_back(make_warning(
+        "scene-morph-tangents",
+        fmt::format("the tangents of {} are left out", counted(tangents, "morph target"))));
   }
 }
 

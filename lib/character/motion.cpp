@@ -10,7 +10,7 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
-#include "scene/farthest.h"
+#include "scene/skeleton.h"
 
 namespace krok::character {
 
@@ -181,13 +181,10 @@ Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& eval
   double field_of_view = lens.field_of_view;
   if (!lens.perspective) {
     field_of_view = kUsualFieldOfView;
-    Diagnostic diagnostic;
-    diagnostic.severity = Severity::warning;
-    diagnostic.code = "scene-camera";
-    diagnostic.message =
-        fmt::format("{} is orthographic and has no field of view; 45 degrees is used",
-                    label("camera", scene.nodes[at(node)].camera, lens.name));
-    diagnostics.push_back(std::move(diagnostic));
+    diagnostics.push_back(
+        make_warning("scene-camera",
+                     fmt::format("{} is orthographic and has no field of view; 45 degrees is used",
+                                 label("camera", scene.nodes[at(node)].camera, lens.name))));
   }
   CameraTrack track;
   track.rate = sampling.rate;

@@ -7,9 +7,8 @@
 #include <cmath>
 
 #include "capture/unique_names.h"
-#include "character/bind_pose_internal.h"
+#include "character/joints.h"
 #include "character/space.h"
-#include "character/tell_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
@@ -91,22 +90,25 @@ void RigBuilder::name_joints() {
     }
   }
   if (renamed > 0) {
-    tell(diagnostics_, Severity::warning, "scene-joint-names",
-         fmt::format("{} with a duplicate name {} renamed: {}{}",
-                     counted(static_cast<long long>(renamed), "joint"), renamed == 1 ? "is" : "are",
-                     fmt::join(examples, ", "), renamed > examples.size() ? ", ..." : ""));
+    diagnostics_.push_back(make_warning(
+        "scene-joint-names",
+        fmt::format("{} with a duplicate name {} renamed: {}{}",
+                    counted(static_cast<long long>(renamed), "joint"), renamed == 1 ? "is" : "are",
+                    fmt::join(examples, ", "), renamed > examples.size() ? ", ..." : "")));
   }
   if (unnamed > 0) {
-    tell(diagnostics_, Severity::note, "scene-joint-names",
-         fmt::format("{} without a name {} named by node number",
-                     counted(static_cast<long long>(unnamed), "joint"),
-                     unnamed == 1 ? "is" : "are"));
+    diagnostics_.push_back(
+        make_diagnostic(Severity::note, "scene-joint-names",
+                        fmt::format("{} without a name {} named by node number",
+                                    counted(static_cast<long long>(unnamed), "joint"),
+                                    unnamed == 1 ? "is" : "are")));
   }
   if (rig_.joints.nodes[0] < 0) {
-    tell(diagnostics_, Severity::warning, "scene-roots",
-         fmt::format("the joints have no common ancestor; a root joint {} was added at the "
-                     "origin",
-                     shown(rig_.skeleton.names[0])));
+    diagnostics_.push_back(make_warning(
+        "scene-roots",
+        fmt::format("the joints have no common ancestor; a root joint {} was added at the "
+                    "origin",
+                    shown(rig_.skeleton.names[0]))));
   }
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "character/tell_internal.h"
 #include "core/numbers.h"
 
 namespace krok::character {
@@ -180,9 +179,9 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
     sampling.rate = *options.source_rate;
     chosen.rate = {readable(sampling.rate), "as given", Confidence::certain};
   } else if (!options.rate) {
-    tell(diagnostics, Severity::note, "scene-rate",
-         fmt::format("{} fps: {}", readable(found.rate), found.reason),
-         "use --rate N for another rate");
+    diagnostics.push_back(make_diagnostic(
+        Severity::note, "scene-rate", fmt::format("{} fps: {}", readable(found.rate), found.reason),
+        "use --rate N for another rate"));
   }
   if (options.rate) sampling.rate = *options.rate;
   sampling.step = stretch / sampling.rate;
@@ -198,22 +197,25 @@ Result<ChosenSampling> choose_sampling(const nodes::Animation& animation,
   sampling.frames = static_cast<int>(std::ceil(steps - rest)) + 1;
   sampling.frames = std::max(sampling.frames, 1);
   if (chosen.keys_from != 0 && held) {
-    tell(diagnostics, Severity::note, "scene-start",
-         fmt::format("frames before {} s hold the first key, as viewers show it",
-                     readable(chosen.keys_from)));
+    diagnostics.push_back(
+        make_diagnostic(Severity::note, "scene-start",
+                        fmt::format("frames before {} s hold the first key, as viewers show it",
+                                    readable(chosen.keys_from))));
   } else if (chosen.keys_from != 0) {
-    tell(diagnostics, animation.from_zero ? Severity::warning : Severity::note, "scene-start",
-         fmt::format("frame 0 is the file's first key, at {} s", readable(chosen.keys_from)),
-         animation.from_zero && chosen.keys_from <= kMaxHold
-             ? "viewers hold the first key until then; --rate N samples from time 0"
-             : "");
+    diagnostics.push_back(make_diagnostic(
+        animation.from_zero ? Severity::warning : Severity::note, "scene-start",
+        fmt::format("frame 0 is the file's first key, at {} s", readable(chosen.keys_from)),
+        animation.from_zero && chosen.keys_from <= kMaxHold
+            ? "viewers hold the first key until then; --rate N samples from time 0"
+            : ""));
   }
   const double late = (sampling.frames - 1) - steps;
   if (late > 0.05) {
-    tell(diagnostics, Severity::note, "scene-end",
-         fmt::format("the last key, at {} s, is between two frames; the last frame holds it, {} "
-                     "frames late",
-                     readable(chosen.keys_to), readable(late, 2)));
+    diagnostics.push_back(make_diagnostic(
+        Severity::note, "scene-end",
+        fmt::format("the last key, at {} s, is between two frames; the last frame holds it, {} "
+                    "frames late",
+                    readable(chosen.keys_to), readable(late, 2))));
   }
   return chosen;
 }

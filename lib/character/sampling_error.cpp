@@ -1,4 +1,4 @@
-#include "character/sampling_error.h"
+#include "character/motion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "character/tell_internal.h"
 #include "core/numbers.h"
 
 namespace krok::character {
@@ -92,24 +91,26 @@ void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& dia
   for (const Transform& joint : skeleton.reference) box.extend(joint.position);
   const double size = box.sizes().maxCoeff();
   if (is_plausible_size(size)) return;
-  tell(diagnostics, Severity::warning, "scene-unit",
-       fmt::format("the character is {} m in size in the file's unit, which is not a plausible "
-                   "human size",
-                   readable(size, 3)),
-       "set the file's unit with --unit, or leave it out to have it detected");
+  diagnostics.push_back(make_warning(
+      "scene-unit",
+      fmt::format("the character is {} m in size in the file's unit, which is not a plausible "
+                  "human size",
+                  readable(size, 3)),
+      "set the file's unit with --unit, or leave it out to have it detected"));
 }
 
 void check_actor(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
   if (!roles.humanoid) return;
   const Conventions found = detect_conventions(skeleton, roles, {});
   if (found.up_confidence != Confidence::guess && found.up != Direction::plus_y) {
-    tell(diagnostics, Severity::warning, "scene-up",
-         fmt::format("the character's up axis is not +y: {}", found.up_reason),
-         "if it should be, set the file's up axis with --up");
+    diagnostics.push_back(make_warning(
+        "scene-up", fmt::format("the character's up axis is not +y: {}", found.up_reason),
+        "if it should be, set the file's up axis with --up"));
   } else if (found.forward_confidence != Confidence::guess && found.forward != Direction::plus_z) {
-    tell(diagnostics, Severity::warning, "scene-forward",
-         fmt::format("the character does not face +z: {}; it is not rotated", found.forward_reason),
-         fmt::format("use --forward {} to rotate it to +z", direction_name(found.forward)));
+    diagnostics.push_back(make_warning(
+        "scene-forward",
+        fmt::format("the character does not face +z: {}; it is not rotated", found.forward_reason),
+        fmt::format("use --forward {} to rotate it to +z", direction_name(found.forward))));
   }
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "capture/convention_choice.h"
 #include "character/rig.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "compare/frame_match.h"
+#include "compare/matching.h"
 #include "compare/skeleton_match.h"
 #include "core/numbers.h"
 #include "core/parallel.h"

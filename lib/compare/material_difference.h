@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "scene/material.h"
-#include "scene/material_parameter.h"
 
 namespace krok::compare {
 

@@ -6,7 +6,9 @@
 #include "compare/matching.h"
 #include "compare/measure.h"
 #include "core/result.h"
+#include "scene/camera_track.h"
 #include "scene/model.h"
+#include "scene/morph_set.h"
 
 namespace krok::compare {
 
@@ -33,6 +35,43 @@ struct ModelDifference {
 
 // An Error if a model fails its check(). Locations have vertices and joints of `first`.
 Result<ModelDifference> difference(const Model& first, const Model& second,
+                                   const Tolerance& tolerance,
+                                   Matching matching = Matching::automatic);
+
+// Difference of two cameras; frames are matched as in ClipDifference.
+struct CameraDifference {
+  std::vector<std::string> structure;
+  int compared_frames = 0;
+  Measure positions;       // metres
+  Measure orientations;    // radians
+  Measure fields_of_view;  // radians
+
+  bool same() const {
+    return structure.empty() && positions.within() && orientations.within() &&
+           fields_of_view.within();
+  }
+};
+
+// An Error if a camera fails its check().
+Result<CameraDifference> difference(const CameraTrack& first, const CameraTrack& second,
+                                    const Tolerance& tolerance);
+
+// Difference of two sets of morph targets. Vertices are matched by index; provenance is ignored.
+struct MorphDifference {
+  // Differences that no tolerance covers: other vertex counts (then nothing is measured), targets
+  // or normals that only one has. Readable sentences.
+  std::vector<std::string> structure;
+
+  int compared_targets = 0;
+  Measure positions;  // metres
+  Measure normals;    // radians
+
+  bool same() const { return structure.empty() && positions.within() && normals.within(); }
+};
+
+// Targets are matched by index for Matching::order, else by name. An Error if a set fails its
+// check(). Locations have targets and vertices of `first`.
+Result<MorphDifference> difference(const MorphSet& first, const MorphSet& second,
                                    const Tolerance& tolerance,
                                    Matching matching = Matching::automatic);
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -69,6 +68,9 @@ struct SceneComparison {
 
   void say(std::string sentence) { result.structure.push_back(std::move(sentence)); }
   void note(std::string sentence) { result.notes.push_back(std::move(sentence)); }
+  void report(std::string sentence, bool counts) {
+    (counts ? result.structure : result.notes).push_back(std::move(sentence));
+  }
 };
 
 // "mesh Body", or "mesh 3" if it has no name.

@@ -164,12 +164,8 @@ void group_meshes(SceneComparison& comparison) {
     if (first.empty() || second.empty() || of_points) return;
     const bool first_has = std::ranges::any_of(first, has);
     if (first_has == std::ranges::any_of(second, has)) return;
-    std::string text = fmt::format("only the {} has {}", first_has ? "first" : "second", what);
-    if (counts) {
-      comparison.say(std::move(text));
-    } else {
-      comparison.note(std::move(text));
-    }
+    comparison.report(fmt::format("only the {} has {}", first_has ? "first" : "second", what),
+                      counts);
   };
   report_missing("normals", true, [](const SceneMesh& mesh) { return mesh.has_normals; });
   report_missing("texture coordinates", true,
@@ -218,15 +214,11 @@ void match_scene_joints(SceneComparison& comparison) {
   if (first.joint_names.empty() && second.joint_names.empty()) return;
   if (first.joint_names.empty() || second.joint_names.empty()) {
     const bool first_has = second.joint_names.empty();
-    std::string text = fmt::format(
-        "only the {} has joints ({}), so joints are not compared", first_has ? "first" : "second",
-        first_has ? first.joint_names.size() : second.joint_names.size());
     // Without meshes there is nothing else to compare.
-    if (!first.meshes.empty() && !second.meshes.empty()) {
-      comparison.note(std::move(text));
-    } else {
-      comparison.say(std::move(text));
-    }
+    comparison.report(fmt::format("only the {} has joints ({}), so joints are not compared",
+                                  first_has ? "first" : "second",
+                                  first_has ? first.joint_names.size() : second.joint_names.size()),
+                      first.meshes.empty() || second.meshes.empty());
     return;
   }
   const SkeletonMatch match =

@@ -123,18 +123,11 @@ void compare_attributes(SceneComparison& comparison, std::pair<int, int> meshes,
                         const std::string& name, ValueLocation place) {
   const SceneMesh& a = comparison.first.meshes[static_cast<std::size_t>(meshes.first)];
   const SceneMesh& b = comparison.second.meshes[static_cast<std::size_t>(meshes.second)];
-  const auto report = [&](std::string text, bool counts) {
-    if (counts) {
-      comparison.say(std::move(text));
-    } else {
-      comparison.note(std::move(text));
-    }
-  };
   if (a.colours.empty() != b.colours.empty()) {
     if (a.is_painted() || b.is_painted()) {
-      report(fmt::format("{}: only the {} has vertex colours", name,
-                         a.colours.empty() ? "second" : "first"),
-             comparison.options.materials);
+      comparison.report(fmt::format("{}: only the {} has vertex colours", name,
+                                    a.colours.empty() ? "second" : "first"),
+                        comparison.options.materials);
     }
   } else {
     add_colour_differences(a.colours, b.colours, place, comparison.result.colours);
@@ -150,10 +143,10 @@ void compare_attributes(SceneComparison& comparison, std::pair<int, int> meshes,
     if (ours.empty() != theirs.empty()) {
       const bool used = comparison.first_textures.uses(meshes.first, set + 1) ||
                         comparison.second_textures.uses(meshes.second, set + 1);
-      report(fmt::format("{}: only the {} has texture coordinates {}{}", name,
-                         ours.empty() ? "second" : "first", set + 1,
-                         used ? "" : ", which no texture uses"),
-             used || comparison.options.materials);
+      comparison.report(fmt::format("{}: only the {} has texture coordinates {}{}", name,
+                                    ours.empty() ? "second" : "first", set + 1,
+                                    used ? "" : ", which no texture uses"),
+                        used || comparison.options.materials);
     } else {
       add_coordinate_differences(ours, theirs, place, comparison.result.texture_coordinates);
     }
@@ -216,12 +209,7 @@ void compare_materials(SceneComparison& comparison, const SceneMesh& a, const Sc
     text = fmt::format("only the {} has one", a.material != nullptr ? "first" : "second");
   }
   if (text.empty()) return;
-  text = fmt::format("{}, material: {}", name, text);
-  if (comparison.options.materials) {
-    comparison.say(std::move(text));
-  } else {
-    comparison.note(std::move(text));
-  }
+  comparison.report(fmt::format("{}, material: {}", name, text), comparison.options.materials);
 }
 
 bool has_normal_texture(const SceneMesh& mesh) {

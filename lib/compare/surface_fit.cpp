@@ -1,7 +1,6 @@
 #include "compare/surface_fit_internal.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 

@@ -194,15 +194,11 @@ void compare_areas(SceneComparison& comparison, const SurfaceGroup& group,
     const auto words = [](const MaterialArea& one) {
       return fmt::format("{} of {} m2", counted(one.triangles, "triangle"), readable(one.area, 4));
     };
-    std::string text =
+    const std::string text =
         fmt::format("{}{} in the first, {} in the second",
                     name.empty() ? std::string() : fmt::format("material {}: ", name), words(ours),
                     words(theirs));
-    if (other_area) {
-      comparison.say("another area: " + text);
-    } else {
-      comparison.note(std::move(text));
-    }
+    comparison.report((other_area ? "another area: " : "") + text, other_area);
   }
 }
 

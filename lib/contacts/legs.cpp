@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 namespace krok {
 

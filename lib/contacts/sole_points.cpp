@@ -6,7 +6,7 @@
 #include "contacts/legs.h"
 #include "contacts/series_internal.h"
 #include "math/window.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 namespace krok {
 

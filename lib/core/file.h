@@ -137,4 +137,9 @@ std::string base_name(const std::string& path);
 // The extension of `path` in lower case with its dot, such as ".bvh"; empty if it has none.
 std::string extension(const std::string& path);
 
+// Removes the temporary files of all live OutputFiles (file.h), as the signal handlers do, for a
+// program that is about to exit without unwinding. Threads that are about to create one are
+// blocked. Does not allocate.
+void remove_temporaries();
+
 }  // namespace krok

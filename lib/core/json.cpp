@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/json_controls_internal.h"
 #include "core/text.h"
 
 namespace krok {

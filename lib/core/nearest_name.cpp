@@ -1,4 +1,4 @@
-#include "core/nearest_name.h"
+#include "core/text.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <numeric>
 #include <vector>
-
-#include "core/text.h"
 
 namespace krok {
 

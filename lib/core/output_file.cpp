@@ -8,11 +8,9 @@
 #include <atomic>
 #include <cassert>
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "core/appended_bytes_internal.h"
 #include "core/file.h"

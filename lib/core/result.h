@@ -38,13 +38,14 @@ struct Diagnostic {
 
 using Diagnostics = std::vector<Diagnostic>;
 
-inline Diagnostic make_warning(std::string code, std::string message, std::string hint = {}) {
-  Diagnostic warning;
-  warning.severity = Severity::warning;
-  warning.code = std::move(code);
-  warning.message = std::move(message);
-  warning.hint = std::move(hint);
-  return warning;
+inline Diagnostic make_diagnostic(Severity severity, std::string code, std::string message,
+                                  std::string hint = {}, std::string file = {}) {
+  return {severity, std::move(code), std::move(message), std::move(hint), {std::move(file)}, {}};
+}
+inline Diagnostic make_warning(std::string code, std::string message, std::string hint = {},
+                               std::string file = {}) {
+  return make_diagnostic(Severity::warning, std::move(code), std::move(message), std::move(hint),
+                         std::move(file));
 }
 
 // A Diagnostic that made an operation fail.

@@ -9,7 +9,6 @@
 #include <charconv>
 #include <climits>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -20,7 +19,6 @@
 
 #include "core/file.h"
 #include "core/hash.h"
-#include "core/temporary_files.h"
 #include "core/temporary_files_internal.h"
 
 namespace krok {

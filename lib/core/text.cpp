@@ -1,6 +1,7 @@
 #include "core/text.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 
 namespace krok {
@@ -166,6 +167,57 @@ std::string shown(std::string_view text) {
   }
   const std::string result = printable(to_utf8(text.substr(0, length)));
   return length < text.size() ? result + "..." : result;
+}
+
+std::string to_base64(std::span<const std::byte> bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  char* out = text.data();
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < here; ++k) {
+      group |= std::to_integer<std::uint32_t>(bytes[i + k]) << (16 - 8 * k);
+    }
+    for (std::size_t k = 0; k <= here; ++k) out[k] = kDigits[group >> (18 - 6 * k) & 63U];
+    out += 4;
+  }
+  return text;
+}
+
+std::string to_markup(std::string_view text) {
+  // U+FFFE and U+FFFF are the only characters above the control characters that XML does not allow.
+  const auto is_no_character = [](std::string_view rest) {
+    return rest.substr(0, 3) == "\xEF\xBF\xBE" || rest.substr(0, 3) == "\xEF\xBF\xBF";
+  };
+  const std::string safe = printable(to_utf8(text), true);
+  std::string result;
+  for (std::size_t i = 0; i < safe.size(); ++i) {
+    const char c = safe[i];
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        if (is_no_character(std::string_view(safe).substr(i))) {
+          result += '?';
+          i += 2;
+        } else {
+          result += c;
+        }
+    }
+  }
+  return result;
 }
 
 }  // namespace krok

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -86,5 +87,23 @@ std::string printable(std::string_view text, bool lines = false);
 
 // For messages: UTF-8, printable, truncated after about 40 bytes.
 std::string shown(std::string_view text);
+
+// Base64 (RFC 4648) with padding. Data encoded in pieces gives the same text as a whole if all
+// pieces but the last have a multiple of three bytes.
+std::string to_base64(std::span<const std::byte> bytes);
+
+// `text` for XML and HTML, including attributes: UTF-8, with &, <, > and " escaped and '?' in place
+// of what printable() replaces (see core/text.h) and of characters that XML does not allow.
+std::string to_markup(std::string_view text);
+
+// The one of `names` with the smallest edit distance (Levenshtein, with exchanged letters as one
+// edit) to `word`, ignoring case; the first of equally near ones. Empty if none is near, that is
+// within the larger of two letters and a third of the longer word, and one letter or less than half
+// of it (without dashes before it). Only the first 64 bytes are compared.
+std::string nearest_name(std::string_view word, std::span<const std::string> names);
+
+// A hint for a word that is not in `names`: "did you mean 'walk'?" if one is near, otherwise
+// "expected one of walk, run".
+std::string nearest_hint(std::string_view word, std::span<const std::string> names);
 
 }  // namespace krok

@@ -7,7 +7,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "compare/frame_match.h"
+#include "compare/matching.h"
 #include "compare/skeleton_match.h"
 #include "core/numbers.h"
 #include "draw/chart_style_internal.h"

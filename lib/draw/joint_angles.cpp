@@ -6,7 +6,7 @@
 #include "math/quaternion.h"
 #include "retarget/pose_alignment.h"
 #include "retarget/stance.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 namespace krok::draw {
 

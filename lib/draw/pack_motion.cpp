@@ -2,7 +2,7 @@
 #include <bit>
 #include <cmath>
 
-#include "core/base64.h"
+#include "core/text.h"
 #include "draw/pack_motion_internal.h"
 #include "math/quaternion.h"
 

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
-#include "core/markup.h"
+#include "core/text.h"
 #include "draw/plot_panel_internal.h"
 #include "draw/plot_style_internal.h"
 

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
-#include "core/markup.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "draw/plot_style_internal.h"
 
 namespace krok::draw {

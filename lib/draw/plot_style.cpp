@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <vector>
 
-#include "core/markup.h"
+#include "core/text.h"
 
 namespace krok::draw {
 

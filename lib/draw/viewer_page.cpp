@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "core/base64.h"
+#include "core/text.h"
 #include "draw/pack_motion_internal.h"
 #include "draw/page_text_internal.h"
 #include "draw/sole_outline.h"

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "fit/worst_points_internal.h"
 #include "rbf/sobol.h"
-#include "rbf/weight_metrics.h"
+#include "rbf/weight_function.h"
 
 namespace krok::fit::detail {
 

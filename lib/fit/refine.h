@@ -75,7 +75,7 @@ struct RefineMetrics {
   double largest = 0;                   // scaled by the ranges, within
   double mean_square = 0;               // scaled by the ranges, within
   int failed = 0;                       // number of held-out points where f could not be measured
-  double least_weight = 0, largest_weight = 0, roughness = 0;  // see rbf/weight_metrics.h
+  double least_weight = 0, largest_weight = 0, roughness = 0;  // see rbf/weight_function.h
   double condition = 1;                                        // see rbf/weight_solver.h
 
   bool operator==(const RefineMetrics&) const = default;

@@ -6,8 +6,8 @@
 #include "core/index.h"
 #include "gait/body_motion_internal.h"
 #include "ik/two_bone.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
 #include "math/window.h"
 
 namespace krok::gait {

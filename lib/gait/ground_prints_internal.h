@@ -1,8 +1,5 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "gait/print.h"
 #include "gait/walker_internal.h"
 #include "terrain/terrain.h"

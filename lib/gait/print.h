@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "contacts/sole_points.h"
 #include "math/types.h"

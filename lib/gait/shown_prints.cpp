@@ -1,7 +1,6 @@
 #include "gait/shown_prints.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>

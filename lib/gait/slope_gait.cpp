@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "math/smoother_step.h"
+#include "math/hermite.h"
 #include "math/types.h"
 
 namespace krok::gait {

@@ -1,4 +1,4 @@
-#include "gait/step_style_internal.h"
+#include "gait/body_motion_internal.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,8 @@
 #include <optional>
 
 #include "core/index.h"
-#include "core/numbers.h"
 #include "core/text.h"
-#include "math/smoother_step.h"
+#include "math/hermite.h"
 
 namespace krok::gait {
 

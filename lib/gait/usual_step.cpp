@@ -1,4 +1,4 @@
-#include "gait/usual_step.h"
+#include "gait/plan_prints.h"
 
 #include <fmt/format.h>
 

@@ -11,7 +11,7 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "gait/step_style_internal.h"
+#include "gait/body_motion_internal.h"
 #include "gait/walk_block_internal.h"
 
 namespace krok::gait {
@@ -221,12 +221,8 @@ WalkDetails Walk::details() const {
                              state_->plan.moved[to], made.clearance, made.lowered, made.extension,
                              made.missed, state_->plan.why_moved[to]});
     const auto warn = [&](const char* code, const std::string& what, const char* hint) {
-      Diagnostic warning;
-      warning.severity = Severity::warning;
-      warning.code = code;
-      warning.message = fmt::format("print {}: {}", to + 1, what);
-      warning.hint = hint;
-      details.warnings.push_back(std::move(warning));
+      details.warnings.push_back(
+          make_warning(code, fmt::format("print {}: {}", to + 1, what), hint));
     };
     if (made.missed > kMissed) {
       warn("walk-missed",

@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "core/index.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
 
 namespace krok::gait {
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "core/index.h"
 #include "ik/tree_internal.h"

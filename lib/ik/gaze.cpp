@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -13,7 +12,7 @@
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
 #include "roles/body_frame.h"
-#include "roles/eyes.h"
+#include "roles/roles.h"
 
 namespace krok::ik {
 

@@ -1,4 +1,4 @@
-#include "ik/learn_limits.h"
+#include "ik/limits.h"
 
 #include <fmt/format.h>
 

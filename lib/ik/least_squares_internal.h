@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Eigenvalues>
-#include <cstdint>
-#include <span>
 #include <vector>
 
 #include "ik/tree_internal.h"

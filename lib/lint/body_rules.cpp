@@ -9,7 +9,7 @@
 #include "lint/series_internal.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 #include "roles/stature.h"
 
 // Rules about the body: its size, bones, limits, reference pose and the ends of a loop.

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/index.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 namespace krok::lint {
 

@@ -6,7 +6,7 @@
 #include "core/numbers.h"
 #include "lint/series_internal.h"
 #include "math/window.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 // frame-rate: repeated frames, and how long steps and falls take.
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -59,5 +60,12 @@ Vec3 sample_curve(std::span<const double> times, std::span<const Vec3> values,
 // empty. The search starts at `guess` (any number), so that slowly increasing times are found at
 // once.
 std::size_t key_before(std::span<const double> times, double time, std::size_t guess = 0);
+
+// From 0 at s = 0 to 1 at s = 1 with two derivatives zero at both ends, clamped beyond: the quintic
+// along which people reach (Flash and Hogan, "The coordination of arm movements", 1985).
+inline double smoother_step(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (10 + s * (6 * s - 15));
+}
 
 }  // namespace krok

@@ -1,4 +1,4 @@
-#include "math/vector_arrays_internal.h"
+#include "math/vector_arrays.h"
 
 // Only targets that KROK_BEST_VERSION can choose are compiled.
 #include <hwy/detect_targets.h>

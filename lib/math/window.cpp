@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <limits>
 #include <utility>

@@ -8,8 +8,8 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
 #include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"

@@ -4,7 +4,6 @@
 
 #include <string_view>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "motion/ground_frame.h"
 #include "roles/roles.h"

@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "core/rows.h"
+#include "core/index.h"
 #include "math/quaternion.h"
 
 namespace krok {

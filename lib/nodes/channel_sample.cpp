@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "math/hermite.h"
 #include "math/quaternion.h"

@@ -1,4 +1,4 @@
-#include "nodes/key_gaps.h"
+#include "nodes/scene_of.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "nodes/materials.h"
+#include "nodes/scene.h"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,6 @@
 #include "core/result.h"
 #include "math/types.h"
 #include "scene/material.h"
-#include "scene/material_parameter.h"
 
 // An imported scene: a tree of nodes with meshes, morph targets, skins, cameras and keyframe
 // animations. Its structure is that of glTF 2.0, to which other formats are mapped. Of lights
@@ -156,5 +155,9 @@ struct Scene {
   std::vector<std::string> not_shown;
   Diagnostics diagnostics;  // what was ignored or is doubtful
 };
+
+// Makes material names valid (see is_name) and unique: a material without a name becomes
+// "material_3" (the fourth), the second one named Skin becomes "Skin_2".
+void make_names_unique(std::vector<Material>& materials);
 
 }  // namespace krok::nodes

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "nodes/evaluate.h"
-#include "nodes/key_gaps.h"
 
 namespace krok::nodes {
 

@@ -9,7 +9,7 @@
 #include "core/numbers.h"
 #include "math/hermite.h"
 #include "pose/local_to_model.h"
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 #include "scene/frame_moment.h"
 
 namespace krok::parametric {

@@ -1,7 +1,6 @@
 #include "parametric/bounds.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "math/dense_solve.h"

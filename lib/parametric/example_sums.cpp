@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "pose/blend_pose.h"
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 
 namespace krok::parametric {
 

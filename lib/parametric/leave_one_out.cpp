@@ -7,8 +7,8 @@
 #include "core/parallel.h"
 #include "parametric/bounds.h"
 #include "parametric/left_out_internal.h"
-#include "rbf/point_weights.h"
 #include "rbf/weight_evaluator.h"
+#include "rbf/weight_solver.h"
 
 namespace krok::parametric {
 

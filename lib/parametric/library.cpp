@@ -13,7 +13,7 @@
 #include "motion/mirror.h"
 #include "motion/place.h"
 #include "parametric/measure.h"
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 #include "scene/frame_moment.h"
 
 namespace krok::parametric {

@@ -5,7 +5,7 @@
 
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 
 namespace krok::parametric {
 

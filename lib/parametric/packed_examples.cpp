@@ -5,7 +5,7 @@
 
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 
 namespace krok::parametric {
 

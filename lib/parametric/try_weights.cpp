@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "parametric/left_out_internal.h"
 #include "parametric/thin_out.h"
-#include "rbf/point_weights.h"
+#include "rbf/weight_solver.h"
 
 namespace krok::parametric {
 

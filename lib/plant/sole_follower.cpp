@@ -5,8 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
 #include "plant/sole_follower_internal.h"
 
 namespace krok::plant {

@@ -56,34 +56,13 @@ void clear_sum(std::span<PoseBlock> sum) {
 void add_to_sum(std::span<const PoseBlock> pose, float weight, std::span<const PoseBlock> reference,
                 std::span<PoseBlock> sum) {
   assert(pose.size() == sum.size() && reference.size() == sum.size());
-  pose_detail::best_kernels().add(pose.data(), weight, nullptr, reference.data(), sum.size(),
-                                  sum.data());
-}
-
-void add_to_sum(std::span<const PoseBlock> pose, float weight,
-                std::span<const WeightBlock> joint_weights, std::span<const PoseBlock> reference,
-                std::span<PoseBlock> sum) {
-  assert(pose.size() == sum.size() && reference.size() == sum.size());
-  assert(joint_weights.size() == sum.size());
-  if (sum.empty()) return;
-  pose_detail::best_kernels().add(pose.data(), weight, joint_weights.front().weight,
-                                  reference.data(), sum.size(), sum.data());
+  pose_detail::best_kernels().add(pose.data(), weight, reference.data(), sum.size(), sum.data());
 }
 
 float finish_sum(std::span<const PoseBlock> reference, std::span<PoseBlock> sum) {
   assert(reference.size() == sum.size());
   return std::sqrt(pose_detail::best_kernels().blend(nullptr, 0, {false, true}, reference.data(),
                                                      sum.size(), sum.data()));
-}
-
-std::vector<WeightBlock> pack_weights(std::span<const float> joint_weights) {
-  constexpr auto kLanes = static_cast<std::size_t>(PoseBlock::kLanes);
-  std::vector<WeightBlock> packed(
-      static_cast<std::size_t>(pose_blocks(static_cast<int>(joint_weights.size()))));
-  for (std::size_t j = 0; j < packed.size() * kLanes; ++j) {
-    packed[j / kLanes].weight[j % kLanes] = j < joint_weights.size() ? joint_weights[j] : 1.0f;
-  }
-  return packed;
 }
 
 }  // namespace krok

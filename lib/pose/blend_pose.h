@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "pose/packed_pose.h"
 
@@ -38,22 +37,12 @@ float blend_poses(std::span<const BlendTerm> terms, std::span<const PoseBlock> r
 float blend_poses_reference(std::span<const BlendTerm> terms, std::span<const PoseBlock> reference,
                             std::span<PoseBlock> pose);
 
-// The same in steps, for poses from other sources and for per-joint weights: clear_sum(),
-// add_to_sum() for each pose, finish_sum().
-struct alignas(64) WeightBlock {
-  float weight[PoseBlock::kLanes];
-};
+// The same in steps, for poses from other sources: clear_sum(), add_to_sum() for each pose,
+// finish_sum().
 void clear_sum(std::span<PoseBlock> sum);
 void add_to_sum(std::span<const PoseBlock> pose, float weight, std::span<const PoseBlock> reference,
                 std::span<PoseBlock> sum);
-// With per-joint weights (such as a feathered mask) that are multiplied by `weight`.
-void add_to_sum(std::span<const PoseBlock> pose, float weight,
-                std::span<const WeightBlock> joint_weights, std::span<const PoseBlock> reference,
-                std::span<PoseBlock> sum);
 // Normalises the rotations; returns the agreement.
 float finish_sum(std::span<const PoseBlock> reference, std::span<PoseBlock> sum);
-
-// Packs per-joint weights; lanes without a joint get 1.
-std::vector<WeightBlock> pack_weights(std::span<const float> joint_weights);
 
 }  // namespace krok

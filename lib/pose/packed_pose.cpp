@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/rows.h"
+#include "core/index.h"
 #include "math/quaternion.h"
 #include "pose/pose_kernels_internal.h"
 #include "scene/frame_moment.h"
@@ -18,6 +18,17 @@ void set_joint(const Transform& joint, std::size_t lane, PoseBlock& block) {
   for (int i = 0; i < 3; ++i) block.position[i][lane] = static_cast<float>(joint.position[i]);
   for (int i = 0; i < 4; ++i) {
     block.rotation[i][lane] = static_cast<float>(joint.orientation.coeffs()[i]);
+  }
+}
+
+void sample_with(const pose_detail::Kernels& kernels, const PackedClip& clip, double time,
+                 std::span<PoseBlock> pose) {
+  assert(pose.size() == static_cast<std::size_t>(clip.blocks_per_pose()));
+  const pose_detail::Between term = pose_detail::between_frames(clip, time, 1.0f);
+  if (term.part == 0.0f) {
+    std::copy_n(term.before, pose.size(), pose.begin());
+  } else {
+    kernels.sample(term, pose.size(), pose.data());
   }
 }
 
@@ -92,5 +103,13 @@ Between between_frames(const PackedClip& clip, double time, float weight) {
 }
 
 }  // namespace pose_detail
+
+void sample_pose(const PackedClip& clip, double time, std::span<PoseBlock> pose) {
+  sample_with(pose_detail::best_kernels(), clip, time, pose);
+}
+
+void sample_pose_reference(const PackedClip& clip, double time, std::span<PoseBlock> pose) {
+  sample_with(pose_detail::scalar_kernels(), clip, time, pose);
+}
 
 }  // namespace krok

@@ -151,15 +151,11 @@ float blend(const Between* terms, std::size_t count, Round round, const PoseBloc
   return round.last && blocks != 0 ? hn::GetLane(hn::MinOfLanes(d, least)) : 1.0f;
 }
 
-void add(const PoseBlock* pose, float weight, const float* joint_weights,
-         const PoseBlock* reference, std::size_t blocks, PoseBlock* sum) {
-  const Lanes d;
+void add(const PoseBlock* pose, float weight, const PoseBlock* reference, std::size_t blocks,
+         PoseBlock* sum) {
+  const V own = number(weight);
   for (std::size_t b = 0; b < blocks; ++b) {
     for (std::size_t lane = 0; lane < PoseBlock::kLanes; lane += kLanes) {
-      V own = number(weight);
-      if (joint_weights != nullptr) {
-        own = hn::Mul(own, hn::Load(d, joint_weights + b * PoseBlock::kLanes + lane));
-      }
       const Rotation q = rotation_of(pose[b], lane);
       const V factor = signed_factor(own, q, rotation_of(reference[b], lane));
       store(sum_of(own, position_of(pose[b], lane), position_of(sum[b], lane)),

@@ -37,9 +37,8 @@ struct Kernels {
   void (*sample)(const Between& term, std::size_t blocks, PoseBlock* pose);
   float (*blend)(const Between* terms, std::size_t count, Round round, const PoseBlock* reference,
                  std::size_t blocks, PoseBlock* sum);
-  // `joint_weights`, [blocks x PoseBlock::kLanes], may be null.
-  void (*add)(const PoseBlock* pose, float weight, const float* joint_weights,
-              const PoseBlock* reference, std::size_t blocks, PoseBlock* sum);
+  void (*add)(const PoseBlock* pose, float weight, const PoseBlock* reference, std::size_t blocks,
+              PoseBlock* sum);
 };
 
 // The scalar reference, and the best kernels for this machine.

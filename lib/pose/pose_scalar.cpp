@@ -109,20 +109,17 @@ float blend_scalar(const Between* terms, std::size_t count, Round round, const P
   return least;
 }
 
-void add_scalar(const PoseBlock* pose, float weight, const float* joint_weights,
-                const PoseBlock* reference, std::size_t blocks, PoseBlock* sum) {
+void add_scalar(const PoseBlock* pose, float weight, const PoseBlock* reference, std::size_t blocks,
+                PoseBlock* sum) {
   for (std::size_t b = 0; b < blocks; ++b) {
     for (int lane = 0; lane < kLanes; ++lane) {
-      const float own = joint_weights == nullptr
-                            ? weight
-                            : weight * joint_weights[b * kLanes + static_cast<std::size_t>(lane)];
       for (int i = 0; i < 3; ++i) {
         sum[b].position[i][lane] =
-            std::fma(own, pose[b].position[i][lane], sum[b].position[i][lane]);
+            std::fma(weight, pose[b].position[i][lane], sum[b].position[i][lane]);
       }
       const Rotation q = rotation_of(pose[b], lane);
       Rotation rotation = rotation_of(sum[b], lane);
-      add_scaled(dot(q, rotation_of(reference[b], lane)) < 0 ? -own : own, q, rotation);
+      add_scaled(dot(q, rotation_of(reference[b], lane)) < 0 ? -weight : weight, q, rotation);
       set_rotation(sum[b], lane, rotation);
     }
   }

@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <complex>
 #include <utility>
@@ -10,9 +9,9 @@
 #include "core/index.h"
 #include "core/parallel.h"
 #include "math/dense_solve.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 namespace krok {
 

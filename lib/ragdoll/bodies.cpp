@@ -7,7 +7,6 @@
 #include "ik/anatomical_limits.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
-#include "ragdoll/bone_bodies.h"
 
 namespace krok::ragdoll {
 
@@ -423,6 +422,18 @@ double covered_share(const Model& model, const std::vector<Body>& bodies, double
     }
   }
   return static_cast<double>(covered) / static_cast<double>(model.positions.size());
+}
+
+std::string_view body_mode_name(BodyMode mode) {
+  switch (mode) {
+    case BodyMode::simulated:
+      return "simulated";
+    case BodyMode::animated:
+      return "animated";
+    case BodyMode::powered:
+      return "powered";
+  }
+  return "";
 }
 
 }  // namespace krok::ragdoll

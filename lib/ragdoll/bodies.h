@@ -2,11 +2,12 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/result.h"
+#include "ik/limits.h"
 #include "math/transform.h"
-#include "ragdoll/body_mode.h"
 #include "roles/roles.h"
 #include "scene/model.h"
 #include "scene/skeleton.h"
@@ -14,6 +15,16 @@
 // Rigid bodies that stand for the bones of a skeleton. Metres, kilograms.
 
 namespace krok::ragdoll {
+
+// How a body moves during the simulation.
+enum class BodyMode : unsigned char {
+  simulated,  // by gravity, by contacts and with what it hangs from
+  animated,   // as the motion has it, whatever it touches, and so does the body above it
+  powered     // as simulated, but a motor in its joint follows the motion; the root body, which has
+              // no joint, follows it by a spring from outside
+};
+
+std::string_view body_mode_name(BodyMode mode);  // "powered"
 
 // A convex shape about its own origin, which is its centre of mass.
 struct Shape {
@@ -66,5 +77,27 @@ double covered_share(const Model& model, const std::vector<Body>& bodies, double
 
 // For each joint the body that carries it: its own, or the nearest above; -1 above the root body.
 std::vector<int> body_of_joint(const Skeleton& skeleton, const std::vector<Body>& bodies);
+
+// The bodies as meshes on the skeleton, in its reference pose: a part for each, by its name, whose
+// vertices move with the body's joint alone. The material is "bodies".
+Model body_meshes(const Skeleton& skeleton, const std::vector<Body>& bodies);
+
+// Bodies and ranges for skeletons that are no humanoids: animals, robots, hands, plants. Metres,
+// kilograms.
+
+// The largest distance between two joints in the reference pose along an axis: how large the
+// skeleton is.
+double extent(const Skeleton& skeleton);
+
+// A capsule for each bone, from its joint to the joint below; where the skeleton forks, to the
+// middle of the joints below, or to the farthest one if they surround it; at a leaf on from the
+// bone above, half as long. Radii are 0.2 of the length, at least 0.012 and at most 0.08 of the
+// extent. Joints whose bones are under 0.03 of the extent have no body and follow the joint above.
+// All bodies are of `root` or below it. Masses are not set. Empty if the skeleton has no extent.
+std::vector<Body> bone_bodies(const Skeleton& skeleton, int root);
+
+// Cones about the reference pose for joints with a body: they swing by 50 degrees and twist by 30
+// about the body's own axis. All others are free.
+ik::Limits cone_limits(const Skeleton& skeleton, const std::vector<Body>& bodies);
 
 }  // namespace krok::ragdoll

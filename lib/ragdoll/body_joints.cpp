@@ -5,7 +5,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "ragdoll/bone_bodies.h"
+#include "ragdoll/bodies.h"
 
 namespace krok::ragdoll {
 

@@ -1,4 +1,4 @@
-#include "ragdoll/body_meshes.h"
+#include "ragdoll/bodies.h"
 
 #include <cmath>
 

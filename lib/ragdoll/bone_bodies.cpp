@@ -1,4 +1,4 @@
-#include "ragdoll/bone_bodies.h"
+#include "ragdoll/bodies.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ragdoll/clear_ground.h"
+#include "ragdoll/get_up.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "core/index.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
 #include "math/window.h"
 
 namespace krok::ragdoll {

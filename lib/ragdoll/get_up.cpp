@@ -10,8 +10,8 @@
 
 #include "core/index.h"
 #include "math/euler.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
 #include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"

@@ -1,4 +1,4 @@
-#include "ragdoll/go_on.h"
+#include "ragdoll/simulate.h"
 
 #include <algorithm>
 #include <vector>

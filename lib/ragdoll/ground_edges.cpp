@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <numbers>
 
 #include "core/index.h"
 #include "ragdoll/faces_internal.h"

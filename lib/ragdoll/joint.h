@@ -29,14 +29,11 @@ struct Range {
   double max = std::numeric_limits<double>::infinity();
 };
 
-struct Joint {
+// What a joint ties, and how far and how easily that moves.
+struct JointConstraint {
   JointKind kind = JointKind::spherical;
   int parent = -1;  // body, or -1 for the world
   int child = 0;    // body
-
-  // The joint's frame in the frames of both bodies (their centres of mass). Angles and distances
-  // are 0 where the two coincide; `turn` is of the child's frame in the parent's.
-  Transform in_parent, in_child;
 
   Range range;                 // revolute, prismatic, distance (min >= 0)
   ik::JointLimit turn;         // spherical, six_dof: free, locked or a cone
@@ -48,8 +45,15 @@ struct Joint {
   bool soft = false;
   double stiffness = 100, damping = 0;  // >= 0
 
-  double friction = 0;      // N m s/rad, >= 0: slows all turning within the joint
-  double dry_friction = 0;  // N m, >= 0: the same at any speed
+  double friction = 0;  // N m s/rad, >= 0: slows all turning within the joint
+};
+
+struct Joint : JointConstraint {
+  // The joint's frame in the frames of both bodies (their centres of mass). Angles and distances
+  // are 0 where the two coincide; `turn` is of the child's frame in the parent's.
+  Transform in_parent, in_child;
+
+  double dry_friction = 0;  // N m, >= 0: as `friction`, the same at any speed
 
   // A motor turns the child towards `target` (in the parent's frame) and its speed to
   // `target_speed` (radians/s, in the parent's frame), as a spring (N m/rad) and a damper (N m

@@ -59,16 +59,7 @@ void round_angles(JointRule& rule) {
 
 JointRule rule_of(const Joint& joint, const std::vector<Body>& bodies) {
   JointRule rule;
-  rule.kind = joint.kind;
-  rule.parent = joint.parent;
-  rule.child = joint.child;
-  rule.range = joint.range;
-  rule.turn = joint.turn;
-  rule.slide = joint.slide;
-  rule.soft = joint.soft;
-  rule.stiffness = joint.stiffness;
-  rule.damping = joint.damping;
-  rule.friction = joint.friction;
+  static_cast<JointConstraint&>(rule) = joint;
   const Body& child = bodies[at(joint.child)];
   const Quat in_child = child.to_joint.orientation * joint.in_child.orientation;
   rule.anchor = child.to_joint * joint.in_child.position;
@@ -157,9 +148,6 @@ void RuleFollower::turn_frames(JointRule& rule, Joint& joint) const {
 
 Joint RuleFollower::make(JointRule rule) const {
   Joint joint;
-  joint.kind = rule.kind;
-  joint.parent = rule.parent;
-  joint.child = rule.child;
   turn_frames(rule, joint);
   const Vec3 anchor = place(rule.child) * rule.anchor;
   joint.in_child.position = to_joint(rule.child).inverse() * rule.anchor;
@@ -169,13 +157,7 @@ Joint RuleFollower::make(JointRule rule) const {
   if (rule.kind == JointKind::distance) {
     widen_to(rule.range, (parent_to_world * joint.in_parent.position - anchor).norm(), kSameLength);
   }
-  joint.range = rule.range;
-  joint.turn = rule.turn;
-  joint.slide = rule.slide;
-  joint.soft = rule.soft;
-  joint.stiffness = rule.stiffness;
-  joint.damping = rule.damping;
-  joint.friction = rule.friction;
+  static_cast<JointConstraint&>(joint) = rule;
   return joint;
 }
 

@@ -13,11 +13,9 @@
 
 namespace krok::ragdoll {
 
-struct JointRule {
-  JointKind kind = JointKind::spherical;
-  int parent = -1;  // body, or -1 for the world
-  int child = 0;    // body
-
+// `turn` is of the child in the parent's skeleton joint, `slide` along the parent's axes, locked in
+// what is made.
+struct JointRule : JointConstraint {
   // Where the joint is, in the frame of the child's skeleton joint (of the one it moves with), and
   // for `distance` the other end, in that of the parent's. Without: where the first is in the pose.
   Vec3 anchor = Vec3::Zero();
@@ -27,13 +25,6 @@ struct JointRule {
   Vec3 axis = Vec3::UnitX();
   // Revolute: the child's orientation in the parent's skeleton joint at which the angle is 0.
   Quat zero = Quat::Identity();
-  Range range;                 // revolute: radians; prismatic and distance: metres
-  ik::JointLimit turn;         // spherical, six_dof: of the child in the parent's skeleton joint
-  std::array<Range, 3> slide;  // six_dof: metres, along the parent's axes; locked in what is made
-
-  bool soft = false;                    // and `stiffness`, `damping`, `friction`: as in Joint
-  double stiffness = 100, damping = 0;  // >= 0
-  double friction = 0;                  // >= 0
 };
 
 // What falls.

@@ -8,7 +8,6 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "motion/sample.h"
-#include "ragdoll/go_on.h"
 #include "ragdoll/motion_follower.h"
 
 namespace krok::ragdoll {

@@ -18,8 +18,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRidge = 1e-12;  // relative; keeps directions without effect from being singular
 constexpr int kMaxHalvings = 4;   // of a Gauss-Newton step
 constexpr double kBeyond = 0.5;   // of the range: how far outside it a point may move
-constexpr int kPointSteps = 20;   // of weights_for()
-constexpr int kWeightSteps = 10;
 constexpr double kMinDamping = 1e-6, kMaxDamping = 1e6;
 
 }  // namespace
@@ -36,8 +34,7 @@ InverseSearch::InverseSearch(const WeightEvaluator& evaluator, Measure measure)
       weights_(n_),
       slopes_(d_ * n_),
       direction_(n_),
-      point_(d_),
-      wanted_point_(d_) {}
+      point_(d_) {}
 
 double InverseSearch::measure_at(std::span<const double> weights, std::span<const double> wanted,
                                  bool slopes, std::vector<double>& error) {
@@ -161,17 +158,6 @@ Match InverseSearch::find_point(std::span<const double> wanted, int steps, doubl
     }
   }
   return {before, now, measured_};
-}
-
-Match InverseSearch::weights_for(std::span<const double> wanted, double enough,
-                                 std::span<double> weights) {
-  std::vector<double>& point = wanted_point_;
-  std::ranges::copy(wanted, point.begin());
-  const Match first = find_point(wanted, kPointSteps, enough, point);
-  evaluator_.weights(point, weights);
-  if (first.after <= enough) return first;
-  const Match second = correct(wanted, kWeightSteps, enough, weights);
-  return {first.before, second.after, first.measured + second.measured};
 }
 
 }  // namespace krok::rbf

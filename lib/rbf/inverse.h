@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -45,10 +44,6 @@ class InverseSearch {
   Match find_point(std::span<const double> wanted, int steps, double enough,
                    std::span<double> point);
 
-  // Weights for `wanted`, starting from w(wanted): by find_point() if that suffices, followed by
-  // correct().
-  Match weights_for(std::span<const double> wanted, double enough, std::span<double> weights);
-
  private:
   // Measures and returns the scaled error; infinity on failure.
   double measure_at(std::span<const double> weights, std::span<const double> wanted, bool slopes,
@@ -64,7 +59,7 @@ class InverseSearch {
   std::vector<double> parameters_, jacobian_;         // f, scaled
   std::vector<double> error_, tried_error_;           // [d], wanted - f, scaled
   std::vector<double> weights_, slopes_, direction_;  // [N], [d x N], [N]
-  std::vector<double> point_, wanted_point_;          // [d]
+  std::vector<double> point_;                         // [d]
 };
 
 }  // namespace krok::rbf

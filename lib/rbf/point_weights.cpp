@@ -1,13 +1,11 @@
-#include "rbf/point_weights.h"
+#include "rbf/weight_solver.h"
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "math/dense_solve.h"
 #include "rbf/evaluate_internal.h"
-#include "rbf/weight_solver.h"
 #include "rbf/weight_system_internal.h"
 
 namespace krok::rbf {

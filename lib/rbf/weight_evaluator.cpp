@@ -86,13 +86,6 @@ void WeightEvaluator::weights(std::span<const double> point, std::span<double> w
   run(point.data(), weights.data(), nullptr);
 }
 
-void WeightEvaluator::weights_of_many(std::span<const double> points,
-                                      std::span<double> weights) const {
-  for (std::size_t p = 0; p * dimensions_ < points.size(); ++p) {
-    run(points.data() + p * dimensions_, weights.data() + p * examples_, nullptr);
-  }
-}
-
 void WeightEvaluator::slopes(std::span<const double> point, std::span<double> weights,
                              std::span<double> slopes) const {
   run(point.data(), weights.data(), slopes.data());

@@ -29,9 +29,6 @@ class WeightEvaluator {
   // Does not allocate; thread-safe. The spans must not overlap.
   void weights(std::span<const double> point, std::span<double> weights) const;
 
-  // The same for [points x d]; weights are [points x examples].
-  void weights_of_many(std::span<const double> points, std::span<double> weights) const;
-
   // Weights and their derivatives d w_i / d p_a, [d x examples], per parameter unit. For the linear
   // kernel, the derivative of a centre's own term at the centre is 0.
   void slopes(std::span<const double> point, std::span<double> weights,

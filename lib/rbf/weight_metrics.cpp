@@ -1,4 +1,4 @@
-#include "rbf/weight_metrics.h"
+#include "rbf/weight_function.h"
 
 #include <algorithm>
 #include <cmath>

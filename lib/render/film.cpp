@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/colour_key_internal.h"
-#include "render/grid_internal.h"
 #include "render/layout_internal.h"
+#include "render/overlays_internal.h"
 #include "render/renderer_internal.h"
 #include "render/text.h"
 

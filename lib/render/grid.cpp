@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/grid_internal.h"
+#include "render/overlays_internal.h"
 
 namespace krok::render {
 

@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "core/result.h"
 #include "math/types.h"
 #include "render/colour.h"
 
@@ -42,5 +44,13 @@ void fill(Image& image, const Box& box, Colour colour, double opacity = 1.0);
 // A straight line with round caps, `width` pixels wide, clipped to `clip`.
 void draw_line(Image& image, const Vec2& from, const Vec2& to, double width, Colour colour,
                const Box& clip, double opacity = 1.0);
+
+// Encodes the image as PNG: 8 bits per channel, tagged as sRGB, without a timestamp. Output is
+// deterministic. Code png-write if libpng fails (out of memory, empty image).
+Result<std::vector<std::byte>> write_png(const Image& image);
+
+// Decodes a PNG file of at most `most_pixels` pixels; transparency is blended over white. Code
+// png-read for data that is not a valid PNG file or has more pixels.
+Result<Image> read_png(std::span<const std::byte> bytes, std::size_t most_pixels = 400'000'000);
 
 }  // namespace krok::render

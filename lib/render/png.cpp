@@ -1,4 +1,4 @@
-#include "render/png.h"
+#include "render/image.h"
 
 #include <fmt/format.h>
 #include <png.h>

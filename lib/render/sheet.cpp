@@ -9,9 +9,8 @@
 
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "render/colour_key_internal.h"
-#include "render/grid_internal.h"
 #include "render/layout_internal.h"
+#include "render/overlays_internal.h"
 #include "render/renderer_internal.h"
 #include "render/text.h"
 

@@ -1,7 +1,6 @@
 #include "render/strip.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace krok::render {
 

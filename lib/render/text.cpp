@@ -6,10 +6,24 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <vector>
 
 #include "core/text.h"
-#include "render/font_internal.h"
+
+// The label font, DejaVu Sans, as a TrueType file. Included by the assembler: a C++ array of the
+// bytes would be many times as large.
+asm(".section .rodata\n"
+    ".balign 16\n"
+    "krok_label_font_begin:\n"
+    ".incbin \"" KROK_LABEL_FONT
+    "\"\n"
+    "krok_label_font_end:\n"
+    ".byte 0\n"
+    ".previous\n"
+    ".global krok_label_font_begin\n"
+    ".global krok_label_font_end\n");
+
+extern "C" const std::byte krok_label_font_begin[];
+extern "C" const std::byte krok_label_font_end[];
 
 namespace krok::render {
 
@@ -60,7 +74,7 @@ TextPainter::~TextPainter() = default;
 
 Result<TextPainter> TextPainter::create() {
   auto face = std::make_unique<Face>();
-  const auto file = font_file();
+  const std::span file(krok_label_font_begin, krok_label_font_end);
   const auto* bytes = reinterpret_cast<const FT_Byte*>(file.data());
   if (FT_Init_FreeType(&face->library) != 0 ||
       FT_New_Memory_Face(face->library, bytes, static_cast<FT_Long>(file.size()), 0, &face->face) !=

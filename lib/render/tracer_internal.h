@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 
 #include "core/result.h"
 #include "render/actor.h"

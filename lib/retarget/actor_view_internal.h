@@ -9,7 +9,6 @@
 #include "math/types.h"
 #include "retarget/joint_mapping.h"
 #include "retarget/pose_alignment.h"
-#include "roles/limbs.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/skeleton.h"

@@ -8,7 +8,7 @@
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
 #include "retarget/pose_alignment.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 
 namespace krok::retarget {
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "retarget/actor_view_internal.h"
-#include "roles/limbs.h"
+#include "roles/roles.h"
 #include "scene/frame_blocks.h"
 
 namespace krok::retarget {

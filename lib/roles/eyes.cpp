@@ -1,4 +1,4 @@
-#include "roles/eyes.h"
+#include "roles/roles.h"
 
 #include <algorithm>
 #include <array>

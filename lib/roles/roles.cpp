@@ -6,7 +6,6 @@
 
 #include "core/index.h"
 #include "roles/joint_names.h"
-#include "roles/limbs.h"
 #include "roles/role_finder_internal.h"
 
 namespace krok {

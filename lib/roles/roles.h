@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -117,5 +118,35 @@ std::optional<GivenRole> parse_role_label(std::string_view label);
 // Errors: role-twice (two joints with a role that only one can have), role-order (such as a hand
 // that is not a descendant of its upper arm).
 Result<RoleMap> find_roles(const Skeleton& skeleton, std::span<const GivenRole> given);
+
+// The joints that rotate the eyes; -1 if missing.
+struct EyeJoints {
+  int left = -1;
+  int right = -1;
+};
+
+// Finds the eyes by name alone, such as "LeftEye", "eye.L", "lEye", "J_Adj_R_FaceEye": names with
+// the word eye and a side, but without a word for a part around the eye or a control (lid, brow,
+// lash, target, end and so on). The first match per side.
+EyeJoints find_eyes(const Skeleton& skeleton);
+
+// The roles of the joints of a limb.
+
+struct ArmRoles {
+  Role collar, upper, lower, hand, fingers;
+};
+struct LegRoles {
+  Role upper, lower, foot, toes;
+};
+
+// The left limb, then the right one.
+inline constexpr std::array<ArmRoles, 2> kArmRoles = {
+    {{Role::left_collar, Role::left_upper_arm, Role::left_lower_arm, Role::left_hand,
+      Role::left_fingers},
+     {Role::right_collar, Role::right_upper_arm, Role::right_lower_arm, Role::right_hand,
+      Role::right_fingers}}};
+inline constexpr std::array<LegRoles, 2> kLegRoles = {
+    {{Role::left_upper_leg, Role::left_lower_leg, Role::left_foot, Role::left_toes},
+     {Role::right_upper_leg, Role::right_lower_leg, Role::right_foot, Role::right_toes}}};
 
 }  // namespace krok

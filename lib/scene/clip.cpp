@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <vector>
 
-#include "core/rows.h"
+#include "core/index.h"
 #include "math/quaternion.h"
-#include "scene/farthest.h"
 #include "scene/frame_moment.h"
 #include "scene/frame_source.h"
+#include "scene/skeleton.h"
 
 namespace krok {
 
@@ -77,6 +78,24 @@ Status check_values(const Skeleton& skeleton, int first_frame, std::span<const V
     return error;
   }
   return {};
+}
+
+void fill_frames_between(Clip& clip, int first, int next) {
+  const std::size_t joints = clip.skeleton.names.size();
+  std::vector<Transform> world(joints), before(joints), after(joints), local(joints);
+  clip.get_pose(first, world);
+  world_to_local(clip.skeleton.parents, world, before);
+  clip.get_pose(next, world);
+  world_to_local(clip.skeleton.parents, world, after);
+  for (int frame = first + 1; frame < next; ++frame) {
+    const double t = static_cast<double>(frame - first) / static_cast<double>(next - first);
+    for (std::size_t j = 0; j < joints; ++j) {
+      local[j].position = before[j].position + t * (after[j].position - before[j].position);
+      local[j].orientation = slerp(before[j].orientation, after[j].orientation, t);
+    }
+    local_to_world(clip.skeleton.parents, local, world);
+    clip.set_pose(frame, world);
+  }
 }
 
 }  // namespace krok

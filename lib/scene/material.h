@@ -83,4 +83,12 @@ Status check(std::span<const Material> materials);
 // The material with this name, or nullptr.
 const Material* find_material(std::span<const Material> materials, std::string_view name);
 
+// A property of a glTF material that Material has no member for, kept for comparing files.
+struct MaterialParameter {
+  std::string name;            // "KHR_materials_clearcoat, clearcoatFactor"
+  std::vector<double> values;  // if it is a number or several
+  Texture texture{};           // if it is one
+  std::string text{};          // of any other property: its JSON
+};
+
 }  // namespace krok

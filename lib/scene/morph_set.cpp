@@ -6,7 +6,7 @@
 #include <cmath>
 #include <unordered_set>
 
-#include "core/rows.h"
+#include "core/index.h"
 #include "core/text.h"
 
 namespace krok {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "scene/farthest.h"
+#include "scene/skeleton.h"
 
 namespace krok {
 namespace {

@@ -12,9 +12,7 @@
 
 #include "math/transform.h"
 #include "math/types.h"
-#include "scene/key_gap.h"
 #include "scene/material.h"
-#include "scene/material_parameter.h"
 #include "scene/skeleton.h"
 
 // An animated scene as it is shown and compared: its contents, and a function that evaluates it at
@@ -22,6 +20,16 @@
 // matter. Made by scene_of() of what a file holds: lib/nodes, lib/skin.
 
 namespace krok {
+
+// What an animation does from one of its key times to the next, for comparing it there too.
+struct KeyGap {
+  // Equal parts at whose ends to look: 1 if the values are straight from key to key, more for
+  // cubic splines and for rotations by large angles, whose shorter way depends on rounding.
+  int parts = 1;
+  bool jumps = false;  // a step: a value jumps at the end
+
+  friend bool operator==(const KeyGap&, const KeyGap&) = default;
+};
 
 // Skin influences of a mesh's vertices, shape [vertices x per_vertex].
 struct SkinInfluences {

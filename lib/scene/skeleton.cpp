@@ -6,7 +6,6 @@
 #include <unordered_set>
 
 #include "core/text.h"
-#include "scene/farthest.h"
 
 namespace krok {
 

@@ -8,6 +8,7 @@
 
 #include "core/result.h"
 #include "math/transform.h"
+#include "math/types.h"
 
 namespace krok {
 
@@ -60,5 +61,16 @@ double reference_extent(const Skeleton& skeleton);
 // The differences of two skeletons in names, order or parents, worded for a message; empty if there
 // are none. Reference poses are not compared.
 std::string difference_in_structure(const Skeleton& a, const Skeleton& b);
+
+// Metres. No coordinate is farther from the origin: floats there are 64 m apart, and beyond 1e19
+// their squares are infinite.
+constexpr float kFarthest = 1e9F;
+
+// Whether all coordinates are finite and within that.
+template <typename Vector>
+bool is_near(const Vector& position) {
+  using Scalar = typename Vector::Scalar;
+  return (position.array().abs() <= static_cast<Scalar>(kFarthest)).all();
+}
 
 }  // namespace krok

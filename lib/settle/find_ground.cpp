@@ -6,7 +6,7 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "math/smoother_step.h"
+#include "math/hermite.h"
 #include "math/window.h"
 #include "settle/settler_internal.h"
 

@@ -10,7 +10,7 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
-#include "ragdoll/bone_bodies.h"
+#include "ragdoll/bodies.h"
 #include "retarget/stance.h"
 #include "settle/settler_internal.h"
 

@@ -5,8 +5,8 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
+#include "math/hermite.h"
 #include "math/quaternion.h"
-#include "math/smoother_step.h"
 #include "settle/settler_internal.h"
 
 namespace krok::settling {

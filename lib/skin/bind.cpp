@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "core/numbers.h"
-#include "scene/influences.h"
+#include "scene/model.h"
 
 namespace krok {
 
@@ -25,12 +25,8 @@ Error missing_joints(const std::vector<std::string>& names, const std::string& s
 }
 
 Diagnostic warning(std::string code, std::string joint, std::string message, std::string hint) {
-  Diagnostic result;
-  result.severity = Severity::warning;
-  result.code = std::move(code);
+  Diagnostic result = make_warning(std::move(code), std::move(message), std::move(hint));
   result.joint = std::move(joint);
-  result.message = std::move(message);
-  result.hint = std::move(hint);
   return result;
 }
 

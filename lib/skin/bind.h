@@ -23,4 +23,21 @@ Result<Model> bind_to(Model model, const Skeleton& skeleton);
 // one warning of each kind, for the joint with the largest difference.
 Diagnostics reference_differences(const Skeleton& model, const Clip& motion);
 
+// Warns of a reference pose that is not the pose of the mesh (code skin-reference-pose): joints
+// then turn vertices about places outside of the body, and skinning distorts it. Such are bones,
+// from a joint that moves vertices to a child, that lie outside of the mesh at a quarter, the
+// middle and three quarters of their length, if they are more than a twentieth of the length of
+// all. Bones shorter than 2 % of the skeleton's extent do not count. Inside is a generalised
+// winding number of at least 1/4 either way (Jacobson, Kavan, Sorkine-Hornung, Robust
+// Inside-Outside Segmentation Using Generalized Winding Numbers, SIGGRAPH 2013), so that meshes may
+// have holes; no warning where three quarters are outside of a mesh that is not closed, such as
+// one of sheets.
+Diagnostics reference_pose_faults(const Model& model);
+
+// A stick mesh that shows a skeleton: a thin flat-shaded octahedron from each joint to each of its
+// children, rigidly bound to the joint. Bones shorter than a thousandth of the skeleton's extent
+// are left out. A skeleton without any bone gets a small octahedron at its first joint. Requires at
+// least one joint.
+Model bone_mesh(const Skeleton& skeleton);
+
 }  // namespace krok

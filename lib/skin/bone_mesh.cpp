@@ -1,4 +1,4 @@
-#include "skin/bone_mesh.h"
+#include "skin/bind.h"
 
 #include <algorithm>
 #include <array>

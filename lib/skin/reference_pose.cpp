@@ -1,4 +1,4 @@
-#include "skin/reference_pose.h"
+#include "skin/bind.h"
 
 #include <fmt/format.h>
 

@@ -13,7 +13,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "scene/influences.h"
+#include "scene/model.h"
 
 namespace krok {
 

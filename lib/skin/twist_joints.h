@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <string>
 
 #include "scene/clip.h"
 #include "scene/model.h"

@@ -7,14 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
-#include "terrain/level.h"
-#include "terrain/rough.h"
-#include "terrain/slope.h"
-#include "terrain/stairs.h"
+#include "terrain/shapes.h"
 
 namespace krok::terrain {
 

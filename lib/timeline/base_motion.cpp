@@ -1,7 +1,6 @@
 #include "timeline/base_motion.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "math/euler.h"
 #include "motion/sample.h"

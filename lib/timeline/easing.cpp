@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "math/smoother_step.h"
+#include "math/hermite.h"
 #include "math/types.h"
 
 namespace krok::timeline {

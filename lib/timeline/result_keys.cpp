@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <functional>
 
 #include "core/numbers.h"
@@ -84,12 +82,10 @@ class Events {
       if (!(item.range.round > 0)) break;
     }
     if (!passed) {
-      Diagnostic never;
-      never.severity = Severity::warning;
-      never.code = "timeline-mark";
-      never.message =
+      Diagnostic never = make_warning(
+          "timeline-mark",
           fmt::format("{}: the mark '{}' at {} s of {} is never reached", shown(item.name),
-                      shown(mark.name), readable(moment), shown(source.name));
+                      shown(mark.name), readable(moment), shown(source.name)));
       never.where = item.where;
       warnings_.push_back(std::move(never));
     }

@@ -1,17 +1,105 @@
-#include "timeline/transitions_internal.h"
-
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <set>
+#include <vector>
 
 #include "math/euler.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
+#include "timeline/base_motion.h"
+#include "timeline/join_state.h"
 
 namespace krok::timeline {
 
 namespace {
 
 constexpr double kMaxNodes = 100'000;
+
+// Frame spacing for measuring velocities: that of the result, or of the motion if it is coarser.
+double step_of(const ItemPlayer& player, double rate) {
+  const double source_rate = player.source().clip->rate * std::abs(player.range().speed);
+  return 1 / std::min(rate, source_rate);
+}
+
+// Pose and derivatives where a motion is left or entered, from the frames before or after.
+ActorState state_at(const ItemPlayer& player, double play_time, double room, double step) {
+  const int known =
+      static_cast<int>(std::clamp(std::floor(room / std::abs(step) + 1e-6), 0.0, 2.0));
+  return actor_state([&](int k) { return player.actor(play_time + k * step); }, step, known);
+}
+
+const Skeleton& skeleton_of(const TransitionSides& sides) {
+  return sides.previous.source().clip->skeleton;
+}
+
+// World positions of the joints.
+std::vector<Vec3> places_of_joints(const Skeleton& skeleton, const ActorPose& pose) {
+  std::vector<Transform> joint_to_world(skeleton.names.size());
+  to_world(skeleton, pose, joint_to_world);
+  std::vector<Vec3> places;
+  places.reserve(joint_to_world.size());
+  for (const Transform& joint : joint_to_world) places.push_back(joint.position);
+  return places;
+}
+
+// Joints with contacts in either motion.
+std::set<int> contact_joints(const TransitionSides& sides) {
+  std::set<int> joints;
+  for (const ItemPlayer* player : {&sides.previous, static_cast<const ItemPlayer*>(&sides.next)}) {
+    if (player->source().keys == nullptr) continue;
+    for (const Contact& contact : player->source().keys->contacts) joints.insert(contact.joint);
+  }
+  return joints;
+}
+
+// Moves `place`, the ground frame of the next motion, so that joints in contact in both poses (the
+// previous motion's last and the next motion's first) stay planted. False if there are none.
+bool stand_on_feet(const TransitionSides& sides, const ActorPose& previous, const ActorPose& next,
+                   GroundFrame& place) {
+  const double left = sides.previous_times.play_time(sides.next_times.begin);
+  const Skeleton& skeleton = skeleton_of(sides);
+  const auto before = places_of_joints(skeleton, previous);
+  const auto after = places_of_joints(skeleton, {place, next.local});
+  Vec3 way = Vec3::Zero();
+  int count = 0;
+  for (const int joint : contact_joints(sides)) {
+    if (!sides.previous.stands(joint, left) || !sides.next.stands(joint, 0)) {
+      continue;
+    }
+    const auto j = static_cast<std::size_t>(joint);
+    way += before[j] - after[j];
+    ++count;
+  }
+  if (count == 0) return false;
+  place.x += way.x() / count;
+  place.z += way.z() / count;
+  return true;
+}
+
+// Positions the next motion where the previous one leaves the character.
+void put_next(const TransitionSides& sides, const ActorPose& left, bool& on_feet) {
+  GroundFrame place = left.place;
+  if (sides.place) {
+    place = *sides.place;
+  } else if (sides.change.align == Align::stance) {
+    on_feet = stand_on_feet(sides, left, sides.next.actor(0), place);
+  }
+  sides.next.put(0, place);
+}
+
+// Pose and derivatives at the end of the previous motion (from earlier frames) and at the start of
+// the next one (from later frames).
+ActorState state_before(const TransitionSides& sides) {
+  const double step = step_of(sides.previous, sides.rate);
+  return state_at(sides.previous, sides.previous_times.play_time(sides.next_times.begin),
+                  sides.next_times.begin - sides.previous_times.settled, -step);
+}
+
+ActorState state_after(const TransitionSides& sides) {
+  const double step = step_of(sides.next, sides.rate);
+  return state_at(sides.next, 0, sides.next.range().duration(), step);
+}
 
 class Crossfade : public Transition {
  public:
@@ -141,14 +229,6 @@ class Crossfade : public Transition {
   std::vector<GroundFrame> places_;  // evenly spaced in time
 };
 
-}  // namespace
-
-std::unique_ptr<Transition> make_crossfade(const TransitionSides& sides, bool& on_feet) {
-  return std::make_unique<Crossfade>(sides, on_feet);
-}
-
-namespace {
-
 class Inertial : public Transition {
  public:
   Inertial(const TransitionSides& sides, bool& on_feet)
@@ -190,14 +270,6 @@ class Inertial : public Transition {
   Decay place_;
   std::vector<Decay> positions_, rotations_;
 };
-
-}  // namespace
-
-std::unique_ptr<Transition> make_inertial(const TransitionSides& sides, bool& on_feet) {
-  return std::make_unique<Inertial>(sides, on_feet);
-}
-
-namespace {
 
 constexpr double kCarriedOn = 0.35;  // max seconds for which a velocity is carried on
 
@@ -278,100 +350,14 @@ class Smooth : public Transition {
 
 }  // namespace
 
-std::unique_ptr<Transition> make_smooth(const TransitionSides& sides, bool& on_feet) {
-  return std::make_unique<Smooth>(sides, on_feet);
-}
-
-namespace {
-
-// Frame spacing for measuring velocities: that of the result, or of the motion if it is coarser.
-double step_of(const ItemPlayer& player, double rate) {
-  const double source_rate = player.source().clip->rate * std::abs(player.range().speed);
-  return 1 / std::min(rate, source_rate);
-}
-
-// Pose and derivatives where a motion is left or entered, from the frames before or after.
-ActorState state_at(const ItemPlayer& player, double play_time, double room, double step) {
-  const int known =
-      static_cast<int>(std::clamp(std::floor(room / std::abs(step) + 1e-6), 0.0, 2.0));
-  return actor_state([&](int k) { return player.actor(play_time + k * step); }, step, known);
-}
-
-}  // namespace
-
-const Skeleton& skeleton_of(const TransitionSides& sides) {
-  return sides.previous.source().clip->skeleton;
-}
-
-std::vector<Vec3> places_of_joints(const Skeleton& skeleton, const ActorPose& pose) {
-  std::vector<Transform> joint_to_world(skeleton.names.size());
-  to_world(skeleton, pose, joint_to_world);
-  std::vector<Vec3> places;
-  places.reserve(joint_to_world.size());
-  for (const Transform& joint : joint_to_world) places.push_back(joint.position);
-  return places;
-}
-
-std::set<int> contact_joints(const TransitionSides& sides) {
-  std::set<int> joints;
-  for (const ItemPlayer* player : {&sides.previous, static_cast<const ItemPlayer*>(&sides.next)}) {
-    if (player->source().keys == nullptr) continue;
-    for (const Contact& contact : player->source().keys->contacts) joints.insert(contact.joint);
-  }
-  return joints;
-}
-
-bool stand_on_feet(const TransitionSides& sides, const ActorPose& previous, const ActorPose& next,
-                   GroundFrame& place) {
-  const double left = sides.previous_times.play_time(sides.next_times.begin);
-  const Skeleton& skeleton = skeleton_of(sides);
-  const auto before = places_of_joints(skeleton, previous);
-  const auto after = places_of_joints(skeleton, {place, next.local});
-  Vec3 way = Vec3::Zero();
-  int count = 0;
-  for (const int joint : contact_joints(sides)) {
-    if (!sides.previous.stands(joint, left) || !sides.next.stands(joint, 0)) {
-      continue;
-    }
-    const auto j = static_cast<std::size_t>(joint);
-    way += before[j] - after[j];
-    ++count;
-  }
-  if (count == 0) return false;
-  place.x += way.x() / count;
-  place.z += way.z() / count;
-  return true;
-}
-
-void put_next(const TransitionSides& sides, const ActorPose& left, bool& on_feet) {
-  GroundFrame place = left.place;
-  if (sides.place) {
-    place = *sides.place;
-  } else if (sides.change.align == Align::stance) {
-    on_feet = stand_on_feet(sides, left, sides.next.actor(0), place);
-  }
-  sides.next.put(0, place);
-}
-
-ActorState state_before(const TransitionSides& sides) {
-  const double step = step_of(sides.previous, sides.rate);
-  return state_at(sides.previous, sides.previous_times.play_time(sides.next_times.begin),
-                  sides.next_times.begin - sides.previous_times.settled, -step);
-}
-
-ActorState state_after(const TransitionSides& sides) {
-  const double step = step_of(sides.next, sides.rate);
-  return state_at(sides.next, 0, sides.next.range().duration(), step);
-}
-
 std::unique_ptr<Transition> make_transition(const TransitionSides& sides, bool& on_feet) {
   switch (sides.change.kind) {
     case ChangeKind::crossfade:
-      return make_crossfade(sides, on_feet);
+      return std::make_unique<Crossfade>(sides, on_feet);
     case ChangeKind::smooth:
-      return make_smooth(sides, on_feet);
+      return std::make_unique<Smooth>(sides, on_feet);
     case ChangeKind::inertial:
-      return make_inertial(sides, on_feet);
+      return std::make_unique<Inertial>(sides, on_feet);
     case ChangeKind::cut:
       break;
   }

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "math/squad.h"
 #include "scene/frame_moment.h"
 #include "tracks/sample_keys.h"
 
@@ -159,6 +159,26 @@ Result<Clip> uniform_clip(const KeyedClip& clip, double rate) {
     result.set_pose(f, world);
   }
   return result;
+}
+
+Result<Clip> retime_on_curves(const Clip& clip, double rate, double speed, double tension,
+                              bool keep_last) {
+  if (!(speed > 0) || !std::isfinite(speed) || !(tension >= 0 && tension <= 1)) {
+    return Error("motion-speed", "the speed must be positive, the tension from 0 to 1");
+  }
+  KeyedClip keyed = keyed_clip(clip);
+  double span = keyed.duration / speed;
+  if (keep_last && span > 0) span = std::max(1.0, std::round(span * rate)) / rate;
+  const double scale = keyed.duration > 0 ? span / keyed.duration : 1;
+  for (KeyedJoint& joint : keyed.joints) {
+    for (auto* times : {&joint.position.times, &joint.rotation.times}) {
+      for (double& time : *times) time = std::min(time * scale, span);
+    }
+    set_curve(joint.position, VectorCurve::hermite, tension);
+    set_curve(joint.rotation, RotationCurve::squad, tension);
+  }
+  keyed.duration = span;
+  return uniform_clip(keyed, rate);
 }
 
 }  // namespace krok

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "math/squad.h"
 
 namespace krok {
 

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "core/hash.h"
-#include "formats/gltf/baked_writer.h"
+#include "formats/gltf/gltf_writer.h"
 #include "formats/pc2/pc2.h"
 #include "skin/skin.h"
 #include "support/human_skeleton.h"

@@ -18,7 +18,6 @@
 #include "compare/scene_difference.h"
 #include "core/file.h"
 #include "core/hash.h"
-#include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
 #include "math/quaternion.h"

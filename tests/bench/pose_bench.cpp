@@ -17,7 +17,7 @@
 #include "math/quaternion.h"
 #include "pose/blend_pose.h"
 #include "pose/local_to_model.h"
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 #include "support/test_scenes.h"
 
 namespace {

@@ -119,7 +119,12 @@ void evaluate(Library& library) {
   const auto each = [&](const auto& body) {
     for (std::size_t p = 0; p < kPoints; ++p) body(p * d, p * n);
   };
-  const auto packed = [&] { library.evaluator->weights_of_many(library.points, library.weights); };
+  const auto packed = [&] {
+    each([&](std::size_t point, std::size_t row) {
+      library.evaluator->weights(std::span(library.points).subspan(point, d),
+                                 std::span(library.weights).subspan(row, n));
+    });
+  };
   const auto limited = [&](Simd most) {
     limit_simd(most);
     packed();

@@ -21,7 +21,7 @@
 #include "parametric/measure.h"
 #include "parametric/synthesise.h"
 #include "rbf/sobol.h"
-#include "rbf/weight_metrics.h"
+#include "rbf/weight_function.h"
 #include "rbf/weight_solver.h"
 
 namespace {

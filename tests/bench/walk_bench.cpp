@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/hash.h"
-#include "terrain/rough.h"
+#include "terrain/shapes.h"
 #include "unit/gait/walkers.h"
 
 namespace {

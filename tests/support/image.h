@@ -8,7 +8,6 @@
 
 #include "math/types.h"
 #include "render/image.h"
-#include "render/png.h"
 
 // Inspects the images that tools write.
 

@@ -6,7 +6,6 @@
 
 #include "math/quaternion.h"
 #include "scene/clip.h"
-#include "scene/influences.h"
 #include "scene/model.h"
 #include "support/human_skeleton.h"
 

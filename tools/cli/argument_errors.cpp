@@ -7,7 +7,6 @@
 #include <string>
 #include <string_view>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/renamed_options.h"

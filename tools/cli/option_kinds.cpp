@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "core/file.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/usage.h"

@@ -14,7 +14,7 @@
 #include <new>
 #include <optional>
 
-#include "core/temporary_files.h"
+#include "core/file.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/console_progress.h"
 #include "tools/cli/option_kinds.h"

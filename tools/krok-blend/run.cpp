@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"

@@ -7,12 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "camera/camera_motion.h"
 #include "camera/keyed_camera.h"
 #include "character/motion.h"
 #include "character/sampling.h"
 #include "core/file.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/result.h"
 #include "core/text.h"
@@ -22,13 +20,11 @@
 #include "formats/goals/goals.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
 #include "motion/ground_frame.h"
 #include "nodes/animation_choice.h"
 #include "nodes/evaluate.h"
-#include "nodes/moving.h"
 #include "scene/camera_track.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
@@ -186,8 +182,7 @@ Result<int> followed_joint(const std::string& name, const Skeleton& skeleton,
 
 void warn(ToolContext& context, const std::string& path, const char* code, std::string message,
           std::string hint, int frame) {
-  Diagnostic diagnostic = make_warning(code, std::move(message), std::move(hint));
-  diagnostic.where.file = path;
+  Diagnostic diagnostic = make_warning(code, std::move(message), std::move(hint), path);
   diagnostic.frame = frame;
   context.diagnose(std::move(diagnostic));
 }

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include "compare/camera_difference.h"
 #include "compare/clip_difference.h"
 #include "compare/model_difference.h"
-#include "compare/morph_difference.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/cam/cam.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "compare/frame_match.h"
 #include "compare/matching.h"
 #include "compare/skeleton_match.h"
 #include "core/index.h"

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/base64.h"
 #include "core/numbers.h"
-#include "render/png.h"
+#include "core/text.h"
+#include "render/image.h"
 
 namespace krok::cli::diff {
 

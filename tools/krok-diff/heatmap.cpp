@@ -7,7 +7,7 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
-#include "formats/gltf/coloured_meshes.h"
+#include "formats/gltf/gltf_writer.h"
 #include "tools/cli/output_set.h"
 
 namespace krok::cli::diff {

@@ -7,9 +7,7 @@
 #include <span>
 #include <sstream>
 
-#include "core/base64.h"
 #include "core/file.h"
-#include "core/markup.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/file_name.h"

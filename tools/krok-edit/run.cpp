@@ -11,7 +11,6 @@
 #include "formats/anim/anim.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/sequences/sequences.h"
 #include "motion/ground_frame.h"
 #include "scene/frame_blocks.h"

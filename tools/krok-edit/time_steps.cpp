@@ -14,7 +14,7 @@
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/steps.h"
-#include "tracks/retime_on_curves.h"
+#include "tracks/keyed_clip.h"
 
 namespace krok::cli::edit {
 

@@ -15,11 +15,9 @@
 #include "draw/joint_angles.h"
 #include "formats/bvh/bvh_writer.h"
 #include "formats/csv/csv_writer.h"
-#include "formats/csv/series.h"
 #include "formats/gltf/gltf_writer.h"
-#include "formats/gltf/reduce_tracks.h"
+#include "formats/gltf/joint_tracks.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/npy/npz_motion.h"
 #include "formats/opensim/storage_writer.h"
 #include "math/quaternion.h"
@@ -27,7 +25,7 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
-#include "skin/bone_mesh.h"
+#include "skin/bind.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/shared/keys_sidecar.h"
@@ -340,13 +338,11 @@ Status write_arrays(const Clip& clip, const Options& options, ToolContext& conte
 void note_root(const Skeleton& skeleton, const Options& options, ToolContext& context) {
   const Vec3& root = skeleton.reference[0].position;
   if (options.root_offset || root.norm() < 1e-5) return;
-  Diagnostic note = make_warning(
-      "export-root-offset",
+  context.diagnose(make_diagnostic(
+      Severity::note, "export-root-offset",
       fmt::format("the root's place in the reference pose, ({}, {}, {}) m, is left out",
                   readable(root.x(), 3), readable(root.y(), 3), readable(root.z(), 3)),
-      "--root-offset keeps it as the root's OFFSET");
-  note.severity = Severity::note;
-  context.diagnose(std::move(note));
+      "--root-offset keeps it as the root's OFFSET"));
 }
 
 Result<io::MotionSummary> export_bvh(const Options& options, ToolContext& context) {

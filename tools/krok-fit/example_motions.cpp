@@ -11,7 +11,6 @@
 #include "core/glob.h"
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "motion/cut.h"
 #include "parametric/library.h"
 #include "tools/cli/paths.h"

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "core/index.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "draw/plot.h"
@@ -20,11 +19,10 @@
 #include "formats/goals/goals.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/limits/limits_format.h"
 #include "ik/anatomical_limits.h"
 #include "ik/gaze.h"
-#include "ik/learn_limits.h"
+#include "ik/limits.h"
 #include "retarget/stance.h"
 #include "roles/body_frame.h"
 #include "scene/frame_blocks.h"

@@ -6,7 +6,7 @@
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
 #include "formats/io/open_capture.h"
-#include "formats/io/open_role_map.h"
+#include "formats/io/open_motion.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli::import {

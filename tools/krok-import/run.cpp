@@ -12,7 +12,6 @@
 #include "formats/anim/anim.h"
 #include "formats/io/open_capture.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
 #include "formats/model/model_format.h"
 #include "formats/registry/registry.h"
@@ -81,11 +80,10 @@ Result<int> import_scene(const InputFile& input, const Options& options, ToolCon
   if (scene->animations.empty() && !scene->skins.empty() && context.one_of_many == nullptr &&
       !context.output.empty() && options.clip.empty()) {
     scene->animations.emplace_back().name = "pose";
-    Diagnostic note = make_warning("import-pose",
-                                   "the file has no animation: the pose that it shows "
-                                   "is written as one frame");
-    note.severity = Severity::note;
-    context.diagnose_in(input.path(), {note});
+    context.diagnose_in(input.path(),
+                        {make_diagnostic(Severity::note, "import-pose",
+                                         "the file has no animation: the pose that it shows "
+                                         "is written as one frame")});
   }
   auto evaluator = nodes::Evaluator::create(*scene);
   if (!evaluator) return std::move(evaluator.error()).in_file(input.path());

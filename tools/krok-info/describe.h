@@ -2,7 +2,7 @@
 
 #include "core/file.h"
 #include "core/result.h"
-#include "formats/io/open_role_map.h"
+#include "formats/io/open_motion.h"
 #include "formats/registry/registry.h"
 #include "scene/model.h"
 #include "scene/skeleton.h"

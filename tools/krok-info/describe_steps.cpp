@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "describe.h"
-#include "formats/steps/parameter_names.h"
 #include "formats/steps/steps.h"
 #include "parametric/bounds.h"
 #include "parametric/parameter.h"

@@ -13,7 +13,6 @@
 #include "core/text.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
 #include "math/quaternion.h"

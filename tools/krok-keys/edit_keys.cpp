@@ -7,7 +7,6 @@
 #include <cmath>
 #include <tuple>
 
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/option_kinds.h"

@@ -12,7 +12,6 @@
 #include "core/text.h"
 #include "formats/csv/field.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
 #include "tools/cli/file_name.h"

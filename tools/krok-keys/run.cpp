@@ -17,7 +17,6 @@
 #include "draw/plot.h"
 #include "formats/chart/chart_writer.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/keys/keys.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"

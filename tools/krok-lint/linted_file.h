@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "formats/io/open_role_map.h"
+#include "formats/io/open_motion.h"
 #include "formats/lint/lint.h"
 #include "lint/duplicates.h"
 #include "lint/lint.h"

@@ -5,13 +5,11 @@
 #include <array>
 #include <filesystem>
 
-#include "core/base64.h"
-#include "core/markup.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/csv/field.h"
-#include "render/png.h"
+#include "render/image.h"
 #include "render/sheet.h"
 #include "tools/cli/file_name.h"
 #include "tools/krok-lint/linted_file.h"

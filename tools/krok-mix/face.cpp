@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "face/mix.h"
 #include "formats/textgrid/textgrid.h"

@@ -15,7 +15,6 @@
 #include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/sequences/sequences.h"
 #include "formats/timeline/timeline_file.h"
 #include "timeline/mix.h"

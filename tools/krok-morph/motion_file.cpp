@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/numbers.h"
-#include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/pc2/pc2.h"
 

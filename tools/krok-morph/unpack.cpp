@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "capture/unique_names.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/gltf/gltf_writer.h"

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "core/index.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/table.h"

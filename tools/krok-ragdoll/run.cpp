@@ -9,7 +9,6 @@
 #include <string>
 
 #include "core/index.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
@@ -18,7 +17,7 @@
 #include "formats/io/open_terrain.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/limits.h"
-#include "ragdoll/body_meshes.h"
+#include "ragdoll/bodies.h"
 #include "ragdoll/world.h"
 #include "terrain/surface.h"
 #include "tools/cli/option_kinds.h"

@@ -12,7 +12,7 @@
 #include "core/result.h"
 #include "formats/cam/cam.h"
 #include "formats/film/film_writer.h"
-#include "render/png.h"
+#include "render/image.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-render/shot.h"

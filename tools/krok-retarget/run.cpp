@@ -14,7 +14,6 @@
 #include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/registry/registry.h"
 #include "gait/shown_prints.h"
 #include "plant/follow_feet.h"

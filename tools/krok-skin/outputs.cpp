@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "core/numbers.h"
-#include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/obj/obj_writer.h"
 #include "formats/pc2/pc2.h"

@@ -9,8 +9,7 @@
 #include "core/numbers.h"
 #include "formats/gltf/quantize.h"
 #include "formats/gltf/reduce_for_mesh.h"
-#include "formats/gltf/written_error.h"
-#include "scene/influences.h"
+#include "scene/model.h"
 
 namespace krok::cli::skin {
 
@@ -46,12 +45,10 @@ void report_stretch(const Subject& subject, const std::vector<gltf::JointTracks>
   }
   context.report.result["joints_with_stretch_nodes"] = sheared;
   if (sheared > 0) {
-    Diagnostic note =
-        make_warning("skin-stretch",
-                     fmt::format("{} of {} shear, which no node does: each got a node above it",
-                                 sheared, counted(subject.model.skeleton.joint_count(), "joint")));
-    note.severity = Severity::note;
-    context.diagnose(std::move(note));
+    context.diagnose(make_diagnostic(
+        Severity::note, "skin-stretch",
+        fmt::format("{} of {} shear, which no node does: each got a node above it", sheared,
+                    counted(subject.model.skeleton.joint_count(), "joint"))));
   }
   if (largest_error < 2e-4) return;
   context.warn("skin-stretch",

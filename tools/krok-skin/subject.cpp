@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "capture/unique_names.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "correctives/correctives.h"
@@ -25,7 +24,6 @@
 #include "retarget/retarget.h"
 #include "roles/roles.h"
 #include "skin/bind.h"
-#include "skin/reference_pose.h"
 #include "skin/twist_joints.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/usage.h"

@@ -8,7 +8,7 @@
 #include "core/quantity.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "formats/steps/parameter_names.h"
+#include "formats/steps/steps.h"
 #include "math/types.h"
 #include "parametric/bounds.h"
 #include "tools/cli/usage.h"

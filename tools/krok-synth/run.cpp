@@ -10,7 +10,6 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/io/open_motion.h"
-#include "formats/io/open_role_map.h"
 #include "formats/steps/steps.h"
 #include "math/types.h"
 #include "parametric/synthesise.h"

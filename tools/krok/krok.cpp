@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/file.h"
-#include "core/nearest_name.h"
+#include "core/text.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"

@@ -4,7 +4,6 @@
 
 #include <filesystem>
 
-#include "core/nearest_name.h"
 #include "core/text.h"
 #include "formats/goals/goals.h"
 #include "formats/io/open_motion.h"

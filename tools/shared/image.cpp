@@ -8,11 +8,10 @@
 #include <string_view>
 
 #include "core/file.h"
-#include "core/nearest_name.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
-#include "render/png.h"
+#include "render/image.h"
 #include "tools/cli/output_set.h"
 
 namespace krok::cli {

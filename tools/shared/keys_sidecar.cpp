@@ -11,7 +11,7 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
-#include "formats/io/open_role_map.h"
+#include "formats/io/open_motion.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
 

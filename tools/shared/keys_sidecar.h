@@ -5,7 +5,7 @@
 #include <string>
 
 #include "formats/container/packed_orientation.h"
-#include "formats/io/open_role_map.h"
+#include "formats/io/open_motion.h"
 #include "formats/keys/keys.h"
 #include "roles/roles.h"
 #include "scene/clip.h"

@@ -5,7 +5,7 @@
 #include "core/numbers.h"
 #include "formats/prints/prints.h"
 #include "roles/roles.h"
-#include "terrain/level.h"
+#include "terrain/shapes.h"
 #include "terrain/surface.h"
 #include "tools/shared/shared_options.h"
 

@@ -15,7 +15,7 @@
 #include "core/index.h"
 #include "formats/io/open_motion.h"
 #include "ik/anatomical_limits.h"
-#include "ik/learn_limits.h"
+#include "ik/limits.h"
 #include "ik/solver.h"
 #include "roles/roles.h"
 #include "support/test_scenes.h"

@@ -20,7 +20,7 @@
 #include "math/quaternion.h"
 #include "motion/place.h"
 #include "motion/sample.h"
-#include "ragdoll/clear_ground.h"
+#include "ragdoll/get_up.h"
 #include "ragdoll/multibody.h"
 #include "ragdoll/simulate.h"
 #include "samples/generator/walk.h"

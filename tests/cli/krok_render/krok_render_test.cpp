@@ -2,7 +2,7 @@
 // of a .cam file were not used, or if a missing ffmpeg were found out only after rendering.
 #include "cli/motion_fixture.h"
 #include "core/fed_program.h"
-#include "render/png.h"
+#include "render/image.h"
 #include "support/this_build.h"
 
 namespace krok::test {

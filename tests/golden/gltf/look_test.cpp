@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "golden/gltf/judges.h"
 #include "support/mesh_motions.h"

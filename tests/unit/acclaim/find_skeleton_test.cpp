@@ -1,6 +1,6 @@
 // If these fail, a motion is played on another actor's skeleton, or its own is not found.
 
-#include "formats/acclaim/find_skeleton.h"
+#include "formats/acclaim/acclaim_reader.h"
 
 #include <gtest/gtest.h>
 #include <stdlib.h>

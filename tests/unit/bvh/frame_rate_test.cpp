@@ -1,6 +1,6 @@
 // If these fail, a printed frame time becomes a rate like 30.00003, or a wrong one.
 
-#include "formats/bvh/frame_rate.h"
+#include "formats/bvh/choose_conventions_internal.h"
 
 #include <gtest/gtest.h>
 

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <limits>
 
-#include "camera/camera_motion.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
 #include "motion/place.h"
 #include "samples/generator/walk.h"
+#include "scene/camera_track.h"
 
 namespace krok {
 namespace {

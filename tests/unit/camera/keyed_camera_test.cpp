@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 
-#include "camera/camera_motion.h"
 #include "camera/look_at.h"
 #include "math/quaternion.h"
+#include "scene/camera_track.h"
 
 namespace krok {
 namespace {

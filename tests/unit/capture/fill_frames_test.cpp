@@ -1,6 +1,6 @@
 // If these fail, repaired frames jump, or bones change their length in them.
 
-#include "capture/fill_frames.h"
+#include "scene/clip.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include <limits>
 
-#include "compare/camera_difference.h"
+#include "compare/model_difference.h"
 #include "math/quaternion.h"
 
 namespace krok::compare {

@@ -5,8 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "compare/clip_difference.h"
-#include "compare/frame_match.h"
-#include "compare/morph_difference.h"
+#include "compare/model_difference.h"
 #include "compare/skeleton_match.h"
 
 namespace krok::compare {

@@ -1,6 +1,6 @@
 // If these fail, data that files and pages hold as text are other data.
 
-#include "core/base64.h"
+#include "core/text.h"
 
 #include <gtest/gtest.h>
 

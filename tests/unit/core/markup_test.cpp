@@ -1,7 +1,7 @@
 // If these fail, a name in a chart or on a page ends its element, or makes a file that no XML
 // reader takes.
 
-#include "core/markup.h"
+#include "core/text.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 
 #include "core/index.h"
 #include "gait/plan_prints.h"
-#include "gait/usual_step.h"
 #include "motion/ground_frame.h"
 #include "parametric/thin_out.h"
 #include "walkers.h"

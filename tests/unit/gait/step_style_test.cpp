@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/index.h"
-#include "gait/step_style_internal.h"
+#include "gait/body_motion_internal.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "parametric/example_sums.h"

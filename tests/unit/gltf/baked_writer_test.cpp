@@ -1,7 +1,7 @@
 // Would fail if a clip on its way into a file were held in memory, if its targets had bounds that
 // are not theirs, or if threads or the kind of output changed its bytes.
 
-#include "formats/gltf/baked_writer.h"
+#include "formats/gltf/gltf_writer.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

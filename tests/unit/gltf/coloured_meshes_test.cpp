@@ -1,6 +1,6 @@
 // If these fail, a heatmap shows colours at the wrong vertices, or viewers refuse it.
 
-#include "formats/gltf/coloured_meshes.h"
+#include "formats/gltf/gltf_writer.h"
 
 #include <gmock/gmock.h>
 

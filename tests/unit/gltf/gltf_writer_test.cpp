@@ -10,7 +10,6 @@
 #include <cmath>
 #include <set>
 
-#include "formats/gltf/baked_writer.h"
 #include "formats/gltf/joint_tracks.h"
 #include "support/mesh_motions.h"
 #include "support/test_scenes.h"

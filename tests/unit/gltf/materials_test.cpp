@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "formats/gltf/baked_writer.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
 #include "support/mesh_motions.h"

@@ -1,7 +1,7 @@
 // Would fail if a glTF file with fewer keys showed another motion than its tolerance allows, ended
 // early, or came out larger than the one with all keys.
 
-#include "formats/gltf/reduce_tracks.h"
+#include "formats/gltf/joint_tracks.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,6 @@
 #include <functional>
 
 #include "formats/gltf/joint_tracks.h"
-#include "formats/gltf/track_poses.h"
 #include "math/quaternion.h"
 
 namespace krok {

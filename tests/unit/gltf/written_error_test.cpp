@@ -1,7 +1,7 @@
 // If these fail, the error that krok-skin prints is not that of the file: a vertex that is written
 // elsewhere, or a key that is lost, passes unseen.
 
-#include "formats/gltf/written_error.h"
+#include "formats/gltf/reduce_for_mesh.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <random>
 
-#include "formats/gltf/compression_internal.h"
+#include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/gltf_reader.h"
 #include "support/glb_builder.h"
 

@@ -10,7 +10,7 @@
 
 #include "core/index.h"
 #include "ik/anatomical_limits.h"
-#include "ik/learn_limits.h"
+#include "ik/limits.h"
 #include "math/quaternion.h"
 #include "roles/roles.h"
 #include "support/test_scenes.h"

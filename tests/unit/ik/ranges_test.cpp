@@ -7,7 +7,7 @@
 
 #include "core/index.h"
 #include "ik/anatomical_limits.h"
-#include "ik/learn_limits.h"
+#include "ik/limits.h"
 #include "math/quaternion.h"
 #include "retarget/stance.h"
 #include "samples/generator/walk.h"

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <random>
 
-#include "render/png.h"
+#include "render/image.h"
 #include "support/small_images.h"
 #include "unit/image/made_images.h"
 

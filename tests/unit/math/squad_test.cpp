@@ -1,12 +1,11 @@
 // If these fail, rotations between keys jump in angular velocity or miss their keys.
-#include "math/squad.h"
+#include "math/quaternion.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "math/quaternion.h"
 #include "unit/math/negated.h"
 
 namespace krok {

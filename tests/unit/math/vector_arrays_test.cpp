@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "core/simd.h"
-#include "math/vector_arrays_internal.h"
 #include "support/special_values.h"
 
 namespace krok {

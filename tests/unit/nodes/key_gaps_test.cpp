@@ -1,7 +1,7 @@
 // If these fail, comparing animations overlooks what they do between their keys, or takes
 // needlessly long.
 
-#include "nodes/key_gaps.h"
+#include "nodes/scene_of.h"
 
 #include <gtest/gtest.h>
 

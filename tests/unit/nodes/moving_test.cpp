@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "nodes/moving.h"
+#include "nodes/animation_choice.h"
 #include "unit/character/scenes.h"
 
 namespace krok::test {

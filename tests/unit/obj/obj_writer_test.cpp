@@ -12,7 +12,7 @@
 #include <random>
 
 #include "formats/obj/obj_reader.h"
-#include "scene/farthest.h"
+#include "scene/skeleton.h"
 #include "support/human_skeleton.h"
 #include "support/test_scenes.h"
 #include "support/written_bytes.h"

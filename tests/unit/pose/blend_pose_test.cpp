@@ -8,7 +8,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 #include "poses.h"
 
 namespace krok {
@@ -269,39 +269,6 @@ TEST(PoseSum, StepByStepIsTheSameBlend) {
     for (std::size_t j = 0; j < x.size(); ++j) {
       EXPECT_LT((x[j].position - y[j].position).norm(), 1e-6) << name;
       EXPECT_LT(angle_between(x[j].orientation, y[j].orientation), 1e-6) << name;
-    }
-  });
-}
-
-TEST(PoseSum, JointWeightsMaskJoints) {
-  const int joints = 20;
-  const Clip a = test::random_clip(joints, 1, 1u), b = test::random_clip(joints, 1, 2u);
-  const PackedClip first = pack_clip(a), second = pack_clip(b);
-  const auto reference = packed_reference(a.skeleton);
-  std::vector<float> mask(joints), rest(joints);
-  for (std::size_t j = 0; j < mask.size(); ++j) {
-    mask[j] = j < 8 ? 0.0f : j < 12 ? 0.5f : 1.0f;
-    rest[j] = 1 - mask[j];
-  }
-  test::with_each_simd([&](const char* name) {
-    std::vector<PoseBlock> sum(reference.size());
-    clear_sum(sum);
-    add_to_sum(first.frame(0), 1, pack_weights(rest), reference, sum);
-    add_to_sum(second.frame(0), 1, pack_weights(mask), reference, sum);
-    finish_sum(reference, sum);
-    const auto x = test::unpacked(first.frame(0), joints),
-               y = test::unpacked(second.frame(0), joints);
-    const auto mixed = test::unpacked(sum, joints);
-    for (std::size_t j = 0; j < mixed.size(); ++j) {
-      const Transform expected{
-          x[j].position + mask[j] * (y[j].position - x[j].position),
-          nlerp(
-              in_hemisphere_of(test::unpacked(reference, joints)[j].orientation, x[j].orientation),
-              y[j].orientation, static_cast<double>(mask[j]))};
-      EXPECT_LT((mixed[j].position - expected.position).norm(), 1e-6) << name << j;
-      if (j < 8 || j >= 12) {
-        EXPECT_LT(angle_between(mixed[j].orientation, expected.orientation), 1e-6) << name << j;
-      }
     }
   });
 }

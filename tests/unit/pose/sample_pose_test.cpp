@@ -1,7 +1,7 @@
 // Would fail if a packed clip did not show the clip's own poses, before, at, between and after its
 // frames, or if an instruction set or a tail of joints changed a bit of what the reference gives.
 
-#include "pose/sample_pose.h"
+#include "pose/packed_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -156,19 +156,6 @@ TEST(SamplePose, EveryInstructionSetGivesTheBitsOfTheReferenceTailsIncluded) {
             << joints << " joints at " << time << " with " << name;
       });
     }
-  }
-}
-
-TEST(SamplePoses, ManyTimesAreEachTimeByItself) {
-  const PackedClip packed = pack_clip(test::random_clip(21, 12, 6u));
-  const std::vector<double> times = {0.31, 0.0, -1, 0.1, 0.1, 5, 0.007};
-  const auto blocks = static_cast<std::size_t>(packed.blocks_per_pose());
-  std::vector<PoseBlock> poses(times.size() * blocks);
-  sample_poses(packed, times, poses);
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    EXPECT_TRUE(
-        test::same_bits(std::span(poses).subspan(i * blocks, blocks), sampled(packed, times[i])))
-        << i;
   }
 }
 

@@ -1,7 +1,7 @@
 // Skeletons that are no humanoids. If these fail, animals and machines have no ragdoll, one whose
 // bodies are not at its bones, or one that comes apart or never rests.
 
-#include "ragdoll/bone_bodies.h"
+#include "ragdoll/bodies.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include "core/index.h"
 #include "ik/anatomical_limits.h"
 #include "math/quaternion.h"
-#include "ragdoll/go_on.h"
 #include "ragdoll/simulate.h"
 #include "samples/generator/walk.h"
 

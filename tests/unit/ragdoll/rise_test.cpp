@@ -9,7 +9,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "ragdoll/clear_ground.h"
+#include "ragdoll/get_up.h"
 #include "roles/roles.h"
 #include "samples/generator/walk.h"
 

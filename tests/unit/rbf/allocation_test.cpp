@@ -26,13 +26,12 @@ TEST(Allocation, NoneForWeightsSlopesAndCorrections) {
     return {};
   };
   InverseSearch search(*evaluator, measure);
-  std::vector<double> point = {0.3, 0.7}, weights(5), slopes(10);
+  std::vector<double> point = {0.3, 0.7}, moved = point, weights(5), slopes(10);
   const long before = test::allocations;
   evaluator->weights(point, weights);
   evaluator->slopes(point, weights, slopes);
-  evaluator->weights_of_many(point, weights);
   const Match corrected = search.correct(point, 2, 0, weights);
-  const Match searched = search.weights_for(point, 1e-12, weights);
+  const Match searched = search.find_point(point, 20, 1e-12, moved);
   EXPECT_EQ(test::allocations, before);
   EXPECT_LT(corrected.after, corrected.before);
   EXPECT_LT(searched.after, 1e-9);

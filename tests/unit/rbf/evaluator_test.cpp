@@ -175,21 +175,6 @@ TEST(WeightEvaluator, SlopesAreTheDerivatives) {
   }
 }
 
-TEST(WeightEvaluator, ManyPointsAreOnePointAfterTheOther) {
-  const WeightFunction f = any_function(Kernel::wendland, 2, 9, 20);
-  const WeightEvaluator evaluator = evaluator_of(f);
-  const Values points = {0.1, 0.2, 1.5, -0.3, 0.9, 0.9};
-  Values many(27);
-  evaluator.weights_of_many(points, many);
-  for (std::size_t p = 0; p < 3; ++p) {
-    Values one(9);
-    evaluator.weights(std::span(points).subspan(2 * p, 2), one);
-    EXPECT_TRUE(same_bits(one, Values(many.begin() + static_cast<std::ptrdiff_t>(9 * p),
-                                      many.begin() + static_cast<std::ptrdiff_t>(9 * p + 9))));
-  }
-  evaluator.weights_of_many({}, {});
-}
-
 TEST(WeightEvaluator, SumsToOneFarOutsideTheRange) {
   for (const Kernel kernel : kKernels) {
     const WeightEvaluator evaluator = evaluator_of(any_function(kernel, 2, 9, 20));

@@ -1,7 +1,7 @@
 // Would fail if Sobol's sequence were another than everybody's, or if the figures about weights
 // were not what closed forms say.
 
-#include "rbf/weight_metrics.h"
+#include "rbf/weight_function.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,13 +1,12 @@
 // Would fail if the weights at a few points were not those of the function that the solver makes,
 // so that a kernel or a smoothing would be chosen that predicts worse.
 
-#include "rbf/point_weights.h"
+#include "rbf/weight_solver.h"
 
 #include <gtest/gtest.h>
 
 #include "core/index.h"
 #include "rbf/sobol.h"
-#include "rbf/weight_solver.h"
 #include "unit/rbf/kernels.h"
 
 namespace krok::rbf {

@@ -8,7 +8,6 @@
 #include <limits>
 #include <string>
 
-#include "render/png.h"
 #include "render/text.h"
 
 namespace krok::render {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/nearest_name.h"
+#include "core/text.h"
 #include "support/human_skeleton.h"
 
 namespace krok {

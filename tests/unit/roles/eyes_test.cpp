@@ -1,6 +1,6 @@
 // If this fails, an imported character's eyes are missed, or lids and targets are taken for them.
 
-#include "roles/eyes.h"
+#include "roles/roles.h"
 
 #include <gtest/gtest.h>
 

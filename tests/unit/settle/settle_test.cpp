@@ -12,10 +12,10 @@
 
 #include "core/index.h"
 #include "math/euler.h"
-#include "math/smoother_step.h"
+#include "math/hermite.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
-#include "ragdoll/clear_ground.h"
+#include "ragdoll/get_up.h"
 #include "samples/generator/rise.h"
 #include "terrain/spec.h"
 

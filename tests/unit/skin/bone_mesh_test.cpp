@@ -1,7 +1,7 @@
 // Would fail if the mesh that shows a skeleton were missing, inside out, or not a model that the
 // rest of the library takes.
 
-#include "skin/bone_mesh.h"
+#include "skin/bind.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Would fail if a skeleton that is not in the pose of its mesh went unnoticed, or if a good one, of
 // a mesh with holes, of sheets or with its faces inside out, were called bad.
 
-#include "skin/reference_pose.h"
+#include "skin/bind.h"
 
 #include <gtest/gtest.h>
 

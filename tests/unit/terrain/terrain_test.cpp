@@ -6,12 +6,9 @@
 #include <random>
 
 #include "terrain/height_field.h"
-#include "terrain/level.h"
 #include "terrain/mesh_ground.h"
-#include "terrain/rough.h"
-#include "terrain/slope.h"
+#include "terrain/shapes.h"
 #include "terrain/spec.h"
-#include "terrain/stairs.h"
 
 namespace krok {
 namespace {

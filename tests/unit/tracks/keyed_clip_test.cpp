@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "math/quaternion.h"
-#include "math/squad.h"
 #include "motion/sample.h"
 #include "support/test_scenes.h"
 #include "tracks/sample_keys.h"

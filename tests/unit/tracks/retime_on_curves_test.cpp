@@ -1,7 +1,7 @@
 // If these fail, motions resampled along Hermite curves leave their frames, bend at them, or do not
 // stop at them with full tension.
 
-#include "tracks/retime_on_curves.h"
+#include "tracks/keyed_clip.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,199 @@
+#include "terrain/shapes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace krok::terrain {
+
+namespace {
+
+constexpr double kFlatRadius = 0.3;
+constexpr double kFullRadius = 1.0;
+constexpr double kFarthestNoise = 1e9;
+
+struct Lattice {
+  double spacing;
+  double share;
+};
+constexpr std::array kLattices = {Lattice{0.6, 0.75}, Lattice{0.2, 0.25}};
+
+// A value and how it changes along x and z.
+struct Slanted {
+  double value = 0;
+  double along_x = 0, along_z = 0;
+};
+
+// Mixes the bits of a number (splitmix64: Steele, Lea, Flood 2014, "Fast splittable pseudorandom
+// number generators").
+std::uint64_t mixed(std::uint64_t bits) {
+  bits += 0x9E3779B97F4A7C15u;
+  bits = (bits ^ (bits >> 30)) * 0xBF58476D1CE4E5B9u;
+  bits = (bits ^ (bits >> 27)) * 0x94D049BB133111EBu;
+  return bits ^ (bits >> 31);
+}
+
+struct Eased {
+  double value, slope;
+};
+Eased eased(double t) {
+  return {t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (t - 1) * (t - 1)};
+}
+
+class Rough final : public Terrain {
+ public:
+  explicit Rough(const RoughOptions& options) : options_(options) {}
+
+  std::optional<GroundPoint> at(double x, double z, double below) const override {
+    if (!(std::abs(x) < kFarthestNoise && std::abs(z) < kFarthestNoise)) return std::nullopt;
+    Slanted sum;
+    for (std::size_t i = 0; i < kLattices.size(); ++i) {
+      const Slanted one = noise(i, x, z);
+      sum.value += kLattices[i].share * one.value;
+      sum.along_x += kLattices[i].share * one.along_x;
+      sum.along_z += kLattices[i].share * one.along_z;
+    }
+    const Slanted ground = flattened(sum, x, z);
+    const double height = options_.height * ground.value;
+    if (!(height <= below)) return std::nullopt;
+    const Vec3 normal(-options_.height * ground.along_x, 1, -options_.height * ground.along_z);
+    return GroundPoint{height, normal.normalized()};
+  }
+
+ private:
+  // From -0.5 to 0.5.
+  double corner(std::size_t lattice, std::int64_t column, std::int64_t row) const {
+    const std::uint64_t bits =
+        mixed(mixed(mixed(options_.seed + lattice) ^ static_cast<std::uint64_t>(column)) ^
+              static_cast<std::uint64_t>(row));
+    return static_cast<double>(bits >> 11) * 0x1p-53 - 0.5;
+  }
+
+  Slanted noise(std::size_t lattice, double x, double z) const {
+    const double spacing = kLattices[lattice].spacing;
+    const double u = x / spacing, v = z / spacing;
+    const auto column = static_cast<std::int64_t>(std::floor(u));
+    const auto row = static_cast<std::int64_t>(std::floor(v));
+    const Eased right = eased(u - std::floor(u)), down = eased(v - std::floor(v));
+    const double a = corner(lattice, column, row), b = corner(lattice, column + 1, row);
+    const double c = corner(lattice, column, row + 1), d = corner(lattice, column + 1, row + 1);
+    const double upper = a + (b - a) * right.value, lower = c + (d - c) * right.value;
+    const double across = (b - a) + (d - c - b + a) * down.value;
+    return {upper + (lower - upper) * down.value, across * right.slope / spacing,
+            (lower - upper) * down.slope / spacing};
+  }
+
+  static Slanted flattened(const Slanted& full, double x, double z) {
+    const double radius = std::hypot(x, z);
+    if (radius >= kFullRadius) return full;
+    if (radius <= kFlatRadius) return {};
+    const double width = kFullRadius - kFlatRadius;
+    const Eased grown = eased((radius - kFlatRadius) / width);
+    const double change = full.value * grown.slope / width;
+    return {full.value * grown.value, full.along_x * grown.value + change * x / radius,
+            full.along_z * grown.value + change * z / radius};
+  }
+
+  RoughOptions options_;
+};
+
+class Level final : public Terrain {
+ public:
+  explicit Level(double height) : height_(height) {}
+
+  std::optional<GroundPoint> at(double x, double z, double below) const override {
+    if (!std::isfinite(x) || !std::isfinite(z) || !(height_ <= below)) return std::nullopt;
+    return GroundPoint{height_, Vec3::UnitY()};
+  }
+
+ private:
+  double height_;
+};
+
+class Slope final : public Terrain {
+ public:
+  Slope(double angle, double begin)
+      : tangent_(std::tan(angle)), begin_(begin), normal_(0, std::cos(angle), -std::sin(angle)) {}
+
+  std::optional<GroundPoint> at(double x, double z, double below) const override {
+    if (!std::isfinite(x) || !std::isfinite(z)) return std::nullopt;
+    const GroundPoint point =
+        z <= begin_ ? GroundPoint{0, Vec3::UnitY()} : GroundPoint{tangent_ * (z - begin_), normal_};
+    if (!(point.height <= below)) return std::nullopt;
+    return point;
+  }
+
+ private:
+  double tangent_;
+  double begin_;
+  Vec3 normal_;
+};
+
+class Stairs final : public Terrain {
+ public:
+  explicit Stairs(const StairsOptions& options) : options_(options) {}
+
+  std::optional<GroundPoint> at(double x, double z, double below) const override {
+    if (!std::isfinite(x) || !std::isfinite(z)) return std::nullopt;
+    // Risers passed: upwards the one at z itself counts, downwards it does not.
+    const double runs = (z - options_.begin) / options_.run;
+    const double passed = options_.rise > 0 ? std::floor(runs) + 1 : std::ceil(runs);
+    const double height = options_.rise * std::clamp(passed, 0.0, double(options_.count));
+    if (!(height <= below)) return std::nullopt;
+    return GroundPoint{height, Vec3::UnitY()};
+  }
+
+ private:
+  StairsOptions options_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Terrain>> rough(const RoughOptions& options) {
+  if (!(options.height >= 0 && options.height <= 10)) {
+    return Error("ground-value",
+                 fmt::format("rough ground cannot be {} m from low to high", options.height),
+                 "use a height from 0 to 10 m");
+  }
+  return std::unique_ptr<Terrain>(std::make_unique<Rough>(options));
+}
+
+Result<std::unique_ptr<Terrain>> level(double height) {
+  if (!std::isfinite(height)) return Error("ground-value", "the height is not a finite number");
+  return std::unique_ptr<Terrain>(std::make_unique<Level>(height));
+}
+
+Result<std::unique_ptr<Terrain>> slope(double angle, double begin) {
+  if (!(std::abs(angle) < 60 * kRadiansPerDegree)) {
+    return Error("ground-value",
+                 fmt::format("a slope of {} degrees is too steep", angle / kRadiansPerDegree),
+                 "use an angle of less than 60 degrees, below 0 for a way down");
+  }
+  if (!std::isfinite(begin)) {
+    return Error("ground-value", "the begin of the slope is not a finite number");
+  }
+  return std::unique_ptr<Terrain>(std::make_unique<Slope>(angle, begin));
+}
+
+Result<std::unique_ptr<Terrain>> stairs(const StairsOptions& options) {
+  if (!(std::abs(options.rise) <= 1) || options.rise == 0) {
+    return Error("ground-value", fmt::format("stairs cannot rise {} m a step", options.rise),
+                 "use a rise of at most 1 m, below 0 for stairs that go down");
+  }
+  if (!(options.run >= 0.05 && options.run <= 100)) {
+    return Error("ground-value", fmt::format("treads cannot be {} m long", options.run),
+                 "use a run from 5 cm to 100 m");
+  }
+  if (options.count < 1 || options.count > 100000) {
+    return Error("ground-value", fmt::format("stairs cannot have {} steps", options.count),
+                 "use a count from 1 to 100000");
+  }
+  if (!std::isfinite(options.begin)) {
+    return Error("ground-value", "the begin of the stairs is not a finite number");
+  }
+  return std::unique_ptr<Terrain>(std::make_unique<Stairs>(options));
+}
+
+}  // namespace krok::terrain
