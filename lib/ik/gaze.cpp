@@ -275,7 +275,8 @@ Result<std::vector<GazeEye>> gaze_eyes(std::span<const Character::Eye> eyes, con
                                             "does not have",
                                             shown(eye.name), shown(eye.joint)));
     }
-    GazeEye& one = made.emplace_back(GazeEye{eye_joint_name(eye), own, joint, Vec3::Zero(), eye.range});
+    GazeEye& one =
+        made.emplace_back(GazeEye{eye_joint_name(eye), own, joint, Vec3::Zero(), eye.range});
     one.place = model.reference[at(in_model)].inverse() * eye.position.cast<double>();
     // An eye at the joint that it moves with is that joint.
     const EyeJoints found = find_eyes(motion);
