@@ -13,10 +13,10 @@ namespace {
 
 constexpr float kTimesUsual = 8;       // of the median acceleration of a second, of kinks
 constexpr float kTimesNeighbours = 4;  // of the largest acceleration just before and after
-constexpr float kDoubt = 1.5F;
-constexpr int kNeighbours = 4;       // frames looked at on either side
-constexpr double kSeamJoints = 0.3;  // of the joints that move
-constexpr double kMinPath = 0.03;    // metres, of a jump of the hips
+constexpr float kDoubt = 1.5F;         // times as clear where only one side of a jump is known
+constexpr int kNeighbours = 4;         // frames looked at on either side
+constexpr double kSeamJoints = 0.3;    // of the joints that move
+constexpr double kMinPath = 0.03;      // metres, of a jump of the hips
 
 enum class PopKind : std::uint8_t { spike, step, kink };
 
@@ -146,7 +146,6 @@ class PopFinder {
       rest = std::max(rest, (acceleration(f) - shape.weights[at(f - first)] * size).norm());
     }
     const bool cut = end - begin < shape.length - 1;
-    // Where one side is hardly known, it has to stand out more.
     const float doubt = begin < 3 || end + 3 >= frames ? kDoubt : 1.0F;
     const float over_rest = cut ? kTimesNeighbours : doubt * shape.over_rest;
     const float over_usual = cut ? kTimesUsual : doubt * shape.over_usual;

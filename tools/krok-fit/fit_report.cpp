@@ -263,8 +263,8 @@ void say_smoothing(const LibraryInput& input, const FittedLibrary& fitted, ToolC
         fmt::format("steps with similar parameters differ: leave-one-out error is {} mm with "
                     "interpolation, {} mm with an affine fit",
                     readable(1e3 * means.weighted, 3), readable(1e3 * means.linear, 3)),
-        "more parameters tell them apart, or one kind and one person alone; --smoothing N averages "
-        "them, and examples are then not reproduced exactly");
+        "add parameters in which they differ, or fit one kind and one person alone; --smoothing N "
+        "averages them, and examples are then not reproduced exactly");
   }
   context.log(
       fmt::format("  smoothing {}: mean error of the examples' joints is {} mm; --smoothing 0 "
