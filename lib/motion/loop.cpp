@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "core/index.h"
 #include "math/euler.h"
@@ -162,6 +163,40 @@ Transform share_of(const Transform& displacement, double turn, double share) {
   return part;
 }
 
+// The displacement on the ground that takes one place to another, which differs by `turn`.
+Transform ground_displacement(const GroundFrame& from, const GroundFrame& to, double turn) {
+  const Quat rotation = turn_about_vertical(turn);
+  return {Vec3(to.x, 0, to.z) - rotation * Vec3(from.x, 0, from.z), rotation};
+}
+
+// Takes the motion along the arc from the first place to the last out and puts one straight on, at
+// the arc's first velocity, in.
+class Straightening {
+ public:
+  Straightening(const GroundFrame& first, const GroundFrame& last)
+      : turn_(wrapped(last.heading - first.heading)),
+        displacement_(ground_displacement(first, last, turn_)) {
+    const Vec3 start(first.x, 0, first.z);
+    const Vec3 chord = Vec3(last.x, 0, last.z) - start;
+    // The chord is at the mean heading, and shorter than the arc.
+    const double half = turn_ / 2;
+    const double length = std::abs(half) < 1e-9 ? 1 : half / std::sin(half);
+    way_ = length * (turn_about_vertical(-half) * chord);
+  }
+
+  // World to world, at a share of the time from the first frame to the last.
+  Transform at(double share) const {
+    Transform back = share_of(displacement_, turn_, share).inverse();
+    back.position += share * way_;
+    return back;
+  }
+
+ private:
+  double turn_;
+  Transform displacement_;
+  Vec3 way_;
+};
+
 class Looper {
  public:
   Looper(const Clip& clip, int carrier, const LoopOptions& options)
@@ -266,18 +301,9 @@ class Looper {
                           (options_.turn == LoopTurn::automatic && std::abs(drift) <= kLoopDrift);
     if (!take_out || drift == 0) return;
     result_.straightened = drift;
-    std::vector<GroundFrame> places;
-    for (int f = 0; f <= last(); ++f) places.push_back(place(f));
-    Vec3 now(places[0].x, 0, places[0].z);
+    const Straightening change(place(0), place(last()));
     for (int f = 0; f <= last(); ++f) {
-      const GroundFrame& old = places[static_cast<std::size_t>(f)];
-      if (f > 0) {
-        const GroundFrame& before = places[static_cast<std::size_t>(f) - 1];
-        now += turn_about_vertical(-drift * (f - 0.5) / last()) *
-               Vec3(old.x - before.x, 0, old.z - before.z);
-      }
-      const Quat back = turn_about_vertical(-drift * f / last());
-      motion_.set(0, f, Transform{now - back * Vec3(old.x, 0, old.z), back} * motion_.at(0, f));
+      motion_.set(0, f, change.at(static_cast<double>(f) / last()) * motion_.at(0, f));
     }
   }
 
@@ -286,9 +312,7 @@ class Looper {
     if (result_.straightened != 0) result_.turn = 0;
     const GroundFrame from = place(0), to = place(last());
     Transform& displacement = result_.displacement;
-    displacement.orientation = turn_about_vertical(result_.turn);
-    displacement.position =
-        Vec3(to.x, 0, to.z) - displacement.orientation * Vec3(from.x, 0, from.z);
+    displacement = ground_displacement(from, to, result_.turn);
     const double climb = carrier_to_world(last()).position.y() - carrier_to_world(0).position.y();
     const bool keep = options_.climb == LoopClimb::keep ||
                       (options_.climb == LoopClimb::automatic &&
@@ -453,6 +477,24 @@ Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options) {
     seam->angular_velocity_joint = hips_root.original(seam->angular_velocity_joint);
   }
   return looped;
+}
+
+void straighten(int carrier, Looped& looped) {
+  Clip& clip = looped.clip;
+  const int last = clip.frame_count() - 1;
+  const GroundFrame first = ground_frame(clip, carrier, 0);
+  const Straightening change(first, ground_frame(clip, carrier, last));
+  std::vector<Transform> pose(clip.skeleton.names.size());
+  for (int f = 1; f <= last; ++f) {
+    const Transform move = change.at(static_cast<double>(f) / last);
+    clip.get_pose(f, pose);
+    for (Transform& joint : pose) joint = move * joint;
+    clip.set_pose(f, pose);
+  }
+  const double climb = looped.displacement.position.y();
+  looped.displacement = ground_displacement(first, ground_frame(clip, carrier, last), 0);
+  looped.displacement.position.y() = climb;
+  looped.straightened += std::exchange(looped.turn, 0.0);
 }
 
 Result<Clip> repeated(const Clip& looped, const Transform& displacement, int rounds) {

@@ -27,7 +27,7 @@ inline constexpr double kLoopDrift = 10 * kRadiansPerDegree;
 enum class LoopTurn {
   automatic,  // up to kLoopDrift is drift and is removed; larger turns are kept
   keep,       // the loop follows a circle
-  straighten  // the path is straightened: the turn is removed evenly over time
+  straighten  // the path is straightened, as straighten() does
 };
 
 // How the height gained over one cycle is treated.
@@ -82,6 +82,12 @@ struct Looped {
 // `carrier` is what carrying_joint() gives. Codes: motion-loop for clips of fewer than four frames,
 // motion-blend for a blend that is negative or not finite.
 Result<Looped> loop(const Clip& clip, int carrier, const LoopOptions& options);
+
+// The loop's turn taken out evenly over time: it goes straight on, at the velocity with which the
+// arc from its first place to its last begins, and sways about that line as it did about the arc.
+// Moved at this velocity and turned at the rate that was taken out (carried_along in travel.h) it
+// is the loop before, up to float rounding, so feet that stood on the ground do so then.
+void straighten(int carrier, Looped& looped);
 
 // The clip played `rounds` times as described above, as one motion of rounds * (n - 1) + 1 frames.
 // Requires rounds >= 1. Code clip-too-long above 100 million joint transforms.

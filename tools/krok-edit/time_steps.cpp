@@ -145,7 +145,9 @@ std::string loop_text(const Looped& looped, const Edit& edit) {
   if (way.y() != 0) line += fmt::format(", climbs {} m", readable(way.y(), 3));
   if (looped.turn != 0) line += fmt::format(", turns {}", in_degrees(looped.turn));
   if (looped.straightened != 0) {
-    line += fmt::format("; a drift of {} straightened", in_degrees(looped.straightened));
+    line += fmt::format("; a {} of {} straightened",
+                        std::abs(looped.straightened) > kLoopDrift ? "turn" : "drift",
+                        in_degrees(looped.straightened));
   }
   if (looped.carried) line += fmt::format("; {} now travels along", joint_name(edit, 0));
   return line + seam_text(looped, edit);
@@ -350,9 +352,14 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
   if (options.cycle != CycleFoot::none && looping.end == LoopEnd::automatic) {
     looping.end = LoopEnd::closed;
   }
+  // Where whoever plays the loop turns it again, feet stay on the ground of the path that turns.
+  const bool turned_again =
+      looping.turn == LoopTurn::straighten && (options.in_place || options.treadmill);
+  if (turned_again) looping.turn = LoopTurn::automatic;
   auto looped = loop(edit.clip, edit.carrier, looping);
   if (!looped) return std::move(looped.error()).in_file(options.input);
   if (Status status = plant_loop(options, edit, *looped); !status) return status;
+  if (turned_again && looped->turn != 0) straighten(edit.carrier, *looped);
   // Up to kLoopDrift it is a capture's drift, which nobody wants back.
   if (std::abs(looped->straightened) > kLoopDrift) {
     edit.turn_rate = looped->straightened / looped->clip.duration();

@@ -13,6 +13,7 @@
 #include "motion/ground_frame.h"
 #include "motion/local_motion.h"
 #include "motion/place.h"
+#include "motion/travel.h"
 #include "samples/generator/walk.h"
 #include "support/test_scenes.h"
 
@@ -157,6 +158,28 @@ TEST(Loop, ATurningWalkKeepsItsTurnAndADriftIsStraightened) {
   const Looped forced = looped(cut(turning, 20, 80), {.turn = LoopTurn::straighten});
   EXPECT_EQ(forced.turn, 0);
   expect_closed(forced);
+}
+
+// Would fail if feet slid while an engine moves and turns a straightened loop, as they do where the
+// body's sway about its arc is not taken with it.
+TEST(Loop, AStraightenedLoopTurnedAgainIsTheLoopBefore) {
+  const Clip turning = walk(15 * kRadiansPerDegree);
+  const Looped kept = looped(cut(turning, 20, 80));
+  const double length = kept.clip.duration();
+  Looped straight = kept;
+  straighten(carrier_of(turning), straight);
+  EXPECT_EQ(straight.turn, 0);
+  EXPECT_EQ(straight.straightened, kept.turn);
+  expect_closed(straight);
+  const RootMotion removed{straight.displacement.position / length, kept.turn / length};
+  const Clip standing = in_place(straight.clip, carrier_of(turning), Travel::trend);
+  const Clip again = carried_along(standing, carrier_of(turning), removed);
+  for (int f = 0; f < again.frame_count(); ++f) {
+    for (int j = 0; j < again.joint_count(); ++j) {
+      const auto at = static_cast<std::size_t>(j);
+      EXPECT_LT((again.frame_positions(f)[at] - kept.clip.frame_positions(f)[at]).norm(), 5e-6f);
+    }
+  }
 }
 
 TEST(Loop, StairsClimbAndUnevenHeightsAreLevelled) {
