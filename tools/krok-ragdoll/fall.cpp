@@ -8,6 +8,7 @@
 
 #include "core/hash.h"
 #include "core/index.h"
+#include "core/numbers.h"
 #include "tools/cli/report.h"
 
 namespace krok::cli::ragdoll {
@@ -18,6 +19,7 @@ constexpr double kLying = 0.5;  // seconds from rest to where all is still
 
 // Tolerances: radians, metres, and a share of the motion's acceleration.
 constexpr double kMaxExcess = 1 * kRadiansPerDegree, kMaxPenetration = 0.005;
+constexpr double kMaxDepthAtStart = 0.05;  // soles and thick bodies come out of it by themselves
 constexpr double kMaxAcceleration = 1.5, kMaxDepth = 0.01;
 constexpr double kMaxOff = 5 * kRadiansPerDegree;
 
@@ -27,12 +29,35 @@ Json json_of(const krok::ragdoll::WorldMeasures& of) {
               {"penetration", of.penetration}};
 }
 
-krok::ragdoll::GroundHeight heights_of(const Terrain* terrain) {
-  if (terrain == nullptr) return {};
-  return [terrain](double x, double z) {
-    const auto point = terrain->at(x, z);
+krok::ragdoll::GroundHeight heights_of(const Terrain& terrain, double below = HUGE_VAL) {
+  return [&terrain, below](double x, double z) {
+    const auto point = terrain.at(x, z, below);
     return point ? std::optional<double>(point->height) : std::nullopt;
   };
+}
+
+// What is more than the body's height above its head is a roof.
+double depth_at(double time, const Subject& subject) {
+  const auto pose = krok::ragdoll::pose_at(subject.clip, time);
+  double top = -HUGE_VAL;
+  for (const Transform& joint : pose) top = std::max(top, joint.position.y());
+  const double below = top + krok::ragdoll::extent(subject.clip.skeleton);
+  return krok::ragdoll::depth_in_ground(subject.bodies, pose, heights_of(*subject.terrain, below));
+}
+
+// Bodies that begin in the ground, or leave what is simulated of it, may fall through it.
+Status check_above_ground(const Subject& subject, const Clip& fallen) {
+  const int last = fallen.frame_count() - 1;
+  const Vec3 root = fallen.frame_positions(last)[at(subject.bodies.front().joint)].cast<double>();
+  const Terrain& ground = *subject.terrain;
+  const auto above = ground.at(root.x(), root.z());
+  const double reach = krok::ragdoll::extent(subject.clip.skeleton);
+  if (!above || ground.at(root.x(), root.z(), root.y() + reach)) return {};
+  return Error("ragdoll-through",
+               fmt::format("the body fell through the ground: its root is {} m below it in the end",
+                           readable(above->height - root.y(), 3)),
+               "begin above the ground (krok-edit --on-ground, --settle, --move) and within 10 m "
+               "of where the fall ends");
 }
 
 }  // namespace
@@ -44,6 +69,8 @@ Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOption
   Fallen fallen;
   fallen.clip = std::move(fall->clip);
   fallen.fall = std::move(*fall);
+  fallen.depth_at_start = depth_at(options.at, subject);
+  if (Status status = check_above_ground(subject, fallen.clip); !status) return status.error();
   const auto is_full = [](const krok::ragdoll::Body& body) {
     return body.parent < 0 || body.strength >= 1 || body.mode == krok::ragdoll::BodyMode::animated;
   };
@@ -57,7 +84,7 @@ Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOption
   const double still = (options.at + fallen.fall.rest + kLying) * fallen.clip.rate;
   const int frame = std::min(fallen.clip.frame_count() - 1, static_cast<int>(std::ceil(still)) + 1);
   krok::ragdoll::GetUpOptions how;
-  how.ground = heights_of(subject.terrain.get());
+  how.ground = heights_of(*subject.terrain);
   auto risen =
       krok::ragdoll::get_up(fallen.clip, frame, subject.rises, subject.roles, subject.bodies, how);
   if (!risen) return risen.error();
@@ -85,7 +112,13 @@ std::vector<Error> faults_of(const Fallen& fallen) {
                                     fall.largest.limit_excess / kRadiansPerDegree),
                         "a weaker push");
   }
-  if (fall.largest.penetration > kMaxPenetration) {
+  if (fallen.depth_at_start > kMaxDepthAtStart) {
+    faults.emplace_back("ragdoll-penetration",
+                        fmt::format("a body is {:.1f} mm in the ground when the body takes over "
+                                    "(50 are tolerated)",
+                                    fallen.depth_at_start * 1e3),
+                        "another --at, or a motion made for this ground");
+  } else if (fall.largest.penetration > kMaxPenetration) {
     faults.emplace_back("ragdoll-penetration",
                         fmt::format("a body is {:.1f} mm in the ground (5 are tolerated)",
                                     fall.largest.penetration * 1e3),

@@ -30,24 +30,25 @@ struct Subject {
   // Motions to get up with, and their names; none: what falls stays there.
   std::vector<Clip> rises;
   std::vector<std::string> rise_names;
-  std::shared_ptr<const Terrain> terrain;  // to get up from; may be null
+  std::shared_ptr<const Terrain> terrain;
 };
 
 struct Fallen {
   Clip clip;
   krok::ragdoll::Fall fall;                       // without its clip
   std::optional<krok::ragdoll::RisenClip> risen;  // without its clip
-  bool undisturbed = false;  // follows the motion at full strength, without pushes
+  bool undisturbed = false;   // follows the motion at full strength, without pushes
+  double depth_at_start = 0;  // metres in the ground, of the deepest body
 };
 
-// Thread-safe. Code ragdoll-moving if it is to get up but does not come to rest, and those of
-// lib/ragdoll.
+// Thread-safe. Codes: ragdoll-moving if it is to get up but does not come to rest, ragdoll-through
+// if it ends below all ground by more than its height, and those of lib/ragdoll.
 Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOptions& options);
 
 // What the fall misses: a code, a message without the fall's name, and what to do. Empty if it
 // keeps all tolerances: at rest, limits exceeded by at most 1 degree and the ground entered by at
-// most 5 mm after the first 0.2 s, an undisturbed motion followed within 5 degrees, getting up
-// within 1.5 x the motion's acceleration and 1 cm of the ground.
+// most 5 cm at first and 5 mm after the first 0.2 s, an undisturbed motion followed within 5
+// degrees, getting up within 1.5 x the motion's acceleration and 1 cm of the ground.
 std::vector<Error> faults_of(const Fallen& fallen);
 
 // The measures for the report.

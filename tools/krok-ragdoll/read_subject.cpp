@@ -156,7 +156,6 @@ Status SubjectReader::read_rises() {
     subject_.rises.push_back(std::move(*clip));
     subject_.rise_names.push_back(name_of_input(path));
   }
-  if (subject_.rises.empty()) return {};
   auto terrain = options_.ground.open(context_);
   if (!terrain) return terrain.error();
   subject_.terrain = std::move(*terrain);

@@ -138,6 +138,18 @@ TEST_F(KrokRagdoll, WrongInputIsToldAndNothingIsWritten) {
   refused({"walk.anim", "--at", "1s", "--push", "Hips=1,2,3@90s"}, "ragdoll-time", "Hips");
   refused({"walk.anim", "--at", "1s", "--ground", "swamp"}, "ground-kind", "swamp");
   refused({"walk.anim", "--at", "1s", "--friction", "-1"}, "usage", "--friction");
+  // Below all of it.
+  refused({"walk.anim", "--at", "1s", "--ground", "slope:angle=45deg,begin=-5m"}, "ragdoll-through",
+          "through the ground");
+}
+
+// Would fail if a motion that is not made for its ground was pushed out of it in a frame without a
+// word.
+TEST_F(KrokRagdoll, WhatIsInTheGroundAtTheStartIsWarnedOf) {
+  const json raised = report({"walk.anim", "--at", "1s", "--ground", "level:height=0.1"});
+  EXPECT_THAT(raised["issues"].dump(), HasSubstr("when the body takes over"));
+  const json on_it = report({"walk.anim", "--at", "1s", "--ground", "level"});
+  EXPECT_THAT(on_it["issues"].dump(), Not(HasSubstr("when the body takes over")));
 }
 
 }  // namespace
