@@ -49,6 +49,7 @@ Result<std::vector<Motion>> read_motions(const Options& options, const io::FindR
     Motion motion;
     motion.name = name_of_input(input.path);
     motion.clip = std::move(*clip);
+    warn_of_lost_speed(motion.name, motion.clip, context);
     if (input.is_equal_share()) {
       motion.weight = krok::blend::WeightCurve::constant(1.0 / static_cast<double>(shares));
     } else if (input.weight) {

@@ -215,7 +215,7 @@ class Run {
   Status turn_eyes(Clip& clip);
   Result<int> bring_about(const FrameSource& motion, const std::function<Provenance()>& of_input);
   Result<int> finish_without_goals();
-  Provenance provenance_of(std::vector<std::string> conversions, const std::string& line) const;
+  Provenance provenance_of(const Provenance& before, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
   Status write(const FrameSource* made, const std::function<Provenance()>& provenance = {},
                const std::string& svg = {});
@@ -457,9 +457,10 @@ Status Run::plant_first() {
 }
 
 // What was done to the motion, after what it says of itself.
-Provenance Run::provenance_of(std::vector<std::string> conversions, const std::string& line) const {
+Provenance Run::provenance_of(const Provenance& before, const std::string& line) const {
   Provenance provenance = context_.provenance();
-  provenance.conversions = std::move(conversions);
+  provenance.conversions = before.conversions;
+  provenance.removed_root_motion = before.removed_root_motion;
   for (const std::string& done : {planting_line_, line}) {
     if (!done.empty()) provenance.conversions.push_back(done);
   }
@@ -478,7 +479,7 @@ Result<int> Run::finish_without_goals() {
   clip_.rate = planted.rate;
   if (Status status = turn_eyes(planted); !status) return status.error();
   const auto provenance = [&] {
-    return provenance_of(planted.provenance.conversions, gaze_.empty() ? "" : kTurnedEyes);
+    return provenance_of(planted.provenance, gaze_.empty() ? "" : kTurnedEyes);
   };
   const FrameSource frames = frames_of(planted);
   if (Status status = write(&frames, provenance); !status) return status.error();
@@ -612,7 +613,7 @@ Result<int> Run::bring_about(const FrameSource& motion,
   }
   const auto provenance = [&] {
     diagnose();
-    return provenance_of(of_input().conversions, "inverse kinematics: " + summary(outcome));
+    return provenance_of(of_input(), "inverse kinematics: " + summary(outcome));
   };
   if (Status status = write(&made->frames, provenance, chart); !status) return status.error();
   const bool is_reported = !context_.report_path.empty() || context_.one_of_many != nullptr;

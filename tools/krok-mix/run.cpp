@@ -77,6 +77,7 @@ Result<TimelineSources> read_sources(const timeline_file::Document& document,
     if (!clip) return clip.error();
     auto& motion = read.motions.emplace_back();
     motion.clip = std::move(*clip);
+    warn_of_lost_speed(source.name, motion.clip, context);
     timeline::Source made{source.name, &motion.clip, nullptr, {}};
     if (in_base.contains(static_cast<int>(i))) {
       auto keys =

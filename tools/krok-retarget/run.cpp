@@ -310,9 +310,11 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
                         *result->report};
 
   const auto made_by = [&] {
-    std::vector<std::string> conversions = provenance().conversions;
+    Provenance before = provenance();
     Provenance made = context.provenance();
-    made.conversions = std::move(conversions);
+    made.conversions = std::move(before.conversions);
+    made.removed_root_motion = before.removed_root_motion;
+    if (made.removed_root_motion) made.removed_root_motion->velocity *= outcome.report.scale;
     made.conversions.push_back("retargeted: " + summary(outcome));
     return made;
   };

@@ -198,6 +198,9 @@ class Loader {
     context_.diagnose_in(path, choices_of(outcome, false));
     if (context_.verbose) context_.log(fmt::format("{}: {}", path, summary(outcome)));
     stretches.clear();
+    auto& removed = moved->clip.provenance.removed_root_motion;
+    removed = clip->provenance.removed_root_motion;
+    if (removed) removed->velocity *= moved->report.scale;
     return std::move(moved->clip);
   }
 

@@ -132,6 +132,15 @@ Json to_json(std::span<const Keytime> keytimes) {
   return list;
 }
 
+void warn_of_lost_speed(const std::string& name, const Clip& clip, ToolContext& context) {
+  const auto& removed = clip.provenance.removed_root_motion;
+  if (!removed) return;
+  context.warn("motion-in-place",
+               fmt::format("{} is in place; the speed of {} m/s that was taken out of it is lost",
+                           name, readable(removed->velocity.norm(), 3)),
+               "combine the motions first, then make a loop of the result: krok-edit --game-loop");
+}
+
 Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::string& path,
                                               const std::string& name, const Clip& clip,
                                               const io::FindRoles& find_roles,

@@ -45,6 +45,10 @@ void place_contacts(const Clip& clip, std::span<Contact> contacts);
 // Names and times for the report.
 Json to_json(std::span<const Keytime> keytimes);
 
+// Warns (code motion-in-place) of a motion in place that is combined with others, as the speed at
+// which an engine moves it is not the result's.
+void warn_of_lost_speed(const std::string& name, const Clip& clip, ToolContext& context);
+
 // --contacts: where a tool that combines motions gets their contacts and keytimes, and where it
 // writes those of the result.
 

@@ -197,6 +197,33 @@ TEST_F(GameLoop, ItsSpeedIsInTheAnimationsExtras) {
   EXPECT_EQ(animations("odd.gltf")[0]["name"], "a=b");
 }
 
+// Would fail if loops lost their speed on the way to a character, or in silence where they are
+// combined.
+TEST_F(GameLoop, ItsSpeedGoesAlongToOtherSkeletons) {
+  walk("walk.anim", 0);
+  loop("walk.anim");
+  const Vec3 before = read("out.anim").provenance.removed_root_motion->velocity;
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--scale", "1.25", "-o", "tall.anim"}).exit_code,
+            0);
+  const auto kept = [&](const std::string& tool, const std::vector<std::string>& more) {
+    std::vector<std::string> all = {"out.anim", "-o", "moved.anim"};
+    all.insert(all.end(), more.begin(), more.end());
+    EXPECT_EQ(run_here(tool, all).exit_code, 0) << tool;
+    const auto removed = read("moved.anim").provenance.removed_root_motion;
+    return removed ? removed->velocity : Vec3(Vec3::Zero());
+  };
+  EXPECT_LT((kept("krok-retarget", {"--onto", "tall.anim"}) - 1.25 * before).norm(), 1e-3);
+  EXPECT_LT((kept("krok-ik", {"--look-at", "head=0,1.5m,5m@300ms"}) - before).norm(), 1e-9);
+  ASSERT_EQ(run_here("krok-body", {"tall.anim", "-o", "tall.model"}).exit_code, 0);
+  ASSERT_EQ(
+      run_here("krok-skin", {"tall.model", "out.anim", "--retarget", "-o", "tall.gltf"}).exit_code,
+      0);
+  const json extras = json::parse(get(path("tall.gltf")))["animations"][0]["extras"];
+  EXPECT_NEAR(extras["speed"].get<double>(), 1.25 * before.norm(), 1e-3);
+  const ToolRun blended = run_here("krok-blend", {"out.anim", "walk.anim", "-o", "blended.anim"});
+  EXPECT_THAT(blended.err, HasSubstr("[motion-in-place]"));
+}
+
 // A walk in a circle is straightened; its turning is what an engine does.
 TEST_F(GameLoop, TurningIsTakenOutWithItsRate) {
   walk("circle.anim", 0, 25 * kRadiansPerDegree);
