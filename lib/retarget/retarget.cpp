@@ -29,6 +29,20 @@ namespace {
 constexpr double kOverlap = 2;
 constexpr int kSamples = 8, kOfSample = 2048;  // frames
 
+// A joint that the source lacks is as the reference pose has it on its parent, which has its place.
+void follow_parent(int joint, int frame, Clip& frames) {
+  const Skeleton& skeleton = frames.skeleton;
+  const int parent = skeleton.parents[at(joint)];
+  Transform now = skeleton.reference[at(joint)];
+  if (parent >= 0) {
+    now = Transform{frames.frame_positions(frame)[at(parent)].cast<double>(),
+                    frames.frame_orientations(frame)[at(parent)].cast<double>()} *
+          skeleton.reference_local(joint);
+  }
+  frames.frame_positions(frame)[at(joint)] = now.position.cast<float>();
+  frames.frame_orientations(frame)[at(joint)] = now.orientation.normalized().cast<float>();
+}
+
 // Copies orientations and scales positions, without rounding except by the scale.
 RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
                          const SameSkeleton& same) {
@@ -41,6 +55,10 @@ RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
       const auto positions = before.frame_positions(frame);
       const auto orientations = before.frame_orientations(frame);
       for (int k = 0; k < target.joint_count(); ++k) {
+        if (same.source_joint[at(k)] < 0) {
+          follow_parent(k, frame, frames);
+          continue;
+        }
         const auto from = at(same.source_joint[at(k)]);
         frames.frame_orientations(frame)[at(k)] = orientations[from];
         const Vec3f& position = positions[from];
@@ -58,11 +76,23 @@ RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
   report.scale = same.scale;
   report.source_pose = source.skeleton.reference;
   report.target_pose = target.reference;
+  std::vector<char> used(source.skeleton.names.size(), 0);
   for (int k = 0; k < target.joint_count(); ++k) {
+    const int from = same.source_joint[at(k)];
+    if (from >= 0) used[at(from)] = 1;
     if (target.end_sites[at(k)] != 0) continue;
+    if (from < 0) {
+      report.following_target.push_back(k);
+      continue;
+    }
     MappedJoint& joint = report.mapped.emplace_back();
     joint.target = k;
-    joint.source = same.source_joint[at(k)];
+    joint.source = from;
+  }
+  for (std::size_t j = 0; j < used.size(); ++j) {
+    if (used[j] == 0 && source.skeleton.end_sites[j] == 0) {
+      report.unused_source.push_back(static_cast<int>(j));
+    }
   }
   return result;
 }
@@ -450,6 +480,7 @@ Result<RetargetedFrames> transfer(const FrameSource& source, const RoleMap& sour
   }
   auto same = same_skeleton(source.skeleton, target.skeleton);
   if (!same) same = same_body(source.skeleton, source_roles, target.skeleton, target_roles);
+  if (!same) same = same_person(source.skeleton, source_roles, target.skeleton, target_roles);
   const auto fits = [](const std::vector<Transform>& pose, const Skeleton& skeleton) {
     return pose.empty() || pose.size() == skeleton.names.size();
   };

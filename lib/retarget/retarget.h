@@ -123,6 +123,8 @@ struct Retargeted {
 // pose is not a stance, and for the thickness of its soles. Needs two humanoids, or skeletons that
 // share at least 60 % of the joint names of the smaller one. A source on its own skeleton is
 // returned bit for bit, whatever its joints are called there; on a uniformly scaled copy, scaled.
+// Likewise if either skeleton has more joints (same_person()): those that the target alone has
+// follow their parents.
 // The result is bit-identical for any `jobs`.
 //
 // Errors: retarget-empty (no joints), retarget-roles (neither applies; the message names the

@@ -12,7 +12,7 @@ namespace krok::retarget {
 struct SameSkeleton {
   double scale = 1;               // lengths of the target over those of the source; exactly 1 if
                                   // equal within a millionth
-  std::vector<int> source_joint;  // [target joints]
+  std::vector<int> source_joint;  // [target joints]; -1, by same_person() alone: only the target's
 };
 
 // Whether the target is the source, uniformly scaled: the same names, the same parents, and each
@@ -26,5 +26,15 @@ std::optional<SameSkeleton> same_skeleton(const Skeleton& source, const Skeleton
 // and no role that is another joint's. Empty if either is not a humanoid.
 std::optional<SameSkeleton> same_body(const Skeleton& source, const RoleMap& source_roles,
                                       const Skeleton& target, const RoleMap& target_roles);
+
+// The same of two humanoids of which either has joints that the other lacks: a root above the hips,
+// cameras, props, fingers. All the target's joints with a role of a single joint are in the source
+// by the same name, below the same parent (the hips, and what carries them, below any). Offsets
+// agree within 0.5 % of the mean bone; those of spine, collars and thighs, which some rigs (Biped)
+// move in their parents, may be off by a third of the bone. Below the hips no reference rotation is
+// turned by more than 75 degrees about a bone against the other's. Empty if not, and where the
+// user gave roles.
+std::optional<SameSkeleton> same_person(const Skeleton& source, const RoleMap& source_roles,
+                                        const Skeleton& target, const RoleMap& target_roles);
 
 }  // namespace krok::retarget

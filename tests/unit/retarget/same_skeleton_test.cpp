@@ -107,6 +107,57 @@ TEST(SameSkeleton, OneLongerBoneMakesAnotherSkeleton) {
   EXPECT_FALSE(retarget::same_skeleton(skeleton, renamed).has_value());
 }
 
+// Would fail if a clip whose reference pose is a step was "corrected" on its own character, as
+// either file has joints that the other lacks: a root, a prop, fingers.
+TEST(SameSkeleton, EitherMayHaveMoreJoints) {
+  const auto below = [](const std::string& root, const Skeleton& skeleton) {
+    Skeleton rooted;
+    rooted.add(root, -1, {}, false);
+    for (int j = 0; j < skeleton.joint_count(); ++j) {
+      rooted.add(skeleton.names[at(j)], skeleton.parents[at(j)] + 1, skeleton.reference[at(j)],
+                 skeleton.end_sites[at(j)] != 0);
+    }
+    return rooted;
+  };
+  const Skeleton skeleton = with_turned_joints(human_skeleton());
+  Skeleton stride = posed(skeleton, "LeftUpLeg", from_rotation_vector(Vec3(-0.6, 0, 0)));
+  stride = below("Scene", posed(stride, "RightLeg", from_rotation_vector(Vec3(0.8, 0, 0))));
+  const int camera = stride.add("Camera", 0, {Vec3(3, 2, 1), Quat::Identity()}, false);
+  const Clip clip = swinging_clip(stride, 20, 30);
+  Skeleton hero = below("Reference", skeleton);
+  const int hand = hero.find("LeftHand");
+  const int prop =
+      hero.add("Sword", hand,
+               hero.reference[at(hand)] * Transform{Vec3(0, 0.2, 0), Quat::Identity()}, false);
+  const auto result = transfer(clip, hero);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->report.method, Method::same_skeleton);
+  EXPECT_EQ(result->report.following_target, (std::vector<int>{0, prop}));
+  EXPECT_EQ(result->report.unused_source, (std::vector<int>{0, camera}));
+  for (int j = 1; j <= skeleton.joint_count(); ++j) {
+    EXPECT_EQ(result->clip.frame_positions(7)[at(j)], clip.frame_positions(7)[at(j)]);
+    EXPECT_EQ(result->clip.frame_orientations(7)[at(j)].coeffs(),
+              clip.frame_orientations(7)[at(j)].coeffs());
+  }
+  const auto positions = result->clip.frame_positions(7);
+  EXPECT_NEAR((positions[at(prop)] - positions[at(hand)]).norm(), 0.2, 1e-6);
+
+  const RoleMap roles = find_roles(stride), of_hero = find_roles(hero);
+  const auto same = [&](const Skeleton& target) {
+    return retarget::same_person(stride, roles, target, of_hero);
+  };
+  ASSERT_TRUE(same(hero).has_value());
+  EXPECT_NEAR(same(scaled(hero, 0.5))->scale, 0.5, 1e-9);
+  Skeleton longer = hero;
+  longer.reference[at(longer.find("LeftFoot"))].position.y() -= 0.02;
+  EXPECT_FALSE(same(longer).has_value());
+  Skeleton twisted = hero;
+  const Vec3 bone = hero.reference_local(hero.find("LeftFoot")).position.normalized();
+  Quat& knee = twisted.reference[at(twisted.find("LeftLeg"))].orientation;
+  knee = knee * from_rotation_vector(kPi / 2 * bone);
+  EXPECT_FALSE(same(twisted).has_value());
+}
+
 // Under other names only if the bones show it and no role says otherwise.
 TEST(SameSkeleton, UnderOtherNamesItMustBeThatOfTheSameBody) {
   const Skeleton skeleton = with_turned_joints(human_skeleton());
