@@ -29,24 +29,79 @@ namespace {
 constexpr double kOverlap = 2;
 constexpr int kSamples = 8, kOfSample = 2048;  // frames
 
-// A joint that the source lacks is as the reference pose has it on its parent, which has its place.
-void follow_parent(int joint, int frame, Clip& frames) {
-  const Skeleton& skeleton = frames.skeleton;
-  const int parent = skeleton.parents[at(joint)];
-  Transform now = skeleton.reference[at(joint)];
-  if (parent >= 0) {
-    now = Transform{frames.frame_positions(frame)[at(parent)].cast<double>(),
-                    frames.frame_orientations(frame)[at(parent)].cast<double>()} *
-          skeleton.reference_local(joint);
+// Roots nearer to the hips than this, of a leg's length, are at their place.
+constexpr double kAtHips = 0.05;
+
+// Exporters whose reference pose is no body's keep no face in it, either: eyes and jaw sit on the
+// head as in the first frame of the target's own motion. The joints of which that is so.
+std::vector<int> faces_of_motion(const Clip& target, const RoleMap& roles) {
+  const int head = roles.joint(Role::head);
+  if (head < 0 || !roles.humanoid || target.frame_count() == 0) return {};
+  if (is_straight({target.skeleton, roles, target.skeleton.reference})) return {};
+  std::vector<int> faces = joints_below(target.skeleton, head);
+  std::erase(faces, head);
+  return faces;
+}
+
+Quat turn_in_first_frame(const Clip& target, int joint) {
+  const auto turns = target.frame_orientations(0);
+  const Quatf& parent = turns[at(target.skeleton.parents[at(joint)])];
+  return (parent.conjugate() * turns[at(joint)]).cast<double>().normalized();
+}
+
+// A joint that the source lacks: where it is in the frame of another, or in the world (-1).
+struct Follower {
+  int joint, carrier;
+  Transform offset;
+};
+
+// On their parents as in the reference pose, a face as faces_of_motion() has it; what is beside the
+// hips, and roots at their place, goes along with them; other roots stay.
+std::vector<Follower> followers_of(const Clip& target, const RoleMap& roles,
+                                   const SameSkeleton& same) {
+  const Skeleton& skeleton = target.skeleton;
+  const int hips = roles.joint(Role::hips);
+  const std::vector<int> faces = faces_of_motion(target, roles);
+  std::vector<Follower> followers;
+  for (int k = 0; k < skeleton.joint_count(); ++k) {
+    if (same.source_joint[at(k)] >= 0) continue;
+    const int parent = skeleton.parents[at(k)];
+    Follower follower{k, parent, skeleton.reference_local(k)};
+    if (carries(skeleton, k, hips)) {
+      const bool near = length_of(skeleton, k, hips) < kAtHips * leg_length(skeleton, roles);
+      follower.carrier = near ? hips : -1;
+    } else if (carries(skeleton, parent, hips) && parent != hips) {
+      follower.carrier = hips;
+    } else if (std::ranges::find(faces, k) != faces.end()) {
+      follower.offset.orientation = turn_in_first_frame(target, k);
+    }
+    const Transform& own = skeleton.reference[at(k)];
+    if (follower.carrier < 0) follower.offset = own;
+    if (follower.carrier >= 0 && follower.carrier != parent) {
+      follower.offset = skeleton.reference[at(follower.carrier)].inverse() * own;
+    }
+    followers.push_back(follower);
   }
-  frames.frame_positions(frame)[at(joint)] = now.position.cast<float>();
-  frames.frame_orientations(frame)[at(joint)] = now.orientation.normalized().cast<float>();
+  return followers;
+}
+
+void follow(const Follower& follower, int frame, Clip& frames) {
+  const auto positions = frames.frame_positions(frame);
+  const auto orientations = frames.frame_orientations(frame);
+  Transform now = follower.offset;
+  if (follower.carrier >= 0) {
+    now = Transform{positions[at(follower.carrier)].cast<double>(),
+                    orientations[at(follower.carrier)].cast<double>()} *
+          now;
+  }
+  positions[at(follower.joint)] = now.position.cast<float>();
+  orientations[at(follower.joint)] = now.orientation.normalized().cast<float>();
 }
 
 // Copies orientations and scales positions, without rounding except by the scale.
 RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
-                         const SameSkeleton& same) {
-  const auto copy = [target, same](Clip& frames) {
+                         const SameSkeleton& same, std::vector<Follower> followers) {
+  const auto copy = [target, same, followers = std::move(followers)](Clip& frames) {
     const Clip before = std::exchange(frames, {});
     frames.skeleton = target;
     frames.rate = before.rate;
@@ -55,10 +110,7 @@ RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
       const auto positions = before.frame_positions(frame);
       const auto orientations = before.frame_orientations(frame);
       for (int k = 0; k < target.joint_count(); ++k) {
-        if (same.source_joint[at(k)] < 0) {
-          follow_parent(k, frame, frames);
-          continue;
-        }
+        if (same.source_joint[at(k)] < 0) continue;
         const auto from = at(same.source_joint[at(k)]);
         frames.frame_orientations(frame)[at(k)] = orientations[from];
         const Vec3f& position = positions[from];
@@ -66,6 +118,7 @@ RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
             same.scale == 1 ? position
                             : Vec3f((same.scale * position.cast<double>()).cast<float>());
       }
+      for (const Follower& follower : followers) follow(follower, frame, frames);
     }
     return Status();
   };
@@ -206,18 +259,10 @@ class Transfer {
   Actor from() const { return {source_.skeleton, source_roles_, rest_}; }
   Actor onto() const { return {target_, target_roles_, target_rest_}; }
 
-  // Exporters whose reference pose is no body's keep no face in it, either: eyes and jaw sit on the
-  // head as in the first frame of the target's own motion.
   void take_face_from_motion() {
-    const int head = target_roles_.joint(Role::head);
-    if (head < 0 || !target_roles_.humanoid || target_clip_.frame_count() == 0) return;
-    if (is_straight({target_, target_roles_, target_.reference})) return;
-    const auto turns = target_clip_.frame_orientations(0);
-    for (const int joint : joints_below(target_, head)) {
-      const int parent = target_.parents[at(joint)];
-      if (joint == head || plan_.mapping[at(joint)].first >= 0) continue;
-      plan_.local[at(joint)].orientation =
-          (turns[at(parent)].conjugate() * turns[at(joint)]).cast<double>().normalized();
+    for (const int joint : faces_of_motion(target_clip_, target_roles_)) {
+      if (plan_.mapping[at(joint)].first >= 0) continue;
+      plan_.local[at(joint)].orientation = turn_in_first_frame(target_clip_, joint);
     }
   }
 
@@ -291,7 +336,7 @@ class Transfer {
   // The hips. Ancestors at the same position, as in Biped, rotate and move with them.
   void take_anchor_of_roles() {
     const int hips = target_roles_.joint(Role::hips);
-    const double near = 0.05 * leg_length(target_, target_roles_);
+    const double near = kAtHips * leg_length(target_, target_roles_);
     plan_.anchor = hips;
     for (int j = target_.parents[at(hips)]; j >= 0 && length_of(target_, j, hips) < near;
          j = target_.parents[at(j)]) {
@@ -490,7 +535,7 @@ Result<RetargetedFrames> transfer(const FrameSource& source, const RoleMap& sour
   const bool given = options.source_frame || options.target_frame || !options.source_pose.empty() ||
                      !options.target_pose.empty();
   if (same && !given && (!options.scale || *options.scale == same->scale)) {
-    return copy_of(source, target.skeleton, *same);
+    return copy_of(source, target.skeleton, *same, followers_of(target, target_roles, *same));
   }
   const auto made =
       std::make_shared<Transfer>(source, source_roles, target, target_roles, options, block_frames);

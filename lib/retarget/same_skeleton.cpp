@@ -101,6 +101,11 @@ std::optional<SameSkeleton> with_bones_of_person(const std::vector<SharedBone>& 
 
 }  // namespace
 
+bool carries(const Skeleton& skeleton, int joint, int carried) {
+  while (carried > joint) carried = skeleton.parents[at(carried)];
+  return carried == joint;
+}
+
 std::optional<SameSkeleton> same_skeleton(const Skeleton& source, const Skeleton& target) {
   if (source.joint_count() != target.joint_count()) return std::nullopt;
   std::unordered_map<std::string_view, int> by_name;
@@ -142,10 +147,6 @@ std::optional<SameSkeleton> same_person(const Skeleton& source, const RoleMap& s
   if (!source_roles.humanoid || !target_roles.humanoid) return std::nullopt;
   if (!source_roles.given.empty() || !target_roles.given.empty()) return std::nullopt;
   const int hips = target_roles.joint(Role::hips);
-  const auto carries = [](const Skeleton& skeleton, int joint, int carried) {
-    while (carried > joint) carried = skeleton.parents[at(carried)];
-    return carried == joint;
-  };
   SameSkeleton same;
   for (int k = 0; k < target.joint_count(); ++k) {
     const Role role = target_roles.roles[at(k)];

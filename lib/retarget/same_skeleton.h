@@ -15,6 +15,9 @@ struct SameSkeleton {
   std::vector<int> source_joint;  // [target joints]; -1, by same_person() alone: only the target's
 };
 
+// Whether a joint is another one or above it.
+bool carries(const Skeleton& skeleton, int joint, int carried);
+
 // Whether the target is the source, uniformly scaled: the same names, the same parents, and each
 // joint at the same offset from its parent within a thousandth of a per cent of the skeleton. Empty
 // if not. Skeletons of one joint, or of bones of zero length, are the same at scale 1.
