@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -277,9 +278,19 @@ struct File {
 
 int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles) {
   const int carrier = carrying_joint(roles);
+  const auto carries_a_leg = [&](int above) {
+    const std::vector<std::uint8_t> within = subtree(skeleton, above);
+    return std::ranges::any_of(std::array{Role::left_upper_leg, Role::right_upper_leg},
+                               [&](Role role) {
+                                 const int leg = roles.joint(role);
+                                 return leg >= 0 && leg != above && within[at(leg)] != 0;
+                               });
+  };
   int depth = 0;
   for (int j = joint; j >= 0; j = skeleton.parents[at(j)]) {
     if (j == carrier) return depth;
+    // In some rigs (Biped) the lowest of the spine.
+    if (depth > 0 && carries_a_leg(j)) return depth;
     ++depth;
   }
   return 0;

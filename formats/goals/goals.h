@@ -41,9 +41,9 @@ Result<GoalFile> read(std::string_view text, const Skeleton& skeleton, const Rol
 // The JSON Schema of such files.
 std::string schema();
 
-// From a joint up to, but without, the joint that carries the body: what a reach moves unless the
-// user says otherwise, so that the hips stay where they are. 0 (all) for the carrying joint itself
-// and joints above it.
+// From a joint up to, but without, the joint that carries the body, or the first that carries a
+// leg: what a reach moves unless the user says otherwise, so that hips and feet stay where they
+// are. 0 (all) for the carrying joint itself and joints above it.
 int default_depth(int joint, const Skeleton& skeleton, const RoleMap& roles);
 
 // The direction in a joint's frame that is ahead of the body in the reference pose (body_frame()).

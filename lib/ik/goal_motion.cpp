@@ -555,6 +555,7 @@ class BlockSolver {
         block_frames_(block_frames),
         joints_(parents_.size()) {
     motion_->goals.resize(goals.size());
+    motion_->shifts.resize(parents_.size());
   }
 
   const std::shared_ptr<GoalMotion>& motion() const { return motion_; }
@@ -634,12 +635,15 @@ class BlockSolver {
 
   void measure_turns(const FrameRun& given, const Clip& made, std::size_t j) {
     JointTurns& joint = joints_[j];
+    GoalMotion::Shift& shift = motion_->shifts[j];
     const auto relative = [&](const Clip& of, int f) -> Quat {
       const Quat own = of.frame_orientations(f)[j].cast<double>();
       if (parents_[j] < 0) return own;
       return of.frame_orientations(f)[at(parents_[j])].cast<double>().conjugate() * own;
     };
     for (int f = 0; f < made.frame_count(); ++f) {
+      const double moved = (made.frame_positions(f)[j] - given.clip.frame_positions(f)[j]).norm();
+      if (moved > shift.distance) shift = {moved, given.first + f};
       const Quat was = relative(given.clip, f), now = relative(made, f);
       const Quat before = std::exchange(joint.last_before, was);
       const Quat made_before = std::exchange(joint.last, now);

@@ -71,6 +71,12 @@ struct GoalMotion {
   // input.
   double largest_turn = 0, input_turn = 0;
   int turning_joint = -1, turning_frame = -1;
+  // How far goals move each joint at most, metres, and in which frame (-1: never). [joints]
+  struct Shift {
+    double distance = 0;
+    int frame = -1;
+  };
+  std::vector<Shift> shifts;
 };
 
 struct GoalMotionOptions {

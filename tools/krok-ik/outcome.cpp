@@ -7,6 +7,7 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "motion/ground_frame.h"
 #include "scene/frame_blocks.h"
 
 namespace krok::cli::ik {
@@ -160,6 +161,34 @@ Diagnostics missed_goals(const Outcome& outcome) {
     list.push_back(std::move(warning));
   }
   return list;
+}
+
+Diagnostics moved_feet(const Outcome& outcome, const RoleMap& roles, bool root_moves) {
+  constexpr double kMoved = 0.01;  // metres
+  const Skeleton& skeleton = outcome.input.skeleton;
+  krok::ik::GoalMotion::Shift largest{kMoved, -1};
+  int joint = -1;
+  for (const LegRoles& leg : kLegRoles) {
+    const int foot = roles.joint(leg.foot), thigh = roles.joint(leg.upper);
+    if (foot < 0 || thigh < 0) continue;
+    const std::vector<std::uint8_t> within = subtree(skeleton, thigh);
+    const bool sought = std::ranges::any_of(outcome.goals, [&](const krok::ik::KeyedGoal& goal) {
+      return within[at(goal.goal.joint)] != 0;
+    });
+    const krok::ik::GoalMotion::Shift& shift = outcome.motion.shifts[at(foot)];
+    if (sought || shift.distance <= largest.distance) continue;
+    largest = shift;
+    joint = foot;
+  }
+  if (joint < 0) return {};
+  Diagnostic warning = make_warning(
+      "ik-feet",
+      fmt::format("goals move {} by up to {} mm, in frame {}", skeleton.names[at(joint)],
+                  readable(1000 * largest.distance, 3), largest.frame),
+      root_moves ? "--root-moves shifts all of the body; goals for the feet hold them (--goals)"
+                 : "--depth leaves out joints that carry the legs; goals for the feet hold them");
+  warning.frame = largest.frame;
+  return {std::move(warning)};
 }
 
 Json to_json(const Outcome& outcome, bool with_frames) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ik/goal_motion.h"
+#include "roles/roles.h"
 #include "tools/cli/report.h"
 
 namespace krok::cli::ik {
@@ -24,6 +25,9 @@ std::string table(const Outcome& outcome);
 // A warning (ik-missed) for each goal that is missed in some frame, with the worst one and the
 // joint that holds it back; ik-never for goals that are active in no frame.
 Diagnostics missed_goals(const Outcome& outcome);
+
+// A warning (ik-feet) where goals of other limbs move a foot by more than 1 cm.
+Diagnostics moved_feet(const Outcome& outcome, const RoleMap& roles, bool root_moves);
 
 // Goals, `with_frames` with their residuals in each frame, and the limits.
 Json to_json(const Outcome& outcome, bool with_frames);

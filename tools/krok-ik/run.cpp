@@ -595,6 +595,7 @@ Result<int> Run::bring_about(const FrameSource& motion,
       missed.where.file = options_.input;
       context_.diagnose(std::move(missed));
     }
+    context_.diagnose_in(options_.input, moved_feet(outcome, roles_, solver_.root_moves));
   };
   std::string chart;
   if (looks_with_eyes(options_) || !options_.plot.empty()) {

@@ -224,6 +224,44 @@ TEST_F(KrokIk, ArmsReachBeforeTheTrunkAndTheHeadKeepsItsDirection) {
   }
 }
 
+// Would fail if a hand dragged the feet of rigs whose thighs hang on the spine (Biped), or if feet
+// that all of the body takes along left their places without a word.
+TEST_F(KrokIk, FeetStayWhereThighsHangOnTheSpineAndAreWarnedOfWhereTheyCannot) {
+  Clip biped = walk_;
+  std::vector<int>& parents = biped.skeleton.parents;
+  const int spine = biped.skeleton.find("Spine");
+  Skeleton ordered;
+  std::vector<int> order = {0, spine};
+  for (int j = 1; j < biped.joint_count(); ++j) {
+    if (j != spine) order.push_back(j);
+    if (parents[at(j)] == 0 && j != spine) parents[at(j)] = spine;
+  }
+  for (const int j : order) {
+    const int parent = parents[at(j)];
+    ordered.add(biped.skeleton.names[at(j)],
+                parent < 0 ? -1 : ordered.find(biped.skeleton.names[at(parent)]),
+                biped.skeleton.reference[at(j)], biped.skeleton.end_sites[at(j)] != 0);
+  }
+  for (int f = 0; f < walk_.frame_count(); ++f) {
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      biped.frame_positions(f)[k] = walk_.frame_positions(f)[at(order[k])];
+      biped.frame_orientations(f)[k] = walk_.frame_orientations(f)[at(order[k])];
+    }
+  }
+  biped.skeleton = ordered;
+  anim::WriteOptions exact;
+  exact.orientation = OrientationEncoding::xyzw;
+  write("biped.anim", biped, exact);
+  const std::string far = reach(Vec3(0, -0.3, 0.4));
+  const auto held = ik({"biped.anim", "--reach", far, "-o", "out.anim"});
+  ASSERT_EQ(held.exit_code, 0) << held.err;
+  EXPECT_THAT(held.err, Not(HasSubstr("ik-feet")));
+  EXPECT_LT((place(read("out.anim"), 30, "LeftFoot") - place(biped, 30, "LeftFoot")).norm(), 1e-6);
+  const auto shifted = ik({"biped.anim", "--reach", far, "--root-moves", "-o", "out.anim"});
+  ASSERT_EQ(shifted.exit_code, 0) << shifted.err;
+  EXPECT_THAT(shifted.err, HasSubstr("[ik-feet]"));
+}
+
 TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
   put("bad.json", R"({"schema": "krok.goals/1", "goals": [
   {"joint": "RightHnd", "keys": [{"time": 0, "target": [0, 0, 0]}]}]})");
