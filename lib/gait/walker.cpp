@@ -132,29 +132,33 @@ double off_of_swing(const parametric::Synthesiser& step) {
   return off < step.packed().generic.size() ? step.packed().generic[off] : 0;
 }
 
-// Joints that stay within a centimetre of their place in the reference pose in all examples. They
-// are fixed there, because rounding in captures and mirror images of unequal sides change bone
-// lengths.
+// Joints that keep their place in their parents, within a centimetre in each example. They are
+// fixed to that of the reference pose, because rounding in captures and mirror images of unequal
+// sides, whose bones are as long as the other side's, change bone lengths.
 std::vector<FixedJoint> fixed_joints(const StepLibrary& steps) {
-  constexpr double kMoves = 0.01;  // metres
+  constexpr double kMoves = 0.01, kUnequal = 0.05;  // metres
   const parametric::PackedExamples& packed = steps.steps(FootSide::left).packed();
   const auto count = static_cast<std::size_t>(packed.skeleton.joint_count());
-  std::vector<double> farthest(count, 0);
+  std::vector<std::uint8_t> moves(count, 0);
   std::vector<PoseBlock> blocks(at(packed.reference.blocks_per_pose()));
-  std::vector<Transform> local(count);
+  std::vector<Transform> local(count), first(count);
   for (const PackedClip& clip : packed.clips) {
     for (int f = 0; f < clip.frames; ++f) {
       sample_pose(clip, f / clip.rate, blocks);
       unpack_pose(blocks, local);
+      if (f == 0) first = local;
       for (std::size_t j = 1; j < count; ++j) {
         const Vec3 place = packed.skeleton.reference_local(static_cast<int>(j)).position;
-        farthest[j] = std::max(farthest[j], (local[j].position - place).norm());
+        if ((local[j].position - first[j].position).norm() >= kMoves ||
+            (local[j].position - place).norm() >= kUnequal) {
+          moves[j] = 1;
+        }
       }
     }
   }
   std::vector<FixedJoint> fixed;
   for (int j = 1; j < packed.skeleton.joint_count(); ++j) {
-    if (farthest[at(j)] >= kMoves) continue;
+    if (moves[at(j)] != 0) continue;
     fixed.push_back({j, packed.skeleton.reference_local(j).position});
   }
   return fixed;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/index.h"
+#include "motion/local_motion.h"
 #include "terrain/mesh_ground.h"
 #include "unit/gait/walkers.h"
 
@@ -180,6 +182,33 @@ TEST(ShortWalk, OfOneStepGoesFromStandingToStanding) {
   const auto made = walk(walking(), prints, kLevel, {});
   ASSERT_TRUE(made.ok()) << made.error().message;
   EXPECT_GT(made->clip.frame_count(), 10);
+}
+
+// Would fail if bones grew and shrank between steps of the one side and mirror images of the
+// other's, where a person's sides are unequal.
+TEST(Walk, BonesAreThoseOfTheSkeletonWhereSidesAreUnequal) {
+  std::vector<parametric::test::KeyedWalk> walks = parametric::test::grid_walks(true);
+  auto library = parametric::test::library_of(walks, {"step.length", "step.height", "step.turn"},
+                                              {.mirror = false, .outlier = 0})
+                     .library;
+  const int hand = library.skeleton.find("LeftHand");
+  const int elbow = library.skeleton.parents[at(hand)];
+  for (std::size_t i = 0; i < library.examples.size(); i += 2) {
+    Clip& motion = library.examples[i].motion;
+    LocalMotion local = local_motion(motion);
+    for (Vec3& place : local.joint_positions(hand)) place *= 1.08;
+    set_local_motion(local, motion);
+  }
+  std::vector<StepLibrary> libraries;
+  libraries.push_back(test::walking_library(std::move(library)));
+  const auto made = walk(libraries, prints_of({.steps = 6}), kLevel, {});
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  const Clip& clip = made->clip;
+  const double length = clip.skeleton.reference_local(hand).position.norm();
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const auto places = clip.frame_positions(f);
+    EXPECT_NEAR((places[at(hand)] - places[at(elbow)]).norm(), length, 1e-5) << f;
+  }
 }
 
 }  // namespace
