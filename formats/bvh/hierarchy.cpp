@@ -74,6 +74,10 @@ std::string hint_for(registry::Kind kind, std::string_view what) {
   if (what.find("archive") != std::string_view::npos) return "unpack it first";
   if (what.find("Git LFS") != std::string_view::npos) return "fetch the file with: git lfs pull";
   if (what.find("web page") != std::string_view::npos) return "download the file itself";
+  if (what.find("C3D") != std::string_view::npos) {
+    return "write the solved skeleton as BVH or FBX from the capture software";
+  }
+  if (what.find("OBJ") != std::string_view::npos) return "krok-morph takes shapes of a mesh";
   if (what.find("binary file") != std::string_view::npos) {
     return registry::advice(registry::Kind::unknown, registry::Kind::anim);
   }

@@ -80,7 +80,9 @@ Result<HeightImage> read_exr(std::span<const std::byte> file) {
 Result<HeightImage> read_png(std::span<const std::byte> file) {
   const auto pixels = image::decode_grey(file, static_cast<std::size_t>(terrain::kMaxHeights));
   if (!pixels) return pixels.error();
-  HeightImage image{pixels->width, pixels->height, {}, true};
+  constexpr std::size_t kBitDepth = 24;  // its byte in a PNG file
+  const int levels = 1 << std::to_integer<int>(file[kBitDepth]);
+  HeightImage image{pixels->width, pixels->height, {}, true, levels};
   image.values.resize(pixels->values.size());
   for (std::size_t i = 0; i < image.values.size(); ++i) {
     const bool hole = !pixels->opacity.empty() && pixels->opacity[i] < 0x8000;

@@ -21,6 +21,7 @@ struct HeightImage {
   // Whether the values are shares of a range, 0 to 1 (PNG), or metres unless a range is given
   // (EXR).
   bool shares = false;
+  int levels = 0;  // of grey, of a PNG; 0: any value
 };
 
 // Reads an image by its content. EXR: the channel "height", Y, Z or R, the first of these that

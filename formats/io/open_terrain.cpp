@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
+#include "core/numbers.h"
 #include "formats/io/open_scene.h"
 #include "formats/obj/obj_reader.h"
 #include "nodes/evaluate.h"
@@ -13,6 +15,8 @@
 namespace krok::io {
 
 namespace {
+
+constexpr double kMaxStep = 0.003;  // metres between two grey levels, without a warning
 
 using Ground = Result<std::unique_ptr<Terrain>>;
 
@@ -45,8 +49,20 @@ Ground open_image(const InputFile& file, const height_field::Placement& given, I
   if (!placement) return placement.error();
   auto image = height_field::read(file.bytes());
   if (!image) return std::move(image.error()).in_file(file.path());
+  const int levels = image->levels;
   auto field = height_field::placed(*std::move(image), *placement);
   if (!field) return std::move(field.error()).in_file(file.path());
+  if (levels > 0) {
+    const auto [low, high] = *placement->range;
+    const double step = std::abs(high - low) / (levels - 1);
+    if (step > kMaxStep) {
+      inputs.diagnose(make_diagnostic(
+          Severity::warning, "ground-levels",
+          fmt::format("the image has {} grey levels, so heights differ by steps of {} mm",
+                      grouped(levels), readable(1000 * step, 3)),
+          "save it as a 16-bit PNG or as EXR from the program that made it", file.path()));
+    }
+  }
   auto ground = terrain::height_field(*std::move(field));
   if (!ground) return std::move(ground.error()).in_file(file.path());
   return ground;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "core/json_internal.h"
 #include "core/text.h"
+#include "formats/registry/registry.h"
 
 namespace krok::json {
 
@@ -198,6 +200,13 @@ Result<Value> parse(std::string_view text, std::size_t largest) {
   Builder builder(content);
   const bool parsed = nlohmann::json::sax_parse(content.begin(), content.end(), &builder);
   if (parsed && !builder.error_) return std::move(builder.root_);
+  const std::string_view start = trimmed(content);
+  if (builder.error_ && !start.starts_with('{') && !start.starts_with('[')) {
+    const auto what = registry::describe_content(std::as_bytes(std::span(content)));
+    if (!what.ends_with("unknown kind")) {
+      builder.error_->message = fmt::format("is {}, not JSON", what);
+    }
+  }
   if (builder.error_) return std::move(*builder.error_);
   return Error("json-syntax", "not valid JSON");
 }

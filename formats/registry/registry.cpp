@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kHierarchy = "HIERARCHY";
 
 // Other kinds of files that users may pass by mistake, by their first bytes.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kOtherKinds = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kOtherKinds = {
     {{"\x89PNG", "a PNG image"},
      {"\x1F\x8B", "a gzip archive"},
      {"BZh", "a bzip2 archive"},
@@ -26,6 +26,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 9> kOtherKin
      {"Rar!\x1A\x07", "a RAR archive"},
      {"\x76\x2F\x31\x01", "an OpenEXR image"},
      {"%PDF-", "a PDF document"},
+     {"\x02P", "a C3D file (markers, no skeleton)"},
      {"version https://git-lfs", "a Git LFS pointer, not the file itself"}}};
 
 std::string_view text_of(std::span<const std::byte> content) {
@@ -106,6 +107,15 @@ std::string_view next_word(std::string_view& text) {
 std::string_view word_at_start(std::string_view text) {
   text = text.substr(0, kWindow);
   return next_word(text);
+}
+
+// Wavefront OBJ, by its first statement after comments.
+bool is_obj(std::string_view text) {
+  for (text = first_word(text); text.starts_with('#'); text = first_word(text)) {
+    text.remove_prefix(std::min(text.find_first_of("\r\n"), text.size()));
+  }
+  const std::string_view word = text.substr(0, text.find_first_of(" \t\r\n"));
+  return word == "v" || word == "o" || word == "g" || word == "mtllib";
 }
 
 bool is_fbx(std::string_view text) {
@@ -264,6 +274,7 @@ std::string_view describe_content(std::span<const std::byte> content) {
     return "a JSON text file";
   }
   if (first_word(text).starts_with('<')) return "an XML text file";
+  if (is_text(text) && is_obj(text)) return "an OBJ mesh (without joints)";
   return is_text(text) ? kUnknownText : "a binary file of unknown kind";
 }
 
@@ -284,7 +295,15 @@ std::string advice(Kind found, Kind wanted) {
   if (found == Kind::unknown && wanted == Kind::anim) {
     return "motions are .anim files and what krok-import reads: .bvh, .amc, .fbx, .glb and more";
   }
+  if (found == Kind::unknown && wanted == Kind::model) {
+    return "a mesh with joints is a .model, .character, .glb, .fbx or another that krok-import "
+           "reads";
+  }
   if (found == Kind::anim && wanted == Kind::model) return "krok-body makes a model for a motion";
+  if ((found == Kind::model || found == Kind::character) && wanted == Kind::anim) {
+    return "it has no motion: give a .anim, a capture or glTF; krok-skin writes a mesh as glTF or "
+           "OBJ";
+  }
   if (is_of(found, Group::own)) return "perhaps two arguments are in the wrong order";
   return {};
 }

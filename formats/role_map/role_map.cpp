@@ -80,6 +80,14 @@ class Reader {
 
   Status add(const json::Value::Member& member) {
     const int joint = skeleton_.find(member.key);
+    const bool swapped = member.value.kind == json::Value::Kind::string &&
+                         skeleton_.find(member.value.text) >= 0 && parse_role_label(member.key);
+    if (joint < 0 && swapped) {
+      return json::error_at(text_, member.key_offset, "role-map-joint",
+                            fmt::format("\"{}\" is a role, not a joint", shown(member.key)),
+                            fmt::format("the joint comes first: \"{}\": \"{}\"",
+                                        shown(member.value.text), shown(member.key)));
+    }
     if (joint < 0) {
       const std::string nearest = nearest_name(member.key, skeleton_.names);
       return json::error_at(

@@ -16,6 +16,7 @@ namespace krok::weights {
 namespace {
 
 constexpr double kUsualRate = 30;
+constexpr double kMinTableRate = 10;    // frames per second
 constexpr double kLatest = 1e6;         // seconds
 constexpr double kLargestWeight = 1e6;  // of either sign
 
@@ -223,7 +224,7 @@ Status check_times(const csv::Table& table, std::size_t column, const std::vecto
   return {};
 }
 
-// The rate if times are i / rate within float precision.
+// The rate if times are i / rate within float precision. Fewer rows a second are keys.
 std::optional<double> rate_of(const std::vector<double>& times) {
   if (times.size() < 2 || times[0] != 0) return std::nullopt;
   double rate = static_cast<double>(times.size() - 1) / times.back();
@@ -232,7 +233,7 @@ std::optional<double> rate_of(const std::vector<double>& times) {
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!(std::abs(times[i] * rate - static_cast<double>(i)) < 1e-3)) return std::nullopt;
   }
-  return rate >= 1e-3 && rate <= 1e6 ? std::optional(rate) : std::nullopt;
+  return rate >= kMinTableRate && rate <= 1e6 ? std::optional(rate) : std::nullopt;
 }
 
 Result<WeightFile> read_table(std::string_view text, const std::string& path,

@@ -428,6 +428,16 @@ Result<std::vector<double>> PrintPlanner::fitted_places() const {
   const End end = best_end(states);
   if (end.cost == kNever) {
     const PathPlace place = path_.at(length_of(farthest));
+    const double next = std::min(length_of(farthest) + options_.max_step, path_.length());
+    if (const PathPlace ahead = path_.at(next); !ground_.at(ahead.x, ahead.z)) {
+      return Error(
+          "plan-ground",
+          fmt::format("the ground ends {} to {} m along the path of {} m: there is none at "
+                      "x {} m, z {} m",
+                      readable(length_of(farthest), 3), readable(next, 3),
+                      readable(path_.length(), 3), readable(ahead.x, 3), readable(ahead.z, 3)),
+          "give a larger ground, or a path that stays on it");
+    }
     return Error(
         "plan-ground",
         fmt::format(

@@ -21,6 +21,7 @@ constexpr double kFarOutside = 0.62;  // of the leg: how far a step may be from 
 constexpr double kFarTurn = 60 * kRadiansPerDegree;
 constexpr double kUsualRange = 0.4;  // metres, of a parameter of a library
 constexpr double kTurnCost = 0.5;    // metres a radian
+constexpr double kBeyond = 0.05;     // metres: steps that are longer or wider are warned of
 constexpr int kBisections = 20;
 constexpr int kBlendTries = 6;
 
@@ -154,6 +155,7 @@ class Planner {
     return kind == StepKind::walk ? library.is_middle() : library.kind() == kind;
   }
   Status make_weights(PlannedStep& step) const;
+  void warn_of_steps_beyond();
 
   std::span<const StepLibrary> libraries_;
   const Walker& walker_;
@@ -356,6 +358,43 @@ Status Planner::make_weights(PlannedStep& step) const {
   return last;
 }
 
+// Steps that are longer or wider than any of their library's; the first and the last one are
+// blended with standing.
+void Planner::warn_of_steps_beyond() {
+  std::vector<Eigen::AlignedBox2d> known(libraries_.size());  // along and across
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    for (const FoundStep& step : libraries_[i].found_steps()) {
+      known[i].extend(Vec2(step.along, step.across));
+    }
+  }
+  int count = 0;
+  double worst = 0;
+  std::string text;
+  for (std::size_t i = 1; i + 1 < walk_.steps.size(); ++i) {
+    const PlannedStep& step = walk_.steps[i];
+    const auto stance = static_cast<std::size_t>(step.stance);
+    const auto library = static_cast<std::size_t>(step.library);
+    const StepShape shape =
+        shape_of(walk_.grounded[stance], walk_.grounded[stance + 1], libraries_[library].toe_out());
+    const Vec2 largest = known[library].max();
+    const double beyond = (Vec2(shape.along, shape.across) - largest).maxCoeff();
+    if (!(beyond > kBeyond)) continue;
+    ++count;
+    if (beyond <= worst) continue;
+    worst = beyond;
+    const auto metres = [](double value) { return readable(value, 3); };
+    text = fmt::format("to print {} it is {} m long and {} m wide, there at most {} m and {} m",
+                       stance + 2, metres(shape.along), metres(shape.across), metres(largest.x()),
+                       metres(largest.y()));
+  }
+  if (count == 0) return;
+  walk_.warnings.push_back(make_warning(
+      "walk-beyond",
+      fmt::format("{} of {} steps are longer or wider than any in the library: {}", count,
+                  walk_.steps.size(), text),
+      "legs are stretched for them: set prints closer together, or give examples of such steps"));
+}
+
 Result<PlannedWalk> Planner::plan(std::span<const Print> prints) {
   if (Status status = check_prints(prints); !status) return status.error();
   count_ = static_cast<int>(prints.size());
@@ -367,6 +406,7 @@ Result<PlannedWalk> Planner::plan(std::span<const Print> prints) {
   for (PlannedStep& step : walk_.steps) {
     if (Status status = make_weights(step); !status) return status.error();
   }
+  if (!options_.extrapolate) warn_of_steps_beyond();
   return std::move(walk_);
 }
 

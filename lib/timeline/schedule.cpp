@@ -256,6 +256,13 @@ class Scheduler {
     if (!std::isfinite(item.begin) || item.begin > kLongest) {
       return Error("timeline-time", "the start time is not valid");
     }
+    if (fades && !entry.at && item.begin < before.settled - kTimeRounding) {
+      return Error(
+          "timeline-time",
+          fmt::format("the crossfade takes {} s, but {} plays for {} s", readable(change.duration),
+                      shown(timeline_.base[i - 1].name), readable(*end - before.settled, 4)),
+          "shorten the crossfade, or loop the item before it");
+    }
     if (item.begin < before.settled - kTimeRounding) {
       return Error("timeline-time",
                    fmt::format("starts at {} s, before the change into {} ends at {} s",

@@ -49,7 +49,7 @@ ALLOWED = {
     "lib/render": BASE,
     "formats/registry": {"lib/core"},
     "formats/io": BASE | {"lib/capture", "lib/character", "lib/roles", "lib/nodes", "lib/skin", "lib/terrain"},
-    "formats/json": BASE,
+    "formats/json": BASE | {"formats/registry"},
     "formats/chart": {"lib/core"},
     "formats/role_map": BASE | {"lib/roles", "formats/json"},
     "formats/timeline": BASE | {"lib/motion", "lib/blend", "lib/timeline", "lib/face", "formats/json"},

@@ -100,6 +100,23 @@ TEST_F(Mistakes, ValuesThatMeanSomethingElse) {
     arguments.insert(arguments.begin(), "in.bvh");
     EXPECT_THAT(refused(row.tool, arguments), HasSubstr(row.hint));
   }
+  // Decimal commas where a number is expected, and in lists, which have commas of their own.
+  const Row commas[] = {
+      {"krok-edit", {"--playback-speed", "1,5", "-o", "a.anim"}, "write 1.5: decimals"},
+      {"krok-edit", {"--from", "0,5s", "-o", "a.anim"}, "write 0.5s: decimals"},
+      {"krok-edit", {"--move", "1,5m,0,5m,2,5m", "-o", "a.anim"}, "write 1.5m,0.5m,2.5m: dec"},
+      {"krok-ik", {"--stiffness", "spine=0,7", "-o", "a.anim"}, "write spine=0.7: decimals"},
+      {"krok-diff", {"in.bvh", "--joint-tolerance", "0,5mm"}, "write 0.5mm: decimals"},
+      {"krok-diff", {"in.bvh", "--joint-tolerance", "0.5deg"}, "LENGTH[,ANGLE]"},
+      {"krok-edit", {"--turn", "1.57", "-o", "a.anim"}, "write 1.57rad, or 1.57deg"}};
+  for (const Row& row : commas) {
+    std::vector<std::string> arguments = row.arguments;
+    arguments.insert(arguments.begin(), "in.bvh");
+    EXPECT_THAT(refused(row.tool, arguments), HasSubstr(row.hint));
+  }
+  EXPECT_THAT(
+      refused("krok-walk", {"lib.steps", "--goal", "1,2", "--start", "0,0,1.57", "-o", "a"}),
+      HasSubstr("write 1.57rad"));
   EXPECT_THAT(refused("krok-blend", {"in.bvh:30", "in.bvh:70", "-o", "a.anim"}),
               HasSubstr("here 0.3 and 0.7"));
   EXPECT_THAT(refused("krok-blend", {"in.bvh", "0.5", "-o", "a.anim"}),
@@ -192,6 +209,43 @@ TEST_F(Mistakes, MissingAndSwappedArgumentsLeadOn) {
       HasSubstr("did you mean 'Spine'?"));
   EXPECT_EQ(run_here("krok-export", {"in.bvh", "--format", "gltf"}).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(path("in.gltf"))) << "beside the input";
+}
+
+// Would fail if a file of the wrong kind, or a word of another program, led to a wrong guess.
+TEST_F(Mistakes, WrongFilesAndForeignWordsLeadOn) {
+  put("face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  put("m.c3d", std::string("\x02P\x01\0", 4));
+  ASSERT_EQ(run_here("krok-body", {"in.bvh", "-o", "a.model"}).exit_code, 0);
+  ASSERT_EQ(run_here("krok-morph", {"pack", "face.obj", "face.obj", "-o", "face.exr"}).exit_code,
+            0);
+  put("swapped.json", R"({"joints": {"spine": "Spine"}})");
+  struct Row {
+    std::string tool;
+    std::vector<std::string> arguments;
+    std::string text;
+  };
+  const Row rows[] = {
+      {"krok-export", {"a.model", "-o", "x.bvh"}, "krok-skin writes a mesh"},
+      {"krok-cam", {"in.bvh", "--still", "-o", "c.fbx"}, "krok-cam writes .glb, too"},
+      {"krok-export", {"in.bvh", "--what", "rotations", "-o", "a.csv"}, "quaternions has"},
+      {"krok-render", {"in.bvh", "--codec", "h265", "-o", "a.mp4"}, "ffmpeg recodes"},
+      {"krok-morph", {"info", "face.obj"}, "is an OBJ mesh (without joints), not an .exr"},
+      {"krok-skin", {"face.obj", "-o", "a.glb"}, "a mesh with joints is"},
+      {"krok-edit", {"in.bvh", "-ss", "1", "-o", "a.anim"}, "use --from"},
+      {"krok-import", {"m.c3d", "-o", "a.anim"}, "solved skeleton"},
+      {"krok-info", {"in.bvh", "--joints"}, "use -v"},
+      {"krok-skin", {"a.model", "--correctives", "face.exr", "-o", "a.glb"}, "--morph"},
+      {"krok-edit", {"in.bvh", "--plant", "--contacts", "in.bvh", "-o", "a.anim"}, "krok-keys"},
+      {"krok-body", {"in.bvh", "-o", "body.obj"}, "krok-skin writes meshes as .obj"},
+      {"krok-retarget",
+       {"in.bvh", "--onto", "a.model", "--map", "swapped.json", "-o", "a.anim"},
+       "the joint comes first"},
+      {"krok-ik", {"in.bvh", "--look-at", "eye", "-o", "a.anim"}, "write head="},
+      {"krok-edit", {"in.bvh", "--mirror", "x", "-o", "a.anim"}, "--mirror takes no value"},
+      {"krok-walk",
+       {"lib.steps", "--goal", "0,3m", "-o", "wk.html"},
+       "krok-walk with --save-page"}};
+  for (const Row& row : rows) EXPECT_THAT(refused(row.tool, row.arguments), HasSubstr(row.text));
 }
 
 TEST_F(Mistakes, ScriptsGetAReportOfUnknownVerbs) {

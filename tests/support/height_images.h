@@ -80,11 +80,11 @@ inline std::string exr_image(int columns, int rows, const std::vector<ExrChannel
   return out;
 }
 
-// A PNG of `kind` 0 (grey), 2 (colour) or 4 (grey and alpha), 16 bits; `values` has all channels,
-// row by row. The header says other sizes if those are given.
+// A PNG of `kind` 0 (grey), 2 (colour) or 4 (grey and alpha), 16 bits or 8; `values` has all
+// channels, row by row. The header says other sizes if those are given.
 inline std::string png_image(int columns, int rows, int kind,
                              const std::vector<std::uint16_t>& values, int said_columns = 0,
-                             int said_rows = 0) {
+                             int said_rows = 0, int bits = 16) {
   const auto crc = [](const std::string& text) {
     std::uint32_t sum = 0xFFFFFFFF;
     for (const char c : text) {
@@ -102,12 +102,12 @@ inline std::string png_image(int columns, int rows, int kind,
   std::string header;
   put_big(header, static_cast<std::uint32_t>(said_columns != 0 ? said_columns : columns), 4);
   put_big(header, static_cast<std::uint32_t>(said_rows != 0 ? said_rows : rows), 4);
-  header += {16, static_cast<char>(kind), 0, 0, 0};
+  header += {static_cast<char>(bits), static_cast<char>(kind), 0, 0, 0};
   const std::size_t per_row = values.size() / static_cast<std::size_t>(rows);
   std::string raw;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (i % per_row == 0) raw += '\0';  // no filter
-    put_big(raw, values[i], 2);
+    put_big(raw, values[i], bits / 8);
   }
   std::uint32_t a = 1, b = 0;
   for (const char c : raw) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <unordered_map>
@@ -69,6 +70,15 @@ class Check {
     return who == kReport ? "the report" : list_.files[who].input;
   }
 
+  // Such as take.bvh and take.c3d, which no base keeps apart.
+  bool same_folder(std::size_t a, std::size_t b) const {
+    if (a == kReport || b == kReport) return false;
+    const auto folder = [&](std::size_t i) {
+      return std::filesystem::path(list_.files[i].input).parent_path();
+    };
+    return folder(a) == folder(b);
+  }
+
   void fail(std::size_t who, std::string message, std::string hint = {}) {
     Error error("usage", std::move(message), std::move(hint));
     if (who != kReport) error.where = list_.files[who].line;
@@ -110,8 +120,9 @@ class Check {
     fail(who,
          fmt::format("{} and {} would both be written to {}", name_of(first->second), name_of(who),
                      path),
-         lacks_placeholder
-             ? "use {name}, which is replaced by the name of each output"
+         lacks_placeholder ? "use {name}, which is replaced by the name of each output"
+         : same_folder(first->second, who)
+             ? "give the files of one kind: 'FOLDER/*.bvh'; or a --manifest to name each output"
              : "use --base to keep more sub-folders, or a --manifest to name each output");
   }
 

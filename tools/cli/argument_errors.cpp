@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "core/file.h"
 #include "core/text.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/renamed_options.h"
@@ -68,11 +69,11 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
   for (const std::string& argument : arguments) {
     if (argument == "--") break;
     const bool is_long = argument.starts_with("--");
-    const bool letter = argument.size() == 2 && argument[0] == '-' &&
+    const bool letter = argument.size() >= 2 && argument[0] == '-' &&
                         std::isalpha(static_cast<unsigned char>(argument[1])) != 0;
     if (!is_long && !letter) continue;
     const std::string name = argument.substr(0, argument.find('='));
-    if (app_.get_option_no_throw(name) != nullptr) continue;
+    if (app_.get_option_no_throw(is_long ? name : name.substr(0, 2)) != nullptr) continue;
     const auto is_now = [&](const RenamedOption& option) {
       if (option.before != name || (!option.tool.empty() && option.tool != spec_.name))
         return false;
@@ -85,12 +86,26 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     if (const auto row = std::find_if(std::rbegin(kRenamedOptions), none, is_now); row != none) {
       return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
     }
-    const std::string near = is_long ? nearest_name(name, names) : std::string();
+    const std::string near =
+        name.size() > 2 ? nearest_name(is_long ? name : "-" + name, names) : std::string();
     return Error("usage", fmt::format("unknown option '{}'", shown(name)),
                  near.empty() ? fmt::format("see {} --help", spec_.name)
                               : fmt::format("did you mean '{}'?", near));
   }
   return std::nullopt;
+}
+
+// "--mirror x": a word, and no file, after an option that takes none.
+std::optional<Error> CommandLine::value_of_flag(const std::vector<std::string>& arguments,
+                                                const std::string& word) const {
+  const auto at = std::find(arguments.begin(), arguments.end(), word);
+  if (at == arguments.begin() || at == arguments.end() || !extension(word).empty()) return {};
+  const std::string& before = *std::prev(at);
+  if (!before.starts_with('-')) return {};
+  const CLI::Option* option = app_.get_option_no_throw(before);
+  if (option == nullptr || option->get_items_expected_max() > 0) return {};
+  return usage(fmt::format("{} takes no value, and '{}' is one", before, shown(word)),
+               option->get_description());
 }
 
 Error CommandLine::parse_error(const std::vector<std::string>& arguments,
@@ -106,6 +121,7 @@ Error CommandLine::parse_error(const std::vector<std::string>& arguments,
                    fmt::format("{} is an argument too many; perhaps it is the value of {}",
                                shown_list(left), option->get_name()));
     }
+    if (auto value = value_of_flag(arguments, left.front())) return *std::move(value);
     constexpr std::string_view kUnits = " m cm mm in ft s ms f deg rad fps Hz ";
     if (kUnits.find(" " + left.front() + " ") != std::string_view::npos) {
       return usage(fmt::format("unexpected argument {}", shown_list(left)),

@@ -106,6 +106,8 @@ class CommandLine {
   std::optional<Error> option_without_value(const std::vector<std::string>& arguments) const;
   std::optional<Error> option_with_one_dash(const std::vector<std::string>& arguments) const;
   std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
+  std::optional<Error> value_of_flag(const std::vector<std::string>& arguments,
+                                     const std::string& word) const;
   Error parse_error(const std::vector<std::string>& arguments, const CLI::ParseError& error) const;
 
   Form form_;

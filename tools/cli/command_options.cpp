@@ -35,6 +35,20 @@ bool is_given(const CLI::Option& option) {
   return on;
 }
 
+// Decimal commas as points, of lists with commas each second one: "0,5m,1,5m". Who writes a point
+// somewhere, or an even number of commas between values, means none.
+std::vector<std::string> with_points(std::vector<std::string> texts, int every) {
+  for (std::string& text : texts) {
+    const bool odd = std::ranges::count(text, ',') % 2 == 1;
+    if (text.find('.') != std::string::npos || (every > 1 && !odd)) continue;
+    int commas = 0;
+    for (char& c : text) {
+      if (c == ',' && commas++ % every == 0) c = '.';
+    }
+  }
+  return texts;
+}
+
 // Text alone has no kind but what its name in the help says.
 std::string kind_of_text(const CLI::Option& option) {
   const std::string& value = option.get_type_name();
@@ -162,6 +176,11 @@ Status CommandOptions::take_values() const {
     Error error = std::move(status).error();
     error.message = fmt::format("{}: {}", name_of(*declared.option), error.message);
     const CLI::Option& option = *declared.option;
+    for (const int every : {1, 2}) {
+      const auto texts = with_points(option.results(), every);
+      if (texts == option.results() || !declared.take(texts)) continue;
+      error.hint = fmt::format("write {}: decimals have a point", texts.back());
+    }
     if (error.hint.empty()) {
       if (declared.kind == "list") error.hint = fmt::format("write {}: ", option.get_type_name());
       error.hint += option.get_description();

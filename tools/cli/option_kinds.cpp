@@ -63,6 +63,19 @@ ValueKind<double> quantity(const Quantity& what, Result<double> (*parse)(std::st
   return {what.name, what.value_name, read, {}};
 }
 
+// Whether a bare number is a part of a turn in radians, written with its digits: 1.57, 3.1416.
+bool looks_like_radians(std::string_view text) {
+  constexpr int kParts = 24;  // of a turn: steps of 15 degrees
+  const auto value = parse_finite(text);
+  const std::size_t point = text.find('.');
+  const auto digits = point == std::string_view::npos ? 0 : text.size() - point - 1;
+  if (!value || digits < 2) return false;
+  const double turns = kParts * std::abs(*value) / (2 * kPi);
+  const double nearest = std::clamp(std::round(turns), 1.0, double{kParts});
+  // Rounded or cut after the last digit.
+  return std::abs(turns - nearest) * 2 * kPi / kParts < std::pow(0.1, digits);
+}
+
 Result<double> parse_seconds(std::string_view text) {
   const auto time = parse_clip_time(text);
   if (!time) return time.error();
@@ -82,8 +95,14 @@ ValueKind<double> length_with_unit(Range metres) {
       [](std::string_view text) { return parse_length_with_unit(text); }, metres);
 }
 ValueKind<double> angle(Range degrees) {
-  return quantity({"angle", "an angle", "ANGLE", " degrees", kRadiansPerDegree}, parse_angle,
-                  degrees);
+  auto kind =
+      quantity({"angle", "an angle", "ANGLE", " degrees", kRadiansPerDegree}, parse_angle, degrees);
+  kind.read = [read = kind.read](const std::string& text) -> Result<double> {
+    if (!looks_like_radians(text)) return read(text);
+    return Error("quantity-no-unit", fmt::format("'{}' has no unit", text),
+                 fmt::format("write {0}rad, or {0}deg if degrees are meant", text));
+  };
+  return kind;
 }
 ValueKind<double> seconds(Range seconds) {
   return quantity({"duration", "a time", "TIME", " s"}, parse_seconds, seconds);
@@ -108,7 +127,7 @@ ValueKind<double> number(Range range, const std::string& unit) {
     const bool per_hour = unit == "m/s" && digits.ends_with(kPerHour);
     if (per_hour) digits.remove_suffix(kPerHour.size());
     if (!per_hour && !unit.empty() && digits.ends_with(unit)) digits.remove_suffix(unit.size());
-    auto value = parse_finite(digits);
+    auto value = parse_finite(trimmed(digits));
     if (value && per_hour) *value /= 3.6;
     if (unit.empty() && text.ends_with('%')) {
       value = parse_finite(digits.substr(0, digits.size() - 1));
@@ -128,7 +147,13 @@ ValueKind<double> rate() {
     for (const std::string_view unit : {"fps", "Hz"}) {
       if (digits.ends_with(unit)) digits.remove_suffix(unit.size());
     }
-    const auto value = parse_finite(digits);
+    // "30000/1001", as of video.
+    const std::size_t slash = digits.find('/');
+    auto value = parse_finite(trimmed(digits.substr(0, slash)));
+    if (slash != std::string_view::npos) {
+      const auto divisor = parse_finite(digits.substr(slash + 1));
+      value = value && divisor ? std::optional(*value / *divisor) : std::nullopt;
+    }
     if (value && *value >= 1e-3 && *value <= 1e6) return *value;
     return usage(fmt::format("'{}' is not a frame rate from 0.001 to 1000000", shown(text)));
   };
@@ -152,8 +177,15 @@ ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kin
     bool more = true;
     for (std::size_t i = 0; i < kinds.size() && more; ++i) {
       const std::size_t end = rest.find(between);
-      const auto value = kinds[i].read(std::string(trimmed(rest.substr(0, end))));
-      if (!value) return value.error();
+      const std::string word(trimmed(rest.substr(0, end)));
+      const auto value = kinds[i].read(word);
+      if (!value) {
+        Error error = value.error();
+        const bool in_another_place =
+            std::ranges::any_of(kinds, [&](const auto& kind) { return kind.read(word).ok(); });
+        if (in_another_place) error.hint.clear();  // what the option takes is shown
+        return error;
+      }
       values.push_back(*value);
       more = end != std::string_view::npos;
       if (more) rest.remove_prefix(end + 1);
@@ -176,6 +208,25 @@ std::string written(const ClipTime& time) {
   return readable(time.value) + (time.in_frames ? "f" : "s");
 }
 
+namespace {
+
+// Hint which tool writes files with this ending, of no kind of formats/registry.
+std::string maker_of(const std::string& ending) {
+  static constexpr std::pair<std::string_view, const char*> kMakers[] = {
+      {".png .jpg .gif .mp4 .webp .webm .avi .mov",
+       "krok-render makes films and images, krok-plot --sheet OUT.png sheets"},
+      {".html .htm", "krok-view makes pages, krok-walk with --save-page"},
+      {".obj .pc2", "krok-skin writes meshes as .obj and .pc2"}};
+  for (const auto& [endings, maker] : kMakers) {
+    if ((" " + std::string(endings) + " ").find(" " + ending + " ") != std::string::npos) {
+      return maker;
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 ValueKind<std::string> output(const std::vector<std::string>& endings) {
   const auto read = [endings](const std::string& text) -> Result<std::string> {
     const std::string ending = extension(text);
@@ -186,13 +237,10 @@ ValueKind<std::string> output(const std::vector<std::string>& endings) {
       return usage(fmt::format("the output is a folder, not {}", shown(text)),
                    "give the name of a folder, without an extension");
     }
-    constexpr std::string_view kPictures = " .png .jpg .gif .mp4 .webp .webm .avi .mov ";
-    const bool picture = kPictures.find(" " + ascii_lower(ending) + " ") != std::string_view::npos;
+    const std::string maker = maker_of(ending);
     return usage(fmt::format("the output is a {} file, not {}", either_of(endings), shown(text)),
-                 fmt::format("use the extension {}{}", either_of(endings),
-                             picture ? "; krok-render makes films and images, krok-plot --sheet "
-                                       "OUT.png sheets"
-                                     : ""));
+                 fmt::format("use the extension {}{}{}", either_of(endings),
+                             maker.empty() ? "" : "; ", maker));
   };
   return {"output", "OUT", read, {}};
 }
@@ -242,9 +290,10 @@ std::string maker_of(Kind kind, Kind from) {
     case Kind::anim:
       return "krok-import converts captures to .anim files";
     default:
-      return registry::is_read_through_assimp(kind)
-                 ? "that is only read; krok-export writes .glb and .bvh for other programs"
-                 : "";
+      return !registry::is_read_through_assimp(kind) ? ""
+             : from == Kind::cam
+                 ? "that is only read; krok-cam writes .glb, too, for other programs"
+                 : "that is only read; krok-export writes .glb and .bvh for other programs";
   }
 }
 
@@ -262,7 +311,8 @@ ValueKind<std::string> output_of(Kind written) {
     // Devices and names without an extension are taken as they are.
     if (named == written || (named == Kind::unknown && extension(path).empty())) return path;
     const std::string_view own = registry::kind_name(written);
-    const std::string maker = named == Kind::unknown ? std::string() : maker_of(named, written);
+    const std::string maker =
+        named == Kind::unknown ? maker_of(extension(path)) : maker_of(named, written);
     return usage(fmt::format("the output is a .{} file, not {}", own, shown(path)),
                  fmt::format("use the extension .{}{}{}", own, maker.empty() ? "" : "; ", maker));
   };

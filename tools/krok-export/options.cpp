@@ -40,6 +40,11 @@ ValueKind<What> series_kind() {
     Error error = std::move(read).error();
     if (text == "speed" || text == "gait")
       error.hint = "krok-keys --table OUT.csv has speed and gait";
+    if (text == "rotations" || text == "euler") {
+      error.hint =
+          "quaternions has rotations in the world, local relative to the parent, angles those of "
+          "hips, knees and others in degrees; -o OUT.bvh has Euler angles of all joints";
+    }
     if (text == "events") error.hint = "krok-keys -o NAME.keys.json has gait events";
     return error;
   };

@@ -29,7 +29,9 @@ Result<PointGoal> parse_point(const std::string& option, krok::ik::Goal::Kind ki
                               const std::string& text) {
   const auto wrong = [&](const std::string& why) {
     return usage(fmt::format("'{}': {}", shown(text), why),
-                 "write RightHand=0.4m,1.2m,0.3m@2s or RightHand=0.4m,1.2m,0.3m@2s..3s");
+                 kind == krok::ik::Goal::Kind::look_at
+                     ? "write head=0m,1.5m,4m@1s..3s, or eyes=... for the eyes"
+                     : "write RightHand=0.4m,1.2m,0.3m@2s or RightHand=0.4m,1.2m,0.3m@2s..3s");
   };
   PointGoal goal;
   goal.option = option;

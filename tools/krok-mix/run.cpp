@@ -317,6 +317,14 @@ Result<int> run(const Options& options, ToolContext& context) {
     return status.error();
   }
   report(timeline, *mixed, context);
+  constexpr double kNothing = 0.01;  // seconds
+  for (const ItemFacts& item : mixed->items) {
+    if (item.skipped < kNothing) continue;
+    context.log(fmt::format(
+        "{}: its first {} s are left out, so that its steps meet those before (\"sync\": "
+        "\"clock\" plays them)",
+        item.name, readable(item.skipped, 3)));
+  }
   if (!gaze->empty()) context.report.result["gaze"] = gaze_report(*gaze);
   if (!face.values.empty()) {
     context.report.result["face"] = face.names;

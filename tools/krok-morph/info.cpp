@@ -5,6 +5,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/morph_exr/morph_exr.h"
+#include "formats/registry/registry.h"
 #include "tools/krok-morph/motion_file.h"
 #include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
@@ -17,7 +18,16 @@ Result<TargetFile> read_targets(const std::string& path, ToolContext& context) {
   auto file = context.open_input(path);
   if (!file) return file.error();
   auto morphs = morph_exr::read(file->bytes());
-  if (!morphs) return std::move(morphs).error().in_file(path);
+  if (!morphs) {
+    Error error = std::move(morphs).error();
+    if (extension(path) != ".exr" && error.code == "exr-header") {
+      error.message = fmt::format("is {}, not an .exr of morph targets",
+                                  registry::describe_content(file->bytes()));
+      error.hint =
+          "krok-morph pack BASE TARGET... -o face.exr writes one; krok-info describes meshes";
+    }
+    return std::move(error).in_file(path);
+  }
   return TargetFile{*std::move(file), *std::move(morphs)};
 }
 

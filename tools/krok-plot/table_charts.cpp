@@ -19,6 +19,7 @@ using csv::ColumnName;
 using csv::Table;
 
 constexpr std::size_t kMaxLines = 60;  // per panel: more cannot be distinguished
+constexpr std::size_t kMaxNames = 30;  // in a hint
 
 // The columns of a table to draw.
 struct Choice {
@@ -134,8 +135,21 @@ Result<std::vector<std::size_t>> chosen_rows(const Table& table, const TableOpti
   for (std::size_t row = 0; row < chosen.size(); ++row) {
     if (chosen[row] != 0) rows.push_back(row);
   }
-  if (rows.empty()) return Error("plot-where", "no row of the table matches --where");
-  return rows;
+  if (!rows.empty()) return rows;
+  Error error("plot-where", "no row of the table matches --where");
+  for (const auto& [column, values] : wanted) {
+    const auto cells = table.texts(column);
+    const std::set<std::string> known(cells.begin(), cells.end());
+    const std::vector<std::string> names(known.begin(), known.end());
+    for (const std::string& value : values) {
+      if (known.contains(value)) continue;
+      error.message +=
+          fmt::format(": no {} is '{}'", shown(table.columns()[column].header), shown(value));
+      if (names.size() <= kMaxNames) error.hint = nearest_hint(value, names);
+      return error;
+    }
+  }
+  return error;
 }
 
 // The rows of one line: those with the same value in the column `by`, in order of appearance.

@@ -93,8 +93,10 @@ double usual_rate(const MovingActor& actor, Format format) {
 
 Result<std::vector<MovingActor>> read_all(const Options& options, ToolContext& context) {
   std::vector<std::string> paths = options.inputs;
-  if (!options.model.empty()) paths.insert(paths.begin(), options.model);
-  auto actors = read_actors(paths, options.actors, context);
+  ActorOptions how = options.actors;
+  how.first_is_model = !options.model.empty();
+  if (how.first_is_model) paths.insert(paths.begin(), options.model);
+  auto actors = read_actors(paths, how, context);
   if (!actors) return actors;
   if (!options.model.empty() && actors->size() != options.inputs.size()) {
     return Error("film-model",

@@ -273,7 +273,14 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
         kOrder);
   }
   const auto source_roles = roles_of(source.skeleton, options.map, context);
-  if (!source_roles) return source_roles.error();
+  if (!source_roles) {
+    Error error = source_roles.error();
+    if (error.code == "role-map-joint" && options.onto_map.empty() &&
+        roles_of(target->clip.skeleton, options.map, context)) {
+      error.hint = "it names joints of the target: --onto-map is for those, --map for the input's";
+    }
+    return error;
+  }
   const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
   if (!target_roles) return target_roles.error();
   if (!options.ground.empty()) how.feet = krok::retarget::Feet::free;

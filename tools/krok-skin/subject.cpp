@@ -60,7 +60,7 @@ class Loader {
     const io::Format& format = io::format_of(*file);
     if (format.read_actor == nullptr && format.read_scene == nullptr) {
       Error error = model::read(file->bytes()).error();
-      if (!options_.motions.empty()) {
+      if (!options_.motions.empty() && format.reads_motion()) {
         error.hint = "the mesh comes first, then motions; krok-body makes a mesh for a motion";
       }
       return std::move(error).in_file(options_.subject);
@@ -278,7 +278,13 @@ class Loader {
     const auto file = context_.open_input(path);
     if (!file) return file.error();
     auto correctives = correctives_file::read(file->text());
-    if (!correctives) return std::move(correctives.error()).in_file(path);
+    if (!correctives) {
+      Error error = std::move(correctives).error();
+      if (error.code == "json-syntax" && error.hint.empty()) {
+        error.hint = "krok-fit writes .correctives; morph targets (.exr) are given with --morph";
+      }
+      return std::move(error).in_file(path);
+    }
     if (correctives->vertex_count != subject_.model.vertex_count()) {
       return Error("skin-correctives",
                    fmt::format("they are for a mesh with {}, but the model has {}",

@@ -312,8 +312,11 @@ int warn_of_misses(const parametric::Library& library,
   return misses;
 }
 
-void report(const std::vector<NamedParameter>& parameters, const std::vector<Motion>& motions,
-            ToolContext& context) {
+// Returns a line for each motion.
+std::vector<std::string> report(const std::vector<NamedParameter>& parameters,
+                                const std::vector<Motion>& motions, bool in_one,
+                                ToolContext& context) {
+  std::vector<std::string> lines;
   Json list = Json::array();
   for (const Motion& motion : motions) {
     Json entry, asked, measured;
@@ -325,7 +328,7 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
       line += fmt::format(", {} {}", parameters[d].name,
                           with_unit(motion.measured[d], parameters[d].unit));
     }
-    entry["output"] = motion.path;
+    entry["output"] = in_one ? context.output : motion.path;
     entry["asked"] = std::move(asked);
     entry["measured"] = std::move(measured);
     entry["error_in_tolerances"] = motion.error;
@@ -339,9 +342,10 @@ void report(const std::vector<NamedParameter>& parameters, const std::vector<Mot
     entry["duration"] = motion.made.clip.duration();
     entry["frames"] = motion.made.clip.frame_count();
     list.push_back(std::move(entry));
-    context.log(line);
+    lines.push_back(std::move(line));
   }
   context.report.result["motions"] = std::move(list);
+  return lines;
 }
 
 }  // namespace
@@ -362,7 +366,10 @@ Result<int> run(const Options& options, ToolContext& context) {
     const auto points = read_points(options.table, parameters, context);
     if (!points) return points.error();
     for (const auto& point : *points) {
-      const std::string path = numbered(context.output, motions.size() + 1, points->size());
+      const std::size_t number = motions.size() + 1;
+      const std::string path = options.in_sequence
+                                   ? fmt::format("motion {}", number)
+                                   : numbered(context.output, number, points->size());
       motions.push_back({.path = path, .asked = point});
     }
   }
@@ -377,14 +384,18 @@ Result<int> run(const Options& options, ToolContext& context) {
     whole = *std::move(made);
   }
   const int misses = warn_of_misses(steps->library, parameters, motions, options, context);
-  report(parameters, motions, context);
+  auto lines = report(parameters, motions, options.in_sequence, context);
   if (whole) {
+    lines.push_back(fmt::format("{}: {}, {} s", context.output,
+                                counted(std::ssize(whole->starts), "motion"),
+                                readable(whole->clip.duration(), 4)));
     motions.resize(1);
     motions[0].path = context.output;
     motions[0].made.clip = std::move(whole->clip);
     motions[0].made.keys = std::move(whole->keys);
   }
   if (Status status = write_all(options, motions, context); !status) return status.error();
+  for (const std::string& line : lines) context.log(line);
   return options.strict && misses > 0 ? kExitNo : kExitDone;
 }
 

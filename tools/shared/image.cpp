@@ -57,8 +57,11 @@ Result<ImageMoment> parse_moment(std::string_view word, const ImageSpan& span) {
   if (span.rate > 0) {
     const double frame = std::round(time->in_frames ? time->value : time->value * span.rate);
     if (!(frame >= span.first && frame <= span.last)) {
-      return Error("usage", fmt::format("--moments {}: not in the shown frames {} to {}", word,
-                                        span.first, span.last));
+      return usage(
+          fmt::format("--moments {}: not in the shown frames {} to {}, {} to {} s", written(*time),
+                      span.first, span.last, readable(span.first / span.rate, 4),
+                      readable(span.last / span.rate, 4)),
+          frame_hint(*time, span.last + 1));
     }
     return ImageMoment{frame / span.rate, static_cast<int>(frame)};
   }

@@ -67,6 +67,11 @@ Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& 
   const auto input = context.open_input(path);
   if (!input) return input.error();
   auto sidecar = krok::keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
+  if (!sidecar && sidecar.error().code == "json-syntax" && sidecar.error().hint.empty()) {
+    Error error = std::move(sidecar).error();
+    error.hint = "krok-keys writes the contacts of a motion, NAME.keys.json beside NAME.anim";
+    return error;
+  }
   if (!sidecar) return sidecar;
   if (std::string sign = sign_of_another_motion(*sidecar, clip); !sign.empty()) {
     context.diagnose_in(path, {make_warning("keys-stale", std::move(sign),

@@ -235,11 +235,13 @@ Status add_file(const std::string& path, std::size_t place, const ActorOptions& 
   auto input = context.open_input(path);
   if (!input) return input.error();
   const Kind kind = registry::identify(input->path(), input->bytes());
-  if (kind == Kind::glb || kind == Kind::gltf) {
+  const bool as_model = options.first_is_model && place == 0;
+  if ((kind == Kind::glb || kind == Kind::gltf) && !as_model) {
     return read_gltf(*input, place, options, context, read);
   }
-  auto actor = io::open_actor(*input, context,
-                              {.clip = options.clip, .with_mesh = !bones, .with_camera = true});
+  auto actor = io::open_actor(
+      *input, context,
+      {.clip = options.clip, .with_mesh = !bones, .with_motions = !as_model, .with_camera = true});
   if (!actor) return std::move(actor).error().in_file(path);
   if (actor->skeleton().empty()) {
     return Error("figure-input", "a camera has no actor",

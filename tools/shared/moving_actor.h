@@ -38,7 +38,8 @@ struct ActorOptions {
   SkinMethod method = SkinMethod::linear;  // of motions; glTF files are skinned as in viewers
   std::string
       clip;  // of glTF files with animations: a name or an index; empty: see best_animation()
-  bool every_clip = false;  // without `clip`: an actor for each animation of a glTF file
+  bool every_clip = false;      // without `clip`: an actor for each animation of a glTF file
+  bool first_is_model = false;  // of a glTF or other scene, too, for the motions after it
 };
 
 // The part of an actor's motion between the times of --from and --to, or its ends. Code usage.

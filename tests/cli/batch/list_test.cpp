@@ -103,6 +103,25 @@ TEST_F(BatchList, WhatAFolderLeavesOutIsNamedAndCounted) {
   EXPECT_THAT(import({"takes", "--out-dir", "out"}).err, Not(HasSubstr("left out")));
 }
 
+// A take and the motion made of it would be two clips, or two examples of one walk.
+TEST_F(BatchList, ACaptureBesideItsMotionCountsOnce) {
+  for (const char* name : {"takes/x.bvh", "takes/y.bvh", "takes/sub/z.bvh"}) put_capture(name);
+  for (const char* name : {"takes/x", "takes/sub/z"}) {
+    ASSERT_EQ(import({std::string(name) + ".bvh", "-o", std::string(name) + ".anim"}).exit_code, 0);
+  }
+  const ToolRun table = run_here("krok-keys", {"takes", "--table", "gait.csv"});
+  EXPECT_THAT(table.err, HasSubstr("takes: warning: 2 captures left out"));
+  EXPECT_THAT(get(path("gait.csv")), AllOf(HasSubstr("x.anim"), HasSubstr("y.bvh")));
+  EXPECT_THAT(get(path("gait.csv")), Not(HasSubstr("x.bvh")));
+  const ToolRun edit = run_here("krok-edit", {"takes", "--mirror", "--out-dir", "out"});
+  EXPECT_EQ(edit.exit_code, 0) << edit.err;
+  EXPECT_EQ(files_below("out"), (Names{"sub/z.anim", "x.anim", "y.anim"}));
+  // Both, where they are named; then no base keeps their outputs apart.
+  EXPECT_THAT(
+      run_here("krok-edit", {"takes/x.bvh", "takes/x.anim", "--mirror", "--out-dir", "o"}).err,
+      AllOf(HasSubstr("would both be written to"), HasSubstr("files of one kind")));
+}
+
 TEST_F(BatchList, AFileGivenTwiceIsDoneOnce) {
   put_capture("takes/x.bvh");
   const ToolRun run =

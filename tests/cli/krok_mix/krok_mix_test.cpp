@@ -118,11 +118,25 @@ TEST_F(KrokMix, MistakesAreToldByLineAndColumnAndLeaveNothing) {
     EXPECT_TRUE(has_code(run.err, mistake.code)) << run.err;
     EXPECT_THAT(listing(), UnorderedElementsAre("in")) << mistake.base;
   }
+  const ToolRun longer =
+      mix(timeline("{\"source\": \"walk\"},\n{\"source\": \"quick\", \"change\": {\"kind\": "
+                   "\"crossfade\", \"duration\": \"40s\"}}"));
+  EXPECT_THAT(longer.err, AllOf(HasSubstr("t.json:5:1: error: quick: the crossfade takes 40 s, but "
+                                          "walk plays for"),
+                                HasSubstr("loop the item before it")));
   const ToolRun mask = mix(timeline("{\"source\": \"walk\"}",
                                     ",\n\"layers\": [{\"mask\": [{\"below\": \"Tail\"}], "
                                     "\"items\": []}]"));
   EXPECT_THAT(mask.err, HasSubstr("t.json:5:22: error: no joint is called 'Tail'"));
   EXPECT_EQ(mask.exit_code, 2);
+}
+
+// Would fail if the beginning of a motion were left out without a word.
+TEST_F(KrokMix, WhatTimeAlignmentLeavesOutIsPrinted) {
+  const ToolRun run = mix(timeline(kFade));
+  const double skipped = result_of(timeline(kFade))["items"][1]["skipped"].get<double>();
+  ASSERT_GT(skipped, 0.01);
+  EXPECT_THAT(run.err, AllOf(HasSubstr("quick: its first "), HasSubstr(" s are left out")));
 }
 
 // Would fail if a file of another kind were answered with the first of its keys.

@@ -284,7 +284,7 @@ TEST_F(KrokPlot, SaysWhatIsWrongWithATable) {
   expect_trouble({words, "--y", "v"}, "csv-number",
                  "words.csv:3:3: error: 'fast' in the column 'v'");
   expect_trouble({words, "--y", "w"}, "csv-column", "columns are t, v");
-  expect_trouble({words, "--y", "t", "--where", "v=slow"}, "plot-where", "no row");
+  expect_trouble({words, "--y", "t", "--where", "v=slow"}, "plot-where", "no v is 'slow'");
   expect_trouble({words, "--where", "v"}, "usage", "joint=Hips");
   expect_trouble({put("empty.csv", "")}, "csv-empty", "empty.csv");
   expect_trouble({words, "--joint", "Hips"}, "usage", "--joint is for motions");

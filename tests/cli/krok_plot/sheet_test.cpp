@@ -129,6 +129,10 @@ TEST_F(KrokPlotSheet, ShowsTheMomentsThatAreNamed) {
                 .exit_code,
             0);
   EXPECT_THAT(frames_shown(), ElementsAre(60, 90, 120));
+  // Frames are meant: the message has both units, or 30 seems to be among 0 to 200.
+  EXPECT_THAT(plot({kWalk, "--sheet", path("s.png"), "--moments", "0,30"}).err,
+              AllOf(HasSubstr("--moments 30s: not in the shown frames 0 to "), HasSubstr(" s ["),
+                    HasSubstr("30f is frame 30")));
 }
 
 TEST_F(KrokPlotSheet, PutsFilesOnOneSheetAtOneScale) {

@@ -154,6 +154,20 @@ TEST_F(KrokRender, WithoutFfmpegItSaysSoBeforeRendering) {
   EXPECT_FALSE(std::filesystem::exists(path("w.mp4")));
 }
 
+// Would fail if a glTF character could not be the model, and each hint led to the next.
+TEST_F(KrokRender, AGlbIsAModelToo) {
+  ASSERT_EQ(run_here("krok-body", {"walk.anim", "--detail", "low", "-o", "b.model"}).exit_code, 0);
+  ASSERT_EQ(run_here("krok-skin", {"b.model", "walk.anim", "-o", "hero.glb"}).exit_code, 0);
+  const auto film_with = [&](const std::string& model, const std::string& name) {
+    const ToolRun run = film({"walk.anim", "--model", model, "--size", "96x64", "-o", name});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return image(name);
+  };
+  const auto by_model = film_with("b.model", "a.png"), by_glb = film_with("hero.glb", "b.png");
+  EXPECT_GT(coloured(by_glb), 60);
+  EXPECT_NEAR(coloured(by_glb), coloured(by_model), 20) << "one body, in the same pose";
+}
+
 TEST_F(KrokRender, OutputsThatAreNoFilmAreRefused) {
   for (const char* output :
        {"walk.txt", "walk.svg", "walk", "a_%d_%d.png", "a_%s.png", "a_%.png"}) {

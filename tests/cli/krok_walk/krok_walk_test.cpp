@@ -1,6 +1,7 @@
 // If these fail, krok-walk walks elsewhere than asked, on other ground, hides what it could not do,
 // or ends wrongly on wrong input.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -171,6 +172,28 @@ TEST_F(KrokWalk, RefusesOrAdaptsWhatIsTooFar) {
   EXPECT_GT(adapted["steps"][1]["moved"], 1);
   EXPECT_THAT(adapted["steps"][1]["why_moved"].get<std::string>(), HasSubstr("print 4"));
   EXPECT_LT(prints("near.csv")[3].z, 2);
+}
+
+// Would fail if it were not said that the ground is too small.
+TEST_F(KrokWalk, SaysWhereTheGroundEnds) {
+  write("floor.obj", "v -1 0 -1\nv -1 0 3\nv 1 0 3\nv 1 0 -1\nf 1 2 3 4\n");
+  refused({"--goal", "0,8m", "--ground", path("floor.obj")}, "plan-ground", "the ground ends");
+}
+
+// Would fail if legs were stretched to prints that no example comes near to, without a word.
+TEST_F(KrokWalk, StepsLongerThanTheLibrarysAreWarnedOf) {
+  const auto prints_apart = [&](double length) {
+    std::string text = "side,x,z,heading\n";
+    for (int i = 0; i < 8; ++i) {
+      text += fmt::format("{},{},{},0\n", i % 2 == 0 ? "left" : "right", i % 2 == 0 ? 0.1 : -0.1,
+                          i == 0 ? 0 : length * (i - 1));
+    }
+    write("apart.csv", text);
+    return walk({"--prints", path("apart.csv")}).err;
+  };
+  EXPECT_THAT(prints_apart(0.65), Not(HasSubstr("walk-beyond")));
+  EXPECT_THAT(prints_apart(0.85), AllOf(HasSubstr("4 of 6 steps are longer or wider"),
+                                        HasSubstr("0.85 m long"), HasSubstr("[walk-beyond]")));
 }
 
 // Would fail if ground that ankles cannot stand on were walked without a word.

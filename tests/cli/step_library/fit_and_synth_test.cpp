@@ -92,6 +92,20 @@ TEST_F(StepLibrary, WhatIsAskedWronglyIsToldWithWhatTheLibraryTakes) {
 }
 
 // Would fail if a parameter that nobody gave had another value than the one that is printed.
+// Would fail if a file were printed as made that could not be written.
+TEST_F(StepLibrary, AFileThatIsNotWrittenIsNotPrinted) {
+  fit_well();
+  write("points.csv", "length,height\n0.55,0.02\n0.6,0.02\n");
+  const ToolRun all = synth({"--points", path("points.csv"), "--in-sequence"});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_THAT(all.err, testing::Not(testing::HasSubstr("step_1.anim")));
+  EXPECT_THAT(all.err, testing::HasSubstr("step.anim: 2 motions, "));
+  const ToolRun run = synth({"-o", path("none/step.anim")});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, testing::Not(testing::HasSubstr("step.anim: 0.")));
+  EXPECT_THAT(run.err, testing::HasSubstr("error: "));
+}
+
 TEST_F(StepLibrary, ParametersThatAreNotGivenAreTheMean) {
   fit_well();
   const ToolRun run = synth({"--set", "height=0", "-o", path("mean.anim")});

@@ -77,9 +77,26 @@ TEST(SpeedOption, IsInMetresPerSecondOrKilometresPerHour) {
   const ValueKind<double> speed = number({0.1, 12}, "m/s");
   EXPECT_DOUBLE_EQ(speed.read("3m/s").value(), 3);
   EXPECT_DOUBLE_EQ(speed.read("5.4km/h").value(), 1.5);
+  EXPECT_DOUBLE_EQ(speed.read("5.4 km/h").value(), 1.5);
   EXPECT_DOUBLE_EQ(speed.read("1.4").value(), 1.4);
   EXPECT_FALSE(speed.read("50km/h"));
   EXPECT_FALSE(number({0, 9}, "mm").read("5km/h"));
+}
+
+// Would fail if a quarter turn in radians turned by 1.57 degrees without a word.
+TEST_F(OptionKinds, AnglesThatLookLikeRadiansNeedAUnit) {
+  for (const char* turn : {"1.57", "-1.5707", "3.14", "3.1416", "0.785", "0.52", "6.28"}) {
+    EXPECT_EQ(parse({"--turn", turn}), std::string("--turn: '") + turn + "' has no unit");
+  }
+  for (const char* turn : {"1.57rad", "1.57deg", "2.25", "1.5", "45", "0", "0.01", "31.42"}) {
+    EXPECT_EQ(parse({"--turn", turn}), "") << turn;
+  }
+}
+
+TEST(RateOption, IsANumberOrAFraction) {
+  EXPECT_DOUBLE_EQ(rate().read("30000/1001").value(), 30000.0 / 1001);
+  EXPECT_DOUBLE_EQ(rate().read("24 fps").value(), 24);
+  for (const char* text : {"30/0", "/30", "30/", "30/1/1"}) EXPECT_FALSE(rate().read(text)) << text;
 }
 
 TEST_F(OptionKinds, MistakesNameOptionValueAndRange) {

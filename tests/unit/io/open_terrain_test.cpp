@@ -42,6 +42,22 @@ TEST_F(OpenTerrain, TakesHeightFieldsWithTheirSidecar) {
   EXPECT_EQ(wrong.error().where.line, 1);
 }
 
+// Would fail if slopes were stairs of centimetres without a word.
+TEST_F(OpenTerrain, AnImageOfFewLevelsIsWarnedOf) {
+  const std::string fine = put("fine.png", test::png_image(2, 2, 0, {0, 9, 0, 9}));
+  const std::string coarse = put("coarse.png", test::png_image(2, 2, 0, {0, 9, 0, 9}, 0, 0, 8));
+  height_field::Placement placement{{{4, 4}}, {{0, 0.5}}, {}};
+  EXPECT_EQ(code(fine, placement), "none");
+  EXPECT_EQ(code(coarse, placement), "none");
+  EXPECT_TRUE(inputs_.diagnostics.empty()) << "steps of 2 mm";
+  placement.range = {0, 5.1};
+  EXPECT_EQ(code(fine, placement), "none");
+  EXPECT_EQ(code(coarse, placement), "none");
+  ASSERT_EQ(inputs_.diagnostics.size(), 1U);
+  EXPECT_EQ(inputs_.diagnostics[0].code, "ground-levels");
+  EXPECT_NE(inputs_.diagnostics[0].message.find("steps of 20 mm"), std::string::npos);
+}
+
 // Would fail if a mesh lost its node's place, or a mirrored node its ground.
 TEST_F(OpenTerrain, TakesMeshesAtTheirNodes) {
   test::GlbBuilder builder = test::square();

@@ -125,6 +125,9 @@ TEST(Registry, ForeignFilesAreDescribed) {
   EXPECT_EQ(describe_content(bytes_of("<?xml version")), "an XML text file");
   EXPECT_EQ(describe_content(bytes_of(std::string_view("POINTCACHE2", 12))),
             "a point cache (.pc2)");
+  EXPECT_EQ(describe_content(bytes_of("# by hand\nmtllib a.mtl\nv 0 0 0\n")),
+            "an OBJ mesh (without joints)");
+  EXPECT_EQ(describe_content(bytes_of("\x02P\x01")), "a C3D file (markers, no skeleton)");
   EXPECT_EQ(describe_content(bytes_of("hello\n")), "a text file of unknown kind");
   EXPECT_EQ(describe_content(bytes_of("\x01\x02")), "a binary file of unknown kind");
 }

@@ -45,6 +45,8 @@ const Fault kFaults[] = {
      "did you mean \"LeftHand\"?"},
     {"far_joint", "{\"joints\": {\n  \"Propeller\": \"left_hand\"}}", "role-map-joint", 2, 3,
      "krok-info -v"},
+    {"swapped", "{\"joints\": {\n  \"left_hand\": \"LeftHand\"}}", "role-map-joint", 2, 3,
+     "the joint comes first: \"LeftHand\": \"left_hand\""},
     {"unknown_role", "{\"joints\": {\n  \"LeftHand\": \"left_hnd\"}}", "role-map-role", 2, 15,
      "did you mean \"left_hand\"?"},
     {"unknown_finger", "{\"joints\": {\n  \"LeftHand\": \"left_index_7\"}}", "role-map-role", 2, 15,

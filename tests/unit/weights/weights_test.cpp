@@ -107,6 +107,8 @@ TEST(Weights, OddTablesAreRead) {
   // Times that are uneven, or do not begin at 0, tell no rate.
   EXPECT_FALSE(read("time,smile\n1,0\n2,0\n", "w.csv", kTargets)->rate.has_value());
   EXPECT_EQ(read("time,smile\n0,0\n0.0333333,0\n0.0666667,0\n", "w.csv", kTargets)->rate, 30);
+  // Rows of keys by hand are no frames: a film of two frames is hardly ever meant.
+  EXPECT_FALSE(read("time,smile\n0,0\n1,1\n", "w.csv", kTargets)->rate.has_value());
   // A rate that is no whole number stays what it is.
   EXPECT_NEAR(*read("time,smile\n0,0\n0.03336667,0\n0.06673333,0\n", "w.csv", kTargets)->rate,
               29.97, 1e-3);
