@@ -361,10 +361,12 @@ Status Planner::make_weights(PlannedStep& step) const {
 // Steps that are longer or wider than any of their library's; the first and the last one are
 // blended with standing.
 void Planner::warn_of_steps_beyond() {
-  std::vector<Eigen::AlignedBox2d> known(libraries_.size());  // along and across
+  // Along the way that the body faces and across it.
+  std::vector<Eigen::AlignedBox2d> known(libraries_.size());
   for (std::size_t i = 0; i < known.size(); ++i) {
+    const Eigen::Rotation2Dd from_toes(-libraries_[i].toe_out());
     for (const FoundStep& step : libraries_[i].found_steps()) {
-      known[i].extend(Vec2(step.along, step.across));
+      known[i].extend(from_toes * Vec2(step.along, step.across));
     }
   }
   int count = 0;
@@ -374,8 +376,7 @@ void Planner::warn_of_steps_beyond() {
     const PlannedStep& step = walk_.steps[i];
     const auto stance = static_cast<std::size_t>(step.stance);
     const auto library = static_cast<std::size_t>(step.library);
-    const StepShape shape =
-        shape_of(walk_.grounded[stance], walk_.grounded[stance + 1], libraries_[library].toe_out());
+    const StepShape shape = shape_of(walk_.grounded[stance], walk_.grounded[stance + 1], 0);
     const Vec2 largest = known[library].max();
     const double beyond = (Vec2(shape.along, shape.across) - largest).maxCoeff();
     if (!(beyond > kBeyond)) continue;

@@ -225,7 +225,8 @@ TEST_F(Mistakes, WrongFilesAndForeignWordsLeadOn) {
     std::string text;
   };
   const Row rows[] = {
-      {"krok-export", {"a.model", "-o", "x.bvh"}, "krok-skin writes a mesh"},
+      {"krok-export", {"a.model", "-o", "x"}, "it has no motion"},
+      {"krok-export", {"in.bvh", "-o", "x"}, "x has no extension"},
       {"krok-cam", {"in.bvh", "--still", "-o", "c.fbx"}, "krok-cam writes .glb, too"},
       {"krok-export", {"in.bvh", "--what", "rotations", "-o", "a.csv"}, "quaternions has"},
       {"krok-render", {"in.bvh", "--codec", "h265", "-o", "a.mp4"}, "ffmpeg recodes"},

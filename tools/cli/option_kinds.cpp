@@ -182,6 +182,7 @@ ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kin
       if (!value) {
         Error error = value.error();
         const bool in_another_place =
+            error.code == "quantity-unit" &&
             std::ranges::any_of(kinds, [&](const auto& kind) { return kind.read(word).ok(); });
         if (in_another_place) error.hint.clear();  // what the option takes is shown
         return error;

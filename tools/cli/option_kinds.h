@@ -30,7 +30,7 @@ inline constexpr Range kPositive = {.low = 0, .above = true};
 // range.
 ValueKind<double> length(Range metres = {});
 ValueKind<double> length_with_unit(Range metres = {});
-ValueKind<double> angle(Range degrees = {});               // radians
+ValueKind<double> angle(Range degrees = {});  // radians; what looks like those needs a unit
 ValueKind<double> seconds(Range seconds = kNotNegative);   // not in frames
 ValueKind<ClipTime> clip_time(Range time = kNotNegative);  // seconds or frames
 ValueKind<double> frequency(Range hertz = kPositive);

@@ -400,7 +400,11 @@ std::string words_for(const Reduction& reduction) {
 
 Result<int> run(const Options& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
-  if (!format) return format.error();
+  if (!format) {
+    // A file without a motion is the larger mistake.
+    const auto motion = io::open_motion(options.input, context);
+    return motion ? format.error() : motion.error();
+  }
   if (Status status = check_for(*format, options); !status) return status.error();
   const bool is_glb = *format == ExportFormat::glb;
   std::optional<Reduction> reduction;

@@ -117,6 +117,7 @@ struct Read {
   struct One {
     Actor actor;
     std::vector<Place> places;
+    bool one_grey_is_none = false;  // of its materials, as of glTF files
   };
   std::vector<One> motions, models;
   std::multimap<std::size_t, MovingActor> actors;  // keyed by input index
@@ -137,9 +138,9 @@ void Read::draw(One one, SkinMethod method, bool bones) {
   if (one.places.empty()) return;
   const auto actor = std::make_shared<const Actor>(std::move(one.actor));
   const bool painted = !actor->materials.empty() || !actor->model.colours.empty();
-  const auto scene =
-      std::make_shared<const DrawnScene>(scene_of(actor, {.method = method, .by_part = painted}),
-                                         images, DrawnSceneOptions{.bones = bones});
+  const auto scene = std::make_shared<const DrawnScene>(
+      scene_of(actor, {.method = method, .by_part = painted}), images,
+      DrawnSceneOptions{.bones = bones, .one_grey_is_none = one.one_grey_is_none});
   for (std::size_t i = 0; i < one.places.size(); ++i) {
     Drawn drawn{scene, actor->skeleton()};
     std::string facts = counted(actor->skeleton().joint_count(), "joint");
@@ -252,7 +253,7 @@ Status add_file(const std::string& path, std::size_t place, const ActorOptions& 
     decode_base_colours(actor->materials, path, context, read.images);
   }
   auto& list = actor->motions.empty() ? read.models : read.motions;
-  list.push_back({*std::move(actor), {{place, path}}});
+  list.push_back({*std::move(actor), {{place, path}}, io::is_scene(kind)});
   return {};
 }
 

@@ -185,15 +185,16 @@ TEST_F(KrokWalk, StepsLongerThanTheLibrarysAreWarnedOf) {
   const auto prints_apart = [&](double length) {
     std::string text = "side,x,z,heading\n";
     for (int i = 0; i < 8; ++i) {
-      text += fmt::format("{},{},{},0\n", i % 2 == 0 ? "left" : "right", i % 2 == 0 ? 0.1 : -0.1,
+      text += fmt::format("{},{},{},0\n", i % 2 == 0 ? "left" : "right", i % 2 == 0 ? 0.05 : -0.05,
                           i == 0 ? 0 : length * (i - 1));
     }
     write("apart.csv", text);
     return walk({"--prints", path("apart.csv")}).err;
   };
   EXPECT_THAT(prints_apart(0.65), Not(HasSubstr("walk-beyond")));
-  EXPECT_THAT(prints_apart(0.85), AllOf(HasSubstr("4 of 6 steps are longer or wider"),
-                                        HasSubstr("0.85 m long"), HasSubstr("[walk-beyond]")));
+  EXPECT_THAT(prints_apart(0.85),
+              AllOf(HasSubstr("4 of 6 steps are longer or wider"),
+                    HasSubstr("0.85 m long and 0.1 m"), HasSubstr("[walk-beyond]")));
 }
 
 // Would fail if ground that ankles cannot stand on were walked without a word.
