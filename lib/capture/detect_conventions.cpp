@@ -33,6 +33,7 @@ bool is_sensible(double metres) {
 void detect_unit_of_actor(const Stature& stature, bool cmu_names, Conventions& found) {
   const double height = stature.metres;
   constexpr double kUsualHeight = 1.72;
+  constexpr double kDoubtful = 0.26;  // proportions are no person's, so their lengths show no unit
   double best = INFINITY;
   double second = INFINITY;
   for (const UnitCandidate& candidate : kUnitCandidates) {
@@ -54,7 +55,7 @@ void detect_unit_of_actor(const Stature& stature, bool cmu_names, Conventions& f
   const bool usual = found.unit.name == "m" || found.unit.name == "cm" || found.unit.name == "mm";
   if (usual && metres >= 1.45 && metres <= 2.1 && margin > 0.3 + doubt) {
     found.unit_confidence = Confidence::certain;
-  } else if (metres >= 1.25 && metres <= 2.4 && margin > 0.3) {
+  } else if (metres >= 1.25 && metres <= 2.4 && margin > 0.3 && (usual || doubt < kDoubtful)) {
     found.unit_confidence = Confidence::likely;
   }
   if (!is_sensible(metres)) {

@@ -137,11 +137,14 @@ Json loop_json(const Looped& looped, const Edit& edit) {
 }
 
 std::string loop_text(const Looped& looped, const Edit& edit) {
+  const int last = looped.clip.frame_count() - 1;
+  const GroundFrame from = ground_frame(looped.clip, edit.carrier, 0);
+  const GroundFrame to = ground_frame(looped.clip, edit.carrier, last);
+  std::string line = fmt::format("looped: a cycle of {} ({}{}) moves by {} m",
+                                 counted(last, "frame"), seconds(looped.clip.duration()),
+                                 looped.added_frames > 0 ? ", closing frame added" : "",
+                                 readable(std::hypot(to.x - from.x, to.z - from.z), 3));
   const Vec3& way = looped.displacement.position;
-  std::string line = fmt::format(
-      "looped: a cycle of {} ({}{}) moves by {} m", counted(looped.clip.frame_count() - 1, "frame"),
-      seconds(looped.clip.duration()), looped.added_frames > 0 ? ", closing frame added" : "",
-      readable(Vec2(way.x(), way.z()).norm(), 3));
   if (way.y() != 0) line += fmt::format(", climbs {} m", readable(way.y(), 3));
   if (looped.turn != 0) line += fmt::format(", turns {}", in_degrees(looped.turn));
   if (looped.straightened != 0) {
@@ -363,6 +366,13 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
   // Up to kLoopDrift it is a capture's drift, which nobody wants back.
   if (std::abs(looped->straightened) > kLoopDrift) {
     edit.turn_rate = looped->straightened / looped->clip.duration();
+  }
+  if (looped->turn != 0 && (options.in_place || options.treadmill)) {
+    context.warn("edit-turn",
+                 fmt::format("the loop turns by {} in each cycle, which is not taken out: in place "
+                             "it jumps back at its end",
+                             in_degrees(looped->turn)),
+                 "--loop-turn straighten takes the turn out, and keeps its rate");
   }
   Json metrics = loop_json(*looped, edit);
   std::string line = loop_text(*looped, edit);

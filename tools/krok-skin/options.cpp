@@ -110,8 +110,9 @@ void declare_mesh(CommandOptions& command, Options& o) {
                    "For --as rig as .glb: compress meshes and keys (EXT_meshopt_compression), "
                    "without --quantize exactly; equal vertices become one, and are reordered");
   command.add_flag("--minify", o.minify,
-                   "For --as rig: leave out texture coordinates that no texture uses, and where "
-                   "the file comes from");
+                   "For --as rig: leave out texture coordinates that no texture uses, where the "
+                   "file comes from, and with --reduce keys of joints that all clips hold alike, "
+                   "which then rest so without a clip, too");
 }
 
 void declare(CommandOptions& command, Options& o) {

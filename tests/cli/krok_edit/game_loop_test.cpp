@@ -234,6 +234,10 @@ TEST_F(GameLoop, TurningIsTakenOutWithItsRate) {
   const int end = out.frame_count() - 1;
   EXPECT_LT((at(out, end, "RightFoot") - at(out, 0, "RightFoot")).norm(), 1e-4);
   EXPECT_GT(still_frames(out, 1.5e-4), 0.9 * end) << "of " << end;
+  // In place it cannot turn and be the same again.
+  const ToolRun kept =
+      run_here("krok-edit", {"circle.anim", "--game-loop", "--loop-turn", "keep", "-o", "k.anim"});
+  EXPECT_THAT(kept.err, HasSubstr("[edit-turn]"));
 }
 
 }  // namespace
