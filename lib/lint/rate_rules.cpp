@@ -17,7 +17,8 @@ namespace {
 // Seconds that a foot is faster than a fifth of its fastest speed, of legs of 0.86 m: the median of
 // 66 public captures of walks and runs, nine tenths of which are within a third of it.
 constexpr double kUsualSwing = 0.53;
-constexpr std::size_t kMinSwings = 4;
+// Fewer show a rate that is far off, by the square of the limit.
+constexpr std::size_t kMinSwings = 4, kMinFarSwings = 2;
 constexpr double kSwingSpeed = 0.2;    // of a foot's fastest speed; slower is a stance
 constexpr double kShortestStep = 0.5;  // metres that a foot moves in a swing
 constexpr double kLongestStep = 2.2;
@@ -81,10 +82,11 @@ void find_swings(const Series& series, MotionFaults& out) {
     const int foot = series.roles.joint(leg.foot);
     if (foot >= 0) add_swings(series, foot, swings);
   }
-  if (swings.size() < kMinSwings) return;
+  if (swings.size() < kMinFarSwings) return;
   const double usual = kUsualSwing * std::sqrt(series.scale), swing = median(swings);
   const double limit = series.threshold(Rule::frame_rate), factor = swing / usual;
-  if (factor < limit && factor > 1 / limit) return;
+  const double allowed = swings.size() < kMinSwings ? limit * limit : limit;
+  if (factor < allowed && factor > 1 / allowed) return;
   Finding finding;
   finding.rule = Rule::frame_rate;
   finding.kind = factor > 1 ? "slow" : "fast";

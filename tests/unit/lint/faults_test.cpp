@@ -209,6 +209,21 @@ TEST(LintFaults, EachIsFoundByItsRuleWhereItIs) {
   }
 }
 
+// Would fail if a take of two steps passed at four times its speed, as too few to judge by.
+TEST(LintFaults, ARateThatIsFarOffShowsInTwoSteps) {
+  WalkOptions options;
+  options.steps = 4;
+  Clip clip = walk_of(options);
+  const double rate = clip.rate;
+  for (const auto& [factor, kind] : {std::pair(4.0, "fast"), {0.25, "slow"}}) {
+    clip.rate = factor * rate;
+    const auto faults = faults_of(clip);
+    const lint::Finding* found = find(faults, Rule::frame_rate, 0);
+    ASSERT_NE(found, nullptr) << factor << "\n" << listed(clip, faults);
+    EXPECT_EQ(found->kind, kind);
+  }
+}
+
 TEST(LintFaults, UnitOfAGiantIsFound) {
   Clip clip = usual_walk();
   for (Transform& joint : clip.skeleton.reference) joint.position *= 10;
