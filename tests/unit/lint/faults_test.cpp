@@ -212,7 +212,7 @@ TEST(LintFaults, EachIsFoundByItsRuleWhereItIs) {
 // Would fail if a take of two steps passed at four times its speed, as too few to judge by.
 TEST(LintFaults, ARateThatIsFarOffShowsInTwoSteps) {
   WalkOptions options;
-  options.steps = 4;
+  options.steps = 3;
   Clip clip = walk_of(options);
   const double rate = clip.rate;
   for (const auto& [factor, kind] : {std::pair(4.0, "fast"), {0.25, "slow"}}) {
@@ -222,6 +222,8 @@ TEST(LintFaults, ARateThatIsFarOffShowsInTwoSteps) {
     ASSERT_NE(found, nullptr) << factor << "\n" << listed(clip, faults);
     EXPECT_EQ(found->kind, kind);
   }
+  clip.rate = 1.8 * rate;
+  EXPECT_EQ(find(faults_of(clip), Rule::frame_rate, 0), nullptr) << "two steps may be so";
 }
 
 TEST(LintFaults, UnitOfAGiantIsFound) {
