@@ -72,7 +72,9 @@ class FrameTransfer {
       add(outcomes, i, *(plan_.legs[i].is_left ? report.left_foot : report.right_foot));
     }
     for (const double drop : kept(drops)) report.largest_drop = std::max(report.largest_drop, drop);
-    if (touches_ != nullptr) add(touches_->report(run_, plan_.kept, clip), report.contacts);
+    if (touches_ != nullptr) {
+      add_contacts(touches_->report(run_, plan_.kept, clip, {}), report.contacts);
+    }
     return clip;
   }
 
@@ -267,27 +269,6 @@ class FrameTransfer {
     }
   }
 
-  // Those that began in earlier frames go on.
-  void add(std::vector<ContactReport> found, std::vector<ContactReport>& all) const {
-    for (ContactReport& contact : found) {
-      const auto before = std::find_if(all.rbegin(), all.rend(), [&](const ContactReport& other) {
-        return other.part == contact.part && other.on == contact.on;
-      });
-      if (before == all.rend() || before->end != contact.start) {
-        all.push_back(std::move(contact));
-        continue;
-      }
-      const double part = contact.end - contact.start, seconds = contact.end - before->start;
-      if (seconds > 0) {
-        before->slide += part / seconds * (contact.slide - before->slide);
-        before->source_slide += part / seconds * (contact.source_slide - before->source_slide);
-      }
-      before->end = contact.end;
-      before->height = std::max(before->height, contact.height);
-      before->apart = std::max(before->apart, contact.apart);
-    }
-  }
-
   const FrameRun& run_;
   const Clip& source_;
   const Skeleton& target_;
@@ -300,6 +281,26 @@ class FrameTransfer {
 };
 
 }  // namespace
+
+void add_contacts(std::vector<ContactReport> found, std::vector<ContactReport>& all) {
+  for (ContactReport& contact : found) {
+    const auto before = std::find_if(all.rbegin(), all.rend(), [&](const ContactReport& other) {
+      return other.part == contact.part && other.on == contact.on;
+    });
+    if (before == all.rend() || before->end != contact.start) {
+      all.push_back(std::move(contact));
+      continue;
+    }
+    const double part = contact.end - contact.start, seconds = contact.end - before->start;
+    if (seconds > 0) {
+      before->slide += part / seconds * (contact.slide - before->slide);
+      before->source_slide += part / seconds * (contact.source_slide - before->source_slide);
+    }
+    before->end = contact.end;
+    before->height = std::max(before->height, contact.height);
+    before->apart = std::max(before->apart, contact.apart);
+  }
+}
 
 void note_touches(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
                   bool again, TouchKeeping& touches) {

@@ -50,4 +50,8 @@ Clip transfer_frames(const FrameRun& run, const Skeleton& target, const Transfer
                      int jobs, const TouchKeeping* touches, std::vector<Transform>& poses,
                      Report& report);
 
+// Adds the contacts of a block of frames to those of the blocks before it. Those that began in
+// earlier frames go on.
+void add_contacts(std::vector<ContactReport> found, std::vector<ContactReport>& all);
+
 }  // namespace krok::retarget

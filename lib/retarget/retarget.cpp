@@ -126,7 +126,7 @@ RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
   result.frames.skeleton = target;
   Report& report = *result.report;
   report.method = Method::same_skeleton;
-  report.scale = same.scale;
+  report.scale = report.path_scale = same.scale;
   report.source_pose = source.skeleton.reference;
   report.target_pose = target.reference;
   std::vector<char> used(source.skeleton.names.size(), 0);
@@ -240,7 +240,7 @@ class Transfer {
     }
     take_face_from_motion();
     for (const Transform& joint : rest_) plan_.rest_back.push_back(joint.orientation.conjugate());
-    plan_.scale = report_->scale;
+    plan_.scale = report_->path_scale = report_->scale;
     if (by_roles) {
       if (Status status = prepare_feet(find_feet(*sample, source_roles_)); !status) {
         return status.error();
@@ -252,6 +252,9 @@ class Transfer {
                           [self](FrameRun& frames) { return self->transfer(frames); }),
         report_};
     result.frames.skeleton = target_;
+    result.measure_contacts = [self](const FrameSource& laid, const GroundHeight& ground) {
+      return self->measure_contacts(laid, ground);
+    };
     return result;
   }
 
@@ -280,13 +283,30 @@ class Transfer {
     return touches;
   }
 
+  // Those of `found`, as the whole take has them.
+  void settle(const FrameRun& frames, std::optional<TouchKeeping>& found) const {
+    if (!found) return;
+    found->settle(plan_.stays, stances(), frames.first);
+    found->find_on_body(frames.clip, from(), onto(), leg_length(source_.skeleton, source_roles_));
+  }
+
+  Status measure_contacts(const FrameSource& laid, const GroundHeight& ground) {
+    report_->path_scale = 1;
+    report_->contacts.clear();
+    return for_each_run(source_, size_, options_.jobs, [&](const FrameRun& run) -> Status {
+      auto touches = find_touches(run, true);
+      if (!touches) return {};
+      settle(run, touches);
+      const auto made = load(part_of(laid, run.first, run.clip.frame_count()), options_.jobs);
+      if (!made) return made.error();
+      add_contacts(touches->report(run, plan_.kept, *made, ground), report_->contacts);
+      return {};
+    });
+  }
+
   Status transfer(FrameRun& frames) {
     auto touches = touches_ ? std::exchange(touches_, {}) : find_touches(frames, true);
-    if (touches) {
-      touches->settle(plan_.stays, stances(), frames.first);
-      touches->find_on_body(frames.clip, from(), onto(),
-                            leg_length(source_.skeleton, source_roles_));
-    }
+    settle(frames, touches);
     const int end = frames.first + frames.kept_end;
     const bool again = end <= reported_;
     Report of_before;

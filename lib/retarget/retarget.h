@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "core/progress.h"
 #include "core/result.h"
+#include "math/types.h"
 #include "roles/roles.h"
 #include "scene/frame_blocks.h"
 #include "scene/skeleton.h"
@@ -95,6 +97,7 @@ struct ContactReport {
 struct Report {
   Method method = Method::roles;
   double scale = 1;
+  double path_scale = 1;            // horizontal ways of the result over the source's
   double floor = 0;                 // height of the floor in the result, metres
   std::optional<int> source_frame;  // used as reference pose, if any
   std::optional<int> target_frame;
@@ -133,9 +136,16 @@ struct Retargeted {
 Result<Retargeted> transfer(const Clip& source, const RoleMap& source_roles, const Clip& target,
                             const RoleMap& target_roles, const Options& options);
 
+// The height of the ground below a point (metres, world) or just above it; empty where there is
+// none.
+using GroundHeight = std::function<std::optional<double>(const Vec3& point)>;
+
 struct RetargetedFrames {
   FrameSource frames;              // to be read about in order
   std::shared_ptr<Report> report;  // complete, but for what frames show until all were read
+  // Measures Report::contacts in frames made from all of these by laying them on the ground of the
+  // source, at the source's places. Heights are those over the ground. Null with same_skeleton.
+  std::function<Status(const FrameSource& laid, const GroundHeight& ground)> measure_contacts = {};
 };
 
 // The same of frames generated on demand, in blocks, in memory that hardly grows with their number

@@ -475,9 +475,26 @@ std::vector<KeptContact> kept_contacts(std::span<const Contact> contacts, const 
   return kept;
 }
 
+double TouchKeeping::height_off(const Vec3& from, const Vec3& onto, double rise,
+                                const GroundHeight& ground) const {
+  const auto off = [&](double below_from, double below_onto) {
+    return std::abs(onto.y() - below_onto - scale_ * (from.y() - below_from) - rise);
+  };
+  if (!ground) return off(0, 0);
+  const auto below_from = ground(from), below_onto = ground(onto);
+  if (!below_from && !below_onto) return 0;
+  // Of an end of a foot that is over an edge, or a hole, the other actor's is not.
+  const double higher =
+      std::max(below_from.value_or(*below_onto), below_onto.value_or(*below_from));
+  const double over_higher = off(higher, higher);
+  return below_from && below_onto ? std::min(over_higher, off(*below_from, *below_onto))
+                                  : over_higher;
+}
+
 std::vector<ContactReport> TouchKeeping::report(const FrameRun& run,
                                                 std::span<const KeptContact> kept,
-                                                const Clip& result) const {
+                                                const Clip& result,
+                                                const GroundHeight& ground) const {
   const Clip& source = run.clip;
   std::vector<ContactReport> reports;
   const auto add = [&](const char* part, const char* on, std::span<const Stay> stays,
@@ -500,15 +517,13 @@ std::vector<ContactReport> TouchKeeping::report(const FrameRun& run,
                               double rise) {
     add(part, "ground", stays, [&](const Stay& stay, ContactReport& report) {
       const std::vector<Vec3> places = track_of(result, point.target, stay);
-      std::vector<Vec3> wanted = track_of(source, point.source, stay);
-      for (Vec3& place : wanted) place *= scale_;
+      const std::vector<Vec3> from = track_of(source, point.source, stay);
       double way = 0, source_way = 0;
       for (std::size_t f = 0; f < places.size(); ++f) {
-        const double off = places[f].y() - wanted[f].y() - rise;
-        report.height = std::max(report.height, std::abs(off));
+        report.height = std::max(report.height, height_off(from[f], places[f], rise, ground));
         if (f == 0) continue;
         way += flat(places[f] - places[f - 1]).norm();
-        source_way += flat(wanted[f] - wanted[f - 1]).norm() / scale_;
+        source_way += flat(from[f] - from[f - 1]).norm();
       }
       const double seconds = report.end - report.start;
       if (seconds > 0) report.slide = way / seconds, report.source_slide = source_way / seconds;

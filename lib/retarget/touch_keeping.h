@@ -118,9 +118,10 @@ class TouchKeeping {
                   std::span<const Transform> local, std::span<Transform> pose) const;
 
   // Every stay, and every contact of `kept`, as far as it is in the kept frames of `run` and the
-  // one before, as it is in `result`. Times are those of the take.
+  // one before, as it is in `result`. Times are those of the take. Heights are over `ground` if it
+  // is not null, else those of the world.
   std::vector<ContactReport> report(const FrameRun& run, std::span<const KeptContact> kept,
-                                    const Clip& result) const;
+                                    const Clip& result, const GroundHeight& ground) const;
 
  private:
   struct OnGround {
@@ -142,6 +143,9 @@ class TouchKeeping {
   // The goal's way from where the point is, times its weight; zero where it touches nothing.
   Vec3 lack(BodyPart part, int frame, std::span<const Transform> pose) const;
   double weight(BodyPart part, int frame) const;
+  // How far a point of the target is above or below where the source's is, scaled, and `rise` more.
+  double height_off(const Vec3& from, const Vec3& onto, double rise,
+                    const GroundHeight& ground) const;
 
   std::array<PointPair, kBodyParts> points_;
   double scale_ = 1;

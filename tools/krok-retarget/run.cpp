@@ -157,6 +157,10 @@ Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
   const GroundBelow below = {gait::height_of(**ground), gait::up_of(**ground)};
   auto followed = follow_feet(source, source_roles, *clip, target_roles, retargeted.report->scale,
                               below, given);
+  if (followed && retargeted.measure_contacts) {
+    Status measured = retargeted.measure_contacts(frames_of(followed->clip), below.height);
+    if (!measured) return measured.error();
+  }
   if (followed && followed->out_of_reach > 0) {
     context.warn("plant-reach", fmt::format("in {} of {} frames a leg is too short for its place",
                                             followed->out_of_reach, source.frame_count()));

@@ -110,7 +110,7 @@ std::string summary(const Outcome& outcome) {
     }
     if (miss > 0.005) text += fmt::format(" (legs too short by {})", millimetres(miss));
   }
-  return text + contacts_text(report.contacts, report.scale);
+  return text + contacts_text(report.contacts, report.path_scale);
 }
 
 std::string table(const Outcome& outcome) {
@@ -202,7 +202,7 @@ std::optional<Diagnostic> missed_contacts(const krok::retarget::Report& report) 
   int missed = 0;
   const krok::retarget::ContactReport* worst = nullptr;
   for (const krok::retarget::ContactReport& contact : report.contacts) {
-    const double faster = contact.slide - report.scale * contact.source_slide;
+    const double faster = contact.slide - report.path_scale * contact.source_slide;
     if (contact.end - contact.start < kLong || (contact.height < kHigh && faster < kFast)) continue;
     ++missed;
     if (worst == nullptr || contact.height > worst->height) worst = &contact;
