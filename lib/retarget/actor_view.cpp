@@ -96,6 +96,14 @@ std::optional<Vec3> ActorView::chest_up() const {
   return direction(chest >= 0 ? chest : joint(Role::hips), neck());
 }
 
+std::optional<Vec3> ActorView::legs_up() const {
+  const int left = joint(Role::left_foot), right = joint(Role::right_foot);
+  if (left < 0 || right < 0) return std::nullopt;
+  const Vec3 along =
+      middle(joint(Role::left_upper_leg), joint(Role::right_upper_leg)) - middle(left, right);
+  return along.norm() > 1e-9 ? std::optional<Vec3>(along.normalized()) : std::nullopt;
+}
+
 int ActorView::only_child(int joint) const {
   int only = -1;
   for (const int child : children_[at(joint)]) {

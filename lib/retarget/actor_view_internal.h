@@ -69,6 +69,9 @@ class ActorView {
 
   std::optional<Vec3> chest_up() const;
 
+  // From the middle of the ankles to that of the hips' sides.
+  std::optional<Vec3> legs_up() const;
+
   // The end of a joint's bone: its only child that is not a helper, or -1.
   int only_child(int joint) const;
 

@@ -58,6 +58,7 @@ class Aligner {
   std::vector<Quat> align() {
     hips_ = trunk_turn(Role::left_upper_leg, Role::right_upper_leg, source_.hips_up(),
                        target_.hips_up());
+    standing_ = standing_turn();
     chest_ = trunk_turn(Role::left_upper_arm, Role::right_upper_arm, source_.chest_up(),
                         target_.chest_up());
     set(target_.joint(Role::hips), hips_);
@@ -85,8 +86,8 @@ class Aligner {
     const auto from = target_.left(left, right);
     const auto to = source_.left(left, right);
     if (!from || !to) return Quat::Identity();
-    const bool lying = std::abs(from->dot(kUp)) > 0.9 || std::abs(to->dot(kUp)) > 0.9;
-    if (lying && source_up && target_up) return frame_turn(*from, *target_up, *to, *source_up);
+    if (lies_on_side(*from, *to) && source_up && target_up)
+      return frame_turn(*from, *target_up, *to, *source_up);
     const Quat level = frame_turn(*from, kUp, *to, kUp);
     if (!source_up || !target_up) return level;
     const auto now = across(level * *target_up, *to);
@@ -95,6 +96,27 @@ class Aligner {
     const double lean = std::atan2(now->cross(*wanted).dot(*to), now->dot(*wanted));
     const double taken = lean * smooth_step(degrees(15), degrees(35), std::abs(lean));
     return from_rotation_vector(taken * *to) * level;
+  }
+
+  static bool lies_on_side(const Vec3& from, const Vec3& to) {
+    return std::abs(from.dot(kUp)) > 0.9 || std::abs(to.dot(kUp)) > 0.9;
+  }
+
+  // The turn of the hips as far as the legs lean as the trunk does: of a body that leans as a whole
+  // and not of one that stoops over upright legs, whose soles are flat.
+  Quat standing_turn() const {
+    const auto from = target_.left(Role::left_upper_leg, Role::right_upper_leg);
+    const auto to = source_.left(Role::left_upper_leg, Role::right_upper_leg);
+    const auto source_up = source_.legs_up(), target_up = target_.legs_up();
+    if (!from || !to || !source_up || !target_up || lies_on_side(*from, *to)) return hips_;
+    const Quat level = frame_turn(*from, kUp, *to, kUp);
+    const Vec3 hips = rotation_vector(hips_ * level.conjugate());
+    const auto now = across(level * *target_up, *to), wanted = across(*source_up, *to);
+    const bool stoops = hips.norm() > 1e-6 && hips.norm() < degrees(90);
+    if (!now || !wanted || !stoops) return hips_;
+    const double lean = std::atan2(now->cross(*wanted).dot(*to), now->dot(*wanted));
+    const double share = smooth_step(0.25, 0.75, lean * to->dot(hips) / hips.squaredNorm());
+    return share < 1 ? slerp(level, hips_, share) : hips_;
   }
 
   // Rotates joint `upper` so that its bone to `lower` points as the source's.
@@ -217,13 +239,13 @@ class Aligner {
         target_.direction(from_foot, foot_front(target_.skeleton(), target_.roles(), leg.foot));
     const auto to =
         source_.direction(to_foot, foot_front(source_.skeleton(), source_.roles(), leg.foot));
-    if (!from || !to) return hips_;
-    const Vec3 now = hips_ * *from;
+    if (!from || !to) return standing_;
+    const Vec3 now = standing_ * *from;
     const Vec3 flat_now = now - now.dot(kUp) * kUp;
     const Vec3 flat_to = *to - to->dot(kUp) * kUp;
-    if (flat_now.norm() < 0.25 || flat_to.norm() < 0.25) return hips_;
+    if (flat_now.norm() < 0.25 || flat_to.norm() < 0.25) return standing_;
     const double yaw = std::atan2(flat_now.cross(flat_to).dot(kUp), flat_now.dot(flat_to));
-    if (std::abs(yaw) > degrees(90)) return hips_;
+    if (std::abs(yaw) > degrees(90)) return standing_;
     // A foot pitched that much more than the other is not flat on the floor, unless the other is
     // level: rigs have ankles as low as the toes.
     const double pitch_to = std::asin(std::clamp(to->dot(kUp), -1.0, 1.0));
@@ -234,7 +256,7 @@ class Aligner {
                          std::max(smooth_step(degrees(5), degrees(15), level),
                                   smooth_step(degrees(60), degrees(70), steep));
     const Vec3 hinge = across(side, flat_to.normalized()).value_or(side);
-    return from_rotation_vector(-taken * hinge) * from_rotation_vector(yaw * kUp) * hips_;
+    return from_rotation_vector(-taken * hinge) * from_rotation_vector(yaw * kUp) * standing_;
   }
 
   // Joints that were not set follow their parents.
@@ -252,6 +274,7 @@ class Aligner {
   std::vector<Quat> turns_;
   std::vector<char> set_;
   Quat hips_ = Quat::Identity();
+  Quat standing_ = Quat::Identity();  // of the body that feet stand under
   Quat chest_ = Quat::Identity();
 };
 

@@ -18,8 +18,8 @@
 // lowered together with the arm; other differences are body build, too. A hand is aligned by the
 // direction of its fingers and of its knuckles (or thumbs, if one side has no more). Feet are
 // turned about the vertical only, since soles are flat in a stance whatever the height of the
-// ankle, unless their pitch differs by more than 30 degrees and neither is level, or one points up
-// or down.
+// ankle and the stoop of the trunk, unless the legs lean with the trunk, or their pitch differs by
+// more than 30 degrees and neither is level, or one points up or down.
 
 namespace krok::retarget {
 

@@ -71,6 +71,36 @@ TEST(Feet, AnkleHeightsDoNotTiltSoles) {
   }
 }
 
+// Old men, apes and monsters stoop in their reference poses, over legs that are upright. If this
+// fails, their soles are pitched by what the trunk is turned, toes up; or those of a body that
+// leans as a whole are not turned with it.
+TEST(Feet, ATrunkThatStoopsDoesNotTiltSoles) {
+  Clip standing = resting(human_skeleton(1.8));
+  standing.rate = 30;
+  standing.resize(2);
+  for (int f = 0; f < 2; ++f) standing.set_pose(f, standing.skeleton.reference);
+  const auto pitch = [](const Clip& clip, const std::string& foot, const std::string& toes) {
+    return std::asin(bone(clip, 0, foot, toes).y()) / kRadiansPerDegree;
+  };
+  for (const double angle : {-30, 20, 30, 45}) {
+    const Quat lean = from_rotation_vector(angle * kRadiansPerDegree * Vec3::UnitX());
+    const Skeleton leaning = posed(human_skeleton(1.7), "Hips", lean);
+    const Skeleton stooping =
+        posed(posed(leaning, "LeftUpLeg", lean.conjugate()), "RightUpLeg", lean.conjugate());
+    const auto expect_flat = [&](const Skeleton& target, const char* what) {
+      const auto made = transfer(standing, with_other_axes(target, 5));
+      ASSERT_TRUE(made.ok());
+      for (const std::string side : {"Left", "Right"}) {
+        const std::string foot = side + "Foot", toes = side + "ToeBase";
+        EXPECT_NEAR(pitch(made->clip, "rig:" + foot, "rig:" + toes), pitch(standing, foot, toes), 1)
+            << what << " by " << angle << ", " << side;
+      }
+    };
+    expect_flat(stooping, "stooping");
+    if (angle > 35) expect_flat(leaning, "leaning");  // less is build in part
+  }
+}
+
 // How far a joint of the foot moves over the ground while it should stand there, the first and last
 // hundredth of a second of each contact apart.
 double slide_of(const Clip& clip, const std::string& joint,
