@@ -7,6 +7,7 @@
 #include <unordered_map>
 
 #include "core/index.h"
+#include "math/quaternion.h"
 
 namespace krok::retarget {
 
@@ -54,6 +55,7 @@ class RoleMapper {
     for (const Role foot : {Role::left_foot, Role::right_foot}) map_toes(foot);
     map_hand(Role::left_hand, Role::left_fingers, !without_left_fingers);
     map_hand(Role::right_hand, Role::right_fingers, !without_right_fingers);
+    map_between();
     return std::move(mapping_);
   }
 
@@ -128,6 +130,36 @@ class RoleMapper {
       if (joint != palm && place.finger != Finger::none) {
         mapping_[at(joint)].first = finger_source(fingers, place);
       }
+    }
+  }
+
+  static bool has_role(const RoleMap& roles, std::size_t joint) {
+    return roles.roles[joint] != Role::none && roles.roles[joint] != Role::helper;
+  }
+
+  // Joints without a role that lie between two mapped ones in both skeletons, by the same name and
+  // reference orientation: those between hips and thighs of Acclaim skeletons turn by 10 degrees.
+  void map_between() {
+    constexpr double kAlike = 1 * kRadiansPerDegree;
+    JointMapping named = map_by_names(source_, target_);
+    std::vector<char> leads_on(named.size(), 0);  // to a joint that is mapped below the named ones
+    for (std::size_t k = named.size(); k-- > 1;) {
+      const int from = mapping_[k].first >= 0 ? mapping_[k].first : named[k].first;
+      const std::size_t parent = at(target_.parents[k]);
+      const bool leads = mapping_[k].first >= 0 ? mapping_[k].second < 0 : leads_on[k] != 0;
+      if (leads && from > 0 && source_.parents[at(from)] == named[parent].first)
+        leads_on[parent] = 1;
+    }
+    for (std::size_t k = 1; k < named.size(); ++k) {
+      const int from = named[k].first;
+      const JointSource& above = mapping_[at(target_.parents[k])];
+      if (leads_on[k] == 0 || mapping_[k].first >= 0 || from <= 0 || above.second >= 0) continue;
+      if (has_role(target_roles_, k) || has_role(source_roles_, at(from))) continue;
+      const bool alike =
+          above.first >= 0 && above.first == source_.parents[at(from)] &&
+          angle_between(source_.reference_local(from).orientation,
+                        target_.reference_local(static_cast<int>(k)).orientation) < kAlike;
+      if (alike) mapping_[k].first = from;
     }
   }
 

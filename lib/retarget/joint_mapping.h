@@ -30,7 +30,9 @@ std::vector<int> first_toes(const Skeleton& skeleton, const RoleMap& roles, Role
 
 // Maps joints of humanoids by their roles. Spine and neck are spread along their chains; a finger
 // that the source lacks takes the joints of its neighbour, except the thumb; joints without a
-// counterpart follow their parent. `without_*_fingers` leaves out the fingers of that hand.
+// counterpart follow their parent, unless they lie between the same two joints in both skeletons,
+// by the same name and reference orientation. `without_*_fingers` leaves out the fingers of that
+// hand.
 JointMapping map_by_roles(const Skeleton& source, const RoleMap& source_roles,
                           const Skeleton& target, const RoleMap& target_roles,
                           bool without_left_fingers, bool without_right_fingers);

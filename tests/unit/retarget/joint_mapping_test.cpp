@@ -100,6 +100,32 @@ TEST(JointMapping, SpinesAreSpreadByTheirLength) {
   EXPECT_EQ(mapping[at(target.find("TwistOfTheBack"))].first, -1);
 }
 
+// Acclaim skeletons have such joints between hips and thighs, which turn by 10 degrees; rigs have
+// twists in the chain of an arm. If this fails, their motion is lost as soon as anything else
+// differs between the skeletons, or a joint is moved that is another's in truth.
+TEST(JointMapping, JointsBetweenMappedOnesGoByName) {
+  const auto body = [](const std::string& hip, const std::string& arm) {
+    return skeleton_from_text(
+        "Hips .Spine ..Neck ...Head ..LeftShoulder ...LeftArm " + arm +
+        " .....LeftForeArm ......LeftHand ..RightShoulder ...RightArm ....RightForeArm "
+        ".....RightHand ." +
+        hip +
+        " ..LeftUpLeg ...LeftLeg ....LeftFoot .RightUpLeg ..RightLeg "
+        "...RightFoot");
+  };
+  const Skeleton source = body("LHipJoint ..LBelt", "....LeftArmTwist");
+  Skeleton target = body("LHipJoint ..LBelt", "....LeftArmTwist");
+  target.names[0] = "Pelvis";
+  EXPECT_EQ(source_of(source, target, "LHipJoint"), "LHipJoint");
+  EXPECT_EQ(source_of(source, target, "LeftArmTwist"), "LeftArmTwist");
+  EXPECT_EQ(source_of(source, target, "LBelt"), "-");  // leads nowhere
+  EXPECT_EQ(source_of(source, body("LHip", "....LArmTwist"), "LHip"), "-");
+  Skeleton turned = target;
+  turned.reference[at(turned.find("LHipJoint"))].orientation =
+      from_rotation_vector(Vec3(0.1, 0, 0));
+  EXPECT_EQ(source_of(source, turned, "LHipJoint"), "-");
+}
+
 TEST(JointMapping, NamesLeaveEndSitesOut) {
   const Skeleton skeleton = skeleton_from_text("a .b ..c ...end!");
   const auto mapping = retarget::map_by_names(skeleton, skeleton);
