@@ -63,6 +63,14 @@ ValueKind<double> quantity(const Quantity& what, Result<double> (*parse)(std::st
   return {what.name, what.value_name, read, {}};
 }
 
+// "5" of "5km/h" and "5 km/h".
+std::string_view without(std::string_view text, std::string_view unit) {
+  if (unit.empty() || !text.ends_with(unit)) return text;
+  text.remove_suffix(unit.size());
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return text;
+}
+
 // Whether a bare number is a part of a turn in radians, written with its digits: 1.57, 3.1416.
 bool looks_like_radians(std::string_view text) {
   constexpr int kParts = 24;  // of a turn: steps of 15 degrees
@@ -123,11 +131,9 @@ ValueKind<ClipTime> clip_time(Range range) {
 ValueKind<double> number(Range range, const std::string& unit) {
   const auto read = [range, unit](const std::string& text) -> Result<double> {
     constexpr std::string_view kPerHour = "km/h";
-    std::string_view digits = text;
-    const bool per_hour = unit == "m/s" && digits.ends_with(kPerHour);
-    if (per_hour) digits.remove_suffix(kPerHour.size());
-    if (!per_hour && !unit.empty() && digits.ends_with(unit)) digits.remove_suffix(unit.size());
-    auto value = parse_finite(trimmed(digits));
+    const bool per_hour = unit == "m/s" && text.ends_with(kPerHour);
+    const std::string_view digits = without(text, per_hour ? kPerHour : unit);
+    auto value = parse_finite(digits);
     if (value && per_hour) *value /= 3.6;
     if (unit.empty() && text.ends_with('%')) {
       value = parse_finite(digits.substr(0, digits.size() - 1));
@@ -143,13 +149,10 @@ ValueKind<double> number(Range range, const std::string& unit) {
 
 ValueKind<double> rate() {
   const auto read = [](const std::string& text) -> Result<double> {
-    std::string_view digits = text;
-    for (const std::string_view unit : {"fps", "Hz"}) {
-      if (digits.ends_with(unit)) digits.remove_suffix(unit.size());
-    }
+    const std::string_view digits = without(without(text, "fps"), "Hz");
     // "30000/1001", as of video.
     const std::size_t slash = digits.find('/');
-    auto value = parse_finite(trimmed(digits.substr(0, slash)));
+    auto value = parse_finite(digits.substr(0, slash));
     if (slash != std::string_view::npos) {
       const auto divisor = parse_finite(digits.substr(slash + 1));
       value = value && divisor ? std::optional(*value / *divisor) : std::nullopt;

@@ -80,6 +80,7 @@ TEST(SpeedOption, IsInMetresPerSecondOrKilometresPerHour) {
   EXPECT_DOUBLE_EQ(speed.read("5.4 km/h").value(), 1.5);
   EXPECT_DOUBLE_EQ(speed.read("1.4").value(), 1.4);
   EXPECT_FALSE(speed.read("50km/h"));
+  EXPECT_FALSE(speed.read("2 ")) << "a blank is for a unit alone";
   EXPECT_FALSE(number({0, 9}, "mm").read("5km/h"));
 }
 
