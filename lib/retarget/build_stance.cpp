@@ -252,6 +252,10 @@ class StanceBuilder {
       const Vec3 bone = place(path[i + 1]) - place(path[i]);
       if (bone.normalized().y() < 0.8) point(path[i], bone, kUpwards, kForward);
     }
+    // As a whole, up to the neck, which heads are ahead of: what it leans is the motion's.
+    const int neck = roles_.joint(Role::neck) >= 0 ? roles_.joint(Role::neck) : path.back();
+    const Vec3 whole = place(neck) - place(path.front());
+    if (straighten && whole.norm() > 0) turn(0, shortest_arc(whole, kUpwards));
   }
 
   // The trunk's joints may turn about it from one to the next.

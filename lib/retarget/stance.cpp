@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "retarget/actor_view_internal.h"
 #include "roles/roles.h"
@@ -12,6 +13,12 @@
 namespace krok::retarget {
 
 namespace {
+
+constexpr double kThighsApart = 15 * kRadiansPerDegree, kKneesApart = 15 * kRadiansPerDegree;
+
+double angle_of(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 class Posture {
  public:
@@ -39,6 +46,25 @@ class Posture {
     return least;
   }
 
+  bool stands() const { return least_along(Vec3::UnitY()) > 0.5; }
+
+  // Whether the legs are apart or bent as in a step, which is a frame of a motion: what programs
+  // write that have no other reference pose.
+  bool steps() const {
+    std::array<Vec3, 2> thighs;
+    double largest = 0, least = kPi;  // bends of the knees
+    for (std::size_t side = 0; side < 2; ++side) {
+      const LegRoles& leg = kLegRoles[side];
+      thighs[side] = bone(leg.upper, leg.lower);
+      const double bend = angle_of(thighs[side], bone(leg.lower, leg.foot));
+      largest = std::max(largest, bend);
+      least = std::min(least, bend);
+    }
+    const Vec3 aside = bone(Role::right_upper_leg, Role::left_upper_leg);
+    for (Vec3& thigh : thighs) thigh -= aside.dot(thigh) * aside;
+    return angle_of(thighs[0], thighs[1]) > kThighsApart || largest - least > kKneesApart;
+  }
+
   // Whether trunk and legs lie along one line, whichever way it points.
   bool in_line() const { return least_along(trunk()) > 0.5; }
 
@@ -46,13 +72,13 @@ class Posture {
   const Vec3& place(int joint) const {
     return actor_.pose[static_cast<std::size_t>(joint)].position;
   }
-  const Actor& actor_;
+  const Actor actor_;
 };
 
 }  // namespace
 
 bool stands(const Actor& actor) {
-  return Posture(actor).least_along(Vec3::UnitY()) > 0.5;
+  return Posture(actor).stands();
 }
 
 bool is_straight(const Actor& actor) {
@@ -76,9 +102,10 @@ Result<Stance> stance_of_frame(const FrameSource& source, int frame) {
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame) {
   if (frame) return stance_of_frame(frames_of(clip), *frame);
   Stance stance{clip.skeleton.reference, {}};
-  const Actor actor{clip.skeleton, roles, clip.skeleton.reference};
-  if (!roles.humanoid || stands(actor)) return stance;
-  stance.pose = build_stance(clip, roles, !Posture(actor).in_line());
+  const Posture posture({clip.skeleton, roles, clip.skeleton.reference});
+  const bool steps = roles.humanoid && posture.steps();
+  if (!roles.humanoid || (posture.stands() && !steps)) return stance;
+  stance.pose = build_stance(clip, roles, steps || !posture.in_line());
   return stance;
 }
 

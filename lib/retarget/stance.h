@@ -24,8 +24,9 @@ bool stands(const Actor& actor);
 bool is_straight(const Actor& actor);
 
 // The reference pose of a clip's skeleton. If that does not stand, it is turned upright where
-// trunk, thighs and shanks lie within 60 degrees of one line; else a T-pose is built from the
-// skeleton, in which the turn about the limbs is that with which knees and elbows bend as they do
+// trunk, thighs and shanks lie within 60 degrees of one line; else, and where it is a step (thighs
+// or the bends of the knees differ by over 15 degrees), a T-pose is built from the skeleton, its
+// trunk upright, in which the turn about the limbs is that with which knees and elbows bend as they do
 // over the whole motion. All motions of a skeleton so have the same, to a few degrees. `frame`
 // selects a frame's pose directly; an Error (code retarget-frame) if there is no such frame.
 // Skeletons that are not humanoids keep their reference pose.
