@@ -26,8 +26,8 @@ bool is_straight(const Actor& actor);
 // The reference pose of a clip's skeleton. If that does not stand, it is turned upright where
 // trunk, thighs and shanks lie within 60 degrees of one line; else, and where it is a step (thighs
 // or the bends of the knees differ by over 15 degrees), a T-pose is built from the skeleton, its
-// trunk upright, in which the turn about the limbs is that with which knees and elbows bend as they do
-// over the whole motion. All motions of a skeleton so have the same, to a few degrees. `frame`
+// trunk upright, in which the turn about the limbs is that with which knees and elbows bend as they
+// do over the whole motion. All motions of a skeleton so have the same, to a few degrees. `frame`
 // selects a frame's pose directly; an Error (code retarget-frame) if there is no such frame.
 // Skeletons that are not humanoids keep their reference pose.
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame);
