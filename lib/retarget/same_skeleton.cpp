@@ -21,13 +21,11 @@ constexpr double kAxesTolerance = 1e-4;  // radians
 
 // With the scale of the bones, where these are the same; source_joint is given.
 std::optional<SameSkeleton> with_same_bones(const Skeleton& source, const Skeleton& target,
-                                            SameSkeleton same, double allowed = kOffsetTolerance) {
+                                            SameSkeleton same) {
   std::vector<Vec3> from, to;
   double product = 0;
   double square = 0;
   for (int k = 1; k < target.joint_count(); ++k) {
-    const int parent = target.parents[at(k)];
-    if (same.source_joint[at(k)] < 0 || parent < 0 || same.source_joint[at(parent)] < 0) continue;
     from.push_back(source.reference_local(same.source_joint[at(k)]).position);
     to.push_back(target.reference_local(k).position);
     product += from.back().dot(to.back());
