@@ -21,7 +21,7 @@ constexpr double kFarOutside = 0.62;  // of the leg: how far a step may be from 
 constexpr double kFarTurn = 60 * kRadiansPerDegree;
 constexpr double kUsualRange = 0.4;  // metres, of a parameter of a library
 constexpr double kTurnCost = 0.5;    // metres a radian
-constexpr double kBeyond = 0.05;     // metres: steps that are longer or wider are warned of
+constexpr double kBeyond = 0.1;      // metres: steps that are longer or wider are warned of
 constexpr int kBisections = 20;
 constexpr int kBlendTries = 6;
 
