@@ -86,13 +86,13 @@ TEST(DetectConventions, AActorOfAnUnusualSizeIsAGuess) {
   EXPECT_NE(found.unit_confidence, Confidence::certain);
 }
 
-// Would fail if a small figure with a big head came out as a giant in inches without a warning.
+// Would fail if a small body with a big head came out as a giant in inches without a warning.
 TEST(DetectConventions, ProportionsThatAreNoPersonsLeaveARareUnitAGuess) {
-  Skeleton figure = person(0.01, Direction::plus_y, Direction::plus_z);
-  for (Transform& joint : figure.reference) {
+  Skeleton small = person(0.01, Direction::plus_y, Direction::plus_z);
+  for (Transform& joint : small.reference) {
     joint.position.y() *= joint.position.y() < 0 ? 0.45 : 0.65;
   }
-  const Conventions found = detect(figure);
+  const Conventions found = detect(small);
   EXPECT_EQ(found.unit.name, "in");
   EXPECT_EQ(found.unit_confidence, Confidence::guess) << found.unit_reason;
 }
