@@ -46,7 +46,7 @@ class Posture {
     return least;
   }
 
-  bool stands() const { return least_along(Vec3::UnitY()) > 0.5; }
+  bool stands() const { return least_along(Vec3::UnitY()) > 0.5 && !steps(); }
 
   // Whether the legs are apart or bent as in a step, which is a frame of a motion: what programs
   // write that have no other reference pose.
@@ -103,9 +103,8 @@ Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional
   if (frame) return stance_of_frame(frames_of(clip), *frame);
   Stance stance{clip.skeleton.reference, {}};
   const Posture posture({clip.skeleton, roles, clip.skeleton.reference});
-  const bool steps = roles.humanoid && posture.steps();
-  if (!roles.humanoid || (posture.stands() && !steps)) return stance;
-  stance.pose = build_stance(clip, roles, steps || !posture.in_line());
+  if (!roles.humanoid || posture.stands()) return stance;
+  stance.pose = build_stance(clip, roles, posture.steps() || !posture.in_line());
   return stance;
 }
 

@@ -16,20 +16,20 @@ struct Stance {
   std::optional<int> frame;     // of the motion; empty for the skeleton's reference pose
 };
 
-// Whether a humanoid stands in a pose: trunk, thighs and shanks within 60 degrees of upright. In
-// reference poses of exporters whose bones all lie along one axis it does not.
+// Whether a humanoid stands in a pose: trunk, thighs and shanks within 60 degrees of upright, and
+// neither thighs nor the bends of the knees differ by over 15 degrees, as in a step. In reference
+// poses of exporters whose bones all lie along one axis it does not.
 bool stands(const Actor& actor);
 
 // Whether trunk, thighs and shanks of a humanoid lie within 60 degrees of one line, whichever way.
 bool is_straight(const Actor& actor);
 
 // The reference pose of a clip's skeleton. If that does not stand, it is turned upright where
-// trunk, thighs and shanks lie within 60 degrees of one line; else, and where it is a step (thighs
-// or the bends of the knees differ by over 15 degrees), a T-pose is built from the skeleton, its
-// trunk upright, in which the turn about the limbs is that with which knees and elbows bend as they
-// do over the whole motion. All motions of a skeleton so have the same, to a few degrees. `frame`
-// selects a frame's pose directly; an Error (code retarget-frame) if there is no such frame.
-// Skeletons that are not humanoids keep their reference pose.
+// trunk, thighs and shanks lie within 60 degrees of one line and it is no step; else a T-pose is
+// built from the skeleton, its trunk upright, in which the turn about the limbs is that with which
+// knees and elbows bend as they do over the whole motion. All motions of a skeleton so have the
+// same, to a few degrees. `frame` selects a frame's pose directly; an Error (code retarget-frame)
+// if there is no such frame. Skeletons that are not humanoids keep their reference pose.
 Result<Stance> find_stance(const Clip& clip, const RoleMap& roles, std::optional<int> frame);
 Result<Stance> stance_of_frame(const FrameSource& source, int frame);
 

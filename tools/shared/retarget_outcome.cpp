@@ -8,6 +8,7 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "retarget/stance.h"
+#include "roles/stature.h"
 
 namespace krok::cli {
 
@@ -196,14 +197,21 @@ Json to_json(const Outcome& outcome) {
 
 namespace {
 
-// Contacts of the input that the result misses, as where an arm is too short for them.
-std::optional<Diagnostic> missed_contacts(const krok::retarget::Report& report) {
+// Contacts of the input that the result misses, as where an arm is too short for them. Distances
+// count by the target's size.
+std::optional<Diagnostic> missed_contacts(const Outcome& outcome) {
+  constexpr double kUsualStature = 1.75;  // metres
+  const krok::retarget::Report& report = outcome.report;
+  const auto stature = stature_of(outcome.target, outcome.target_roles);
+  const double size = stature ? stature->metres / kUsualStature : 1;
   constexpr double kHigh = 0.05, kFast = 0.2, kLong = 0.05;  // metres, metres per second, seconds
   int missed = 0;
   const krok::retarget::ContactReport* worst = nullptr;
   for (const krok::retarget::ContactReport& contact : report.contacts) {
     const double faster = contact.slide - report.path_scale * contact.source_slide;
-    if (contact.end - contact.start < kLong || (contact.height < kHigh && faster < kFast)) continue;
+    if (contact.end - contact.start < kLong ||
+        (contact.height < size * kHigh && faster < size * kFast))
+      continue;
     ++missed;
     if (worst == nullptr || contact.height > worst->height) worst = &contact;
   }
@@ -257,7 +265,7 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
         "do the toes have the right roles? krok-info -v shows them, --map and --onto-map of "
         "krok-retarget set them"));
   }
-  if (auto missed = missed_contacts(report)) choices.push_back(*std::move(missed));
+  if (auto missed = missed_contacts(outcome)) choices.push_back(*std::move(missed));
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
     note("retarget-fingers",
          "the input's fingers never move; the target's fingers keep their reference pose");

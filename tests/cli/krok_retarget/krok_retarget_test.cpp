@@ -200,6 +200,11 @@ TEST_F(KrokRetarget, MissedContactsAreWarnedOf) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("contacts missed; worst: "));
   EXPECT_THAT(run.err, HasSubstr("[retarget-contact]"));
+  // Of a doll, which is 5 cm off nowhere, too.
+  write("doll.model", test::tube_model(test::human_skeleton(0.12)));
+  const auto doll =
+      retarget({"walk.anim", "--onto", "doll.model", "-o", "out.anim", "--scale", "0.15"});
+  EXPECT_THAT(doll.err, HasSubstr("[retarget-contact]"));
 }
 
 // The alignment of one take for another whose own would be another: each joint keeps the same
