@@ -38,6 +38,7 @@ class SubjectReader {
   void check_cover(const Model& model);
   Status set_modes();
   Status read_rises();
+  Status read_ground();
 
   const Options& options_;
   ToolContext& context_;
@@ -156,6 +157,10 @@ Status SubjectReader::read_rises() {
     subject_.rises.push_back(std::move(*clip));
     subject_.rise_names.push_back(name_of_input(path));
   }
+  return {};
+}
+
+Status SubjectReader::read_ground() {
   auto terrain = options_.ground.open(context_);
   if (!terrain) return terrain.error();
   subject_.terrain = std::move(*terrain);
@@ -163,8 +168,9 @@ Status SubjectReader::read_rises() {
 }
 
 Result<Subject> SubjectReader::read() {
-  for (const auto step : {&SubjectReader::read_motion, &SubjectReader::read_limits,
-                          &SubjectReader::read_bodies, &SubjectReader::read_rises}) {
+  for (const auto step :
+       {&SubjectReader::read_motion, &SubjectReader::read_limits, &SubjectReader::read_bodies,
+        &SubjectReader::read_rises, &SubjectReader::read_ground}) {
     if (Status status = (this->*step)(); !status) return status.error();
   }
   return std::move(subject_);

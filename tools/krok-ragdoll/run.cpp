@@ -14,7 +14,6 @@
 #include "formats/anim/anim.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/goals/goals.h"
-#include "formats/io/open_terrain.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "ik/limits.h"
 #include "ragdoll/bodies.h"
@@ -49,21 +48,18 @@ Result<std::vector<std::array<Vec3, 3>>> triangles_of(const Terrain& terrain, co
   return triangles;
 }
 
-// The ground that --ground names, as io::open_terrain() opens it. What is not level becomes
-// triangles within 10 m of `centre`, to 1 mm (terrain::surface_of()). Codes: those of
-// open_terrain(); ragdoll-ground if there is none within that.
-Result<krok::ragdoll::Surroundings> open_surroundings(const GroundChoice& ground,
-                                                      const Vec3& centre, ToolContext& context) {
-  const auto terrain = ground.open(context);
-  if (!terrain) return terrain.error();
+// The ground that --ground names. What is not level becomes triangles within 10 m of `centre`, to 1
+// mm (terrain::surface_of()). Code ragdoll-ground if there is none within that.
+Result<krok::ragdoll::Surroundings> surroundings_of(const GroundChoice& ground,
+                                                    const Terrain& terrain, const Vec3& centre) {
   krok::ragdoll::Surroundings surroundings;
   if (ground.text == "level" || ground.text.starts_with("level:")) {
     surroundings.level = true;
-    const auto point = (*terrain)->at(centre.x(), centre.z());
+    const auto point = terrain.at(centre.x(), centre.z());
     surroundings.height = point ? point->height : 0;
     return surroundings;
   }
-  auto triangles = triangles_of(**terrain, centre);
+  auto triangles = triangles_of(terrain, centre);
   if (!triangles) {
     return Error("ragdoll-ground", "there is no ground within 10 m of where the fall begins",
                  "krok-edit moves motions")
@@ -187,7 +183,7 @@ Status Run::read_ground(Plan& plan) {
   const int frame = static_cast<int>(std::min(plan.fall.at * clip.rate, clip.frame_count() - 1.0));
   const int root = subject_.bodies.front().joint;
   const Vec3 centre = clip.frame_positions(frame)[at(root)].cast<double>();
-  auto surroundings = open_surroundings(options_.ground, centre, context_);
+  auto surroundings = surroundings_of(options_.ground, *subject_.terrain, centre);
   if (!surroundings) return surroundings.error();
   plan.fall.surroundings = std::move(*surroundings);
   plan.fall.world.friction = options_.friction;

@@ -10,6 +10,7 @@
 #include "core/index.h"
 #include "formats/anim/anim.h"
 #include "samples/generator/walk.h"
+#include "support/height_images.h"
 
 namespace krok::test {
 namespace {
@@ -120,6 +121,16 @@ TEST_F(KrokRagdoll, TheGroundMayBeAnything) {
   report({"walk.anim", "--at", "1s", "--duration", "2s", "--push", "Spine2=0,0,60", "--ground",
           "slope:angle=-25deg,begin=0m"});
   EXPECT_LT(hips_height(read("out.anim"), 180), level - 0.2f);
+}
+
+// Would fail if the ground was opened for each use of it, with its warnings again.
+TEST_F(KrokRagdoll, TheGroundIsReadOnce) {
+  put("hill.png", test::png_image(2, 2, 0, {0, 0, 9, 9}, 0, 0, 8));
+  const json made = report({"walk.anim", "--at", "1s", "--duration", "1s", "--ground", "hill.png",
+                            "--ground-size", "8mx8m", "--ground-range", "0m,1m"});
+  EXPECT_EQ(std::ranges::count_if(
+                made["issues"], [](const json& issue) { return issue["code"] == "ground-levels"; }),
+            1);
 }
 
 TEST_F(KrokRagdoll, WrongInputIsToldAndNothingIsWritten) {

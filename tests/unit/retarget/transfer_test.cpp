@@ -601,7 +601,7 @@ TEST(Retarget, TakesTogetherGiveOneStance) {
 }
 
 // Would fail if a step, which files without another reference pose have as theirs, was taken for
-// how the figure stands: a foot came out 49 degrees off, the trunk as bent as the step leaned.
+// how the body stands: a foot came out 49 degrees off, the trunk as bent as the step leaned.
 TEST(Retarget, AStepIsNoStance) {
   const Skeleton human = human_skeleton();
   Clip walk = lively_clip(human, 60);
