@@ -325,7 +325,7 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
     Provenance made = context.provenance();
     made.conversions = std::move(before.conversions);
     made.removed_root_motion = before.removed_root_motion;
-    if (made.removed_root_motion) made.removed_root_motion->velocity *= outcome.report.scale;
+    if (made.removed_root_motion) made.removed_root_motion->velocity *= outcome.report.path_scale;
     made.conversions.push_back("retargeted: " + summary(outcome));
     return made;
   };

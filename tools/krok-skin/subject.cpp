@@ -200,7 +200,7 @@ class Loader {
     stretches.clear();
     auto& removed = moved->clip.provenance.removed_root_motion;
     removed = clip->provenance.removed_root_motion;
-    if (removed) removed->velocity *= moved->report.scale;
+    if (removed) removed->velocity *= moved->report.path_scale;
     return std::move(moved->clip);
   }
 
