@@ -38,9 +38,12 @@ Status write(const CameraTrack& camera, const WriteOptions& options, OutputFile&
                     frame);
     std::memcpy(frame + size - sizeof(float), &camera.fields_of_view[i], sizeof(float));
   }
-  ContainerWriter container(file, kFormat, orientation_flags(options.orientation), 3);
+  const std::vector<std::uint32_t> cuts(camera.cuts.begin(), camera.cuts.end());
+  ContainerWriter container(file, kFormat, orientation_flags(options.orientation),
+                            cuts.empty() ? 3 : 4);
   Status status = container.section("INFO", std::as_bytes(std::span(&info, 1)));
   if (status) status = container.section("FRAMES", frames);
+  if (status && !cuts.empty()) status = container.section("CUTS", std::as_bytes(std::span(cuts)));
   if (status) status = write_provenance(camera.provenance, container);
   if (status) status = container.finish();
   return status;
@@ -79,9 +82,20 @@ Result<CameraTrack> read(std::span<const std::byte> file) {
     camera.orientations[i] = orientation.cast<float>();
     std::memcpy(&camera.fields_of_view[i], frame + size - sizeof(float), sizeof(float));
   }
+  if (const auto found = container->find("CUTS"); found) {
+    const std::size_t count = found->bytes.size() / sizeof(std::uint32_t);
+    const auto cuts = container->section("CUTS", count, sizeof(std::uint32_t));
+    if (!cuts) return cuts.error();
+    ByteReader reader(cuts->bytes);
+    // Numbers that are no frames fail in check().
+    for (std::size_t i = 0; i < count; ++i) {
+      camera.cuts.push_back(static_cast<int>(reader.read<std::uint32_t>()));
+    }
+  }
   if (Status status = check(camera); !status) {
-    const bool rate = status.error().code == "camera-rate";
-    return at_section(std::move(status).error(), *container, rate ? "INFO" : "FRAMES");
+    const std::string& code = status.error().code;
+    const char* section = code == "camera-rate" ? "INFO" : code == "camera-cut" ? "CUTS" : "FRAMES";
+    return at_section(std::move(status).error(), *container, section);
   }
   return camera;
 }

@@ -14,6 +14,7 @@
 #include "formats/gltf/glb_container_internal.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/joint_tracks.h"
+#include "formats/gltf/json_text_internal.h"
 #include "math/quaternion.h"
 
 namespace krok::gltf {
@@ -70,6 +71,42 @@ Status check_all(const CameraTrack& track, const CameraOptions& options) {
     return Error("gltf-value", "near plane and aspect ratio must be positive and finite");
   }
   return {};
+}
+
+struct CameraKeys {
+  std::vector<float> times;
+  std::vector<Vec3f> positions;
+  std::vector<Quatf> rotations;
+};
+
+// A key a frame. Just before a cut, near enough to count as on that frame (see find_rate() in
+// lib/character), one more holds the frame before and one begins the new shot: loaders interpolate
+// between all keys.
+CameraKeys keys_of(const CameraTrack& track, std::span<const float> times) {
+  CameraKeys keys;
+  const auto add = [&](float time, std::size_t frame) {
+    keys.times.push_back(time);
+    keys.positions.push_back(track.positions[frame]);
+    keys.rotations.push_back(track.orientations[frame]);
+    // Successive rotations in one hemisphere, so that viewers interpolate along the shorter arc.
+    const std::size_t count = keys.rotations.size();
+    if (count > 1 && keys.rotations[count - 1].dot(keys.rotations[count - 2]) < 0) {
+      keys.rotations.back().coeffs() *= -1;
+    }
+  };
+  for (std::size_t frame = 0; frame < times.size(); ++frame) {
+    if (track.is_cut(static_cast<int>(frame))) {
+      const auto before = [&](double frames, float limit) {
+        const double time = static_cast<double>(times[frame]) - frames / track.rate;
+        return std::min(static_cast<float>(time), std::nextafter(limit, 0.0f));
+      };
+      const float begin = before(0.004, times[frame]);
+      add(before(0.008, begin), frame - 1);
+      add(begin, frame);
+    }
+    add(times[frame], frame);
+  }
+  return keys;
 }
 
 // Adds a camera to the JSON and the buffer of a file.
@@ -180,7 +217,8 @@ class CameraPutter {
     if (animations.empty()) {
       animations.push_back({{"name", options_.name},
                             {"channels", OrderedJson::array()},
-                            {"samplers", OrderedJson::array()}});
+                            {"samplers", OrderedJson::array()},
+                            {"extras", {{kRate, track_.rate}}}});
     }
     const std::size_t wanted = find_animation(animations);
     if (wanted >= animations.size()) {
@@ -194,19 +232,15 @@ class CameraPutter {
                       animations.size(), shown(text_in(animations[0], "name"))),
           "choose another with --clip NAME or NUMBER"));
     }
-    // Successive rotations in one hemisphere, so that viewers interpolate along the shorter arc.
-    std::vector<Quatf> rotations = track_.orientations;
-    for (std::size_t i = 1; i < rotations.size(); ++i) {
-      if (rotations[i].dot(rotations[i - 1]) < 0) rotations[i].coeffs() *= -1;
-    }
-    const std::size_t input = put_floats(*times, "SCALAR", times->size());
-    list_in(json_, "accessors")[input]["min"] = numbers(std::span(*times).first(1));
-    list_in(json_, "accessors")[input]["max"] = numbers(std::span(*times).last(1));
-    const std::size_t count = rotations.size();
+    const CameraKeys keys = keys_of(track_, *times);
+    const std::size_t count = keys.times.size();
+    const std::size_t input = put_floats(keys.times, "SCALAR", count);
+    list_in(json_, "accessors")[input]["min"] = numbers(std::span(keys.times).first(1));
+    list_in(json_, "accessors")[input]["max"] = numbers(std::span(keys.times).last(1));
     const std::size_t places =
-        put_floats({track_.positions.data()->data(), 3 * count}, "VEC3", count);
+        put_floats({keys.positions.data()->data(), 3 * count}, "VEC3", count);
     const std::size_t turns =
-        put_floats({rotations.data()->coeffs().data(), 4 * count}, "VEC4", count);
+        put_floats({keys.rotations.data()->coeffs().data(), 4 * count}, "VEC4", count);
     OrderedJson& animation = animations[wanted];
     put_channel(animation, node, "translation", input, places);
     put_channel(animation, node, "rotation", input, turns);

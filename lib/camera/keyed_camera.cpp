@@ -238,6 +238,26 @@ std::vector<Value> values_of(const KeyedCamera& camera, const Get& get) {
   return values;
 }
 
+// The time whose view is shown: that of the key before where it holds until the next.
+double held(const KeyedCamera& camera, double time) {
+  const auto after = std::ranges::upper_bound(camera.keys, time, {}, &CameraKey::time);
+  if (after == camera.keys.begin() || after == camera.keys.end()) return time;
+  const CameraKey& before = *std::prev(after);
+  return before.between == Between::step ? before.time : time;
+}
+
+// The first frames at or after the keys that a step leads to.
+std::vector<int> cuts_of(const KeyedCamera& camera, std::span<const double> moments) {
+  std::vector<int> cuts;
+  for (std::size_t key = 1; key < camera.keys.size(); ++key) {
+    if (camera.keys[key - 1].between != Between::step) continue;
+    const auto frame = std::ranges::lower_bound(moments, camera.keys[key].time) - moments.begin();
+    const int cut = static_cast<int>(std::min(frame, std::ssize(moments) - 1));
+    if (cut > 0 && (cuts.empty() || cuts.back() < cut)) cuts.push_back(cut);
+  }
+  return cuts;
+}
+
 std::vector<double> lens_over_time(const KeyedCamera& camera, std::span<const double> moments) {
   KeyTimes keys =
       times_of(camera, [](const CameraKey& key) { return key.field_of_view.has_value(); });
@@ -248,7 +268,8 @@ std::vector<double> lens_over_time(const KeyedCamera& camera, std::span<const do
     if (key.field_of_view) values.push_back(*key.field_of_view);
   }
   const KeyedCurve<MonotoneNumber> curve(std::move(keys), std::move(values));
-  std::ranges::transform(moments, lens.begin(), [&](double time) { return curve.at(time); });
+  std::ranges::transform(moments, lens.begin(),
+                         [&](double time) { return curve.at(held(camera, time)); });
   return lens;
 }
 
@@ -312,6 +333,7 @@ Result<CameraTrack> make_track(const KeyedCamera& camera, double rate) {
 
   CameraTrack track;
   track.rate = rate;
+  track.cuts = cuts_of(camera, *moments);
   for (std::size_t i = 0; i < moments->size(); ++i) {
     const Quat turned = rolled(directions[i], rolls.at((*moments)[i]));
     track.positions.push_back(positions[i].cast<float>());

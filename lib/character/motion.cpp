@@ -85,6 +85,33 @@ double lens_at(const Scene& scene, int camera, int animation, double time) {
   return (1 - share) * static_cast<double>(lens.lens[before]) + share * after;
 }
 
+// The frames at which a new shot begins: where the camera's node jumps, at a step or between keys
+// that are much nearer to each other than to the one before.
+std::vector<int> cuts_of(const nodes::Animation& animation, int node, const Sampling& sampling) {
+  std::vector<int> cuts;
+  for (const nodes::Channel& channel : animation.channels) {
+    if (channel.node != node || channel.interpolation == nodes::Interpolation::cubic_spline)
+      continue;
+    const std::vector<float>& times = *channel.times;
+    for (std::size_t key = 1; key < times.size(); ++key) {
+      const auto value = [&](std::size_t k) {
+        return std::span(*channel.values).subspan(k * at(channel.width), at(channel.width));
+      };
+      const bool near =
+          key > 1 && times[key] - times[key - 1] < 0.05f * (times[key - 1] - times[key - 2]);
+      if (channel.interpolation != nodes::Interpolation::step && !near) continue;
+      if (std::ranges::equal(value(key - 1), value(key))) continue;
+      // Key times are floats: snap to frames.
+      const double place = (static_cast<double>(times[key]) - sampling.start) / sampling.step;
+      const double frame = std::ceil(place - 1e-4);
+      if (frame >= 1 && frame < sampling.frames) cuts.push_back(static_cast<int>(frame));
+    }
+  }
+  std::ranges::sort(cuts);
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  return cuts;
+}
+
 }  // namespace
 
 Result<Skeleton> skeleton_in_krok(const Rig& rig, const Conversion& conversion) {
@@ -188,6 +215,7 @@ Result<CameraTrack> make_camera(const Scene& scene, const nodes::Evaluator& eval
   }
   CameraTrack track;
   track.rate = sampling.rate;
+  if (animation >= 0) track.cuts = cuts_of(scene.animations[at(animation)], node, sampling);
   nodes::Evaluation state;
   // A camera has no reference pose: only the rotation to world axes applies.
   const Quat turn =

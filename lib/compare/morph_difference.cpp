@@ -1,6 +1,8 @@
 #include "compare/model_difference.h"
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -58,6 +60,18 @@ Result<MorphDifference> difference(const MorphSet& first, const MorphSet& second
   return result;
 }
 
+namespace {
+
+std::string shown_cuts(const CameraTrack& camera) {
+  constexpr std::size_t kShown = 5;
+  const auto& cuts = camera.cuts;
+  if (cuts.empty()) return "none";
+  const auto last = cuts.begin() + static_cast<std::ptrdiff_t>(std::min(cuts.size(), kShown));
+  return fmt::format("{}{}", fmt::join(cuts.begin(), last, ", "), last == cuts.end() ? "" : " ...");
+}
+
+}  // namespace
+
 Result<CameraDifference> difference(const CameraTrack& first, const CameraTrack& second,
                                     const Tolerance& tolerance) {
   for (const CameraTrack* camera : {&first, &second}) {
@@ -76,6 +90,10 @@ Result<CameraDifference> difference(const CameraTrack& first, const CameraTrack&
       match_frames(first.frame_count(), first.rate, second.frame_count(), second.rate);
   result.structure = std::move(frames.differences);
   result.compared_frames = static_cast<int>(frames.frames.size());
+  if (result.structure.empty() && first.cuts != second.cuts) {
+    result.structure.push_back(fmt::format("cuts at frames {} in the first, {} in the second",
+                                           shown_cuts(first), shown_cuts(second)));
+  }
   for (const auto& [frame_a, frame_b] : frames.frames) {
     const auto i = static_cast<std::size_t>(frame_a);
     const auto j = static_cast<std::size_t>(frame_b);

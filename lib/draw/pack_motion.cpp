@@ -227,6 +227,7 @@ void pack_camera(const CameraTrack& camera, Json& item, Blob& blob) {
   }
   item["rate"] = camera.rate;
   item["frames"] = camera.frame_count();
+  item["cuts"] = camera.cuts;
   item["positions"] = blob.add<float>(positions);
   item["orientations"] = blob.add<float>(orientations);
   item["fieldsOfView"] = blob.add<float>(camera.fields_of_view);

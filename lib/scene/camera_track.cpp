@@ -29,6 +29,15 @@ Status check(const CameraTrack& camera) {
           fmt::format("the field of view in frame {} is {} rad, expected 0 to pi", i, view));
     }
   }
+  int before = 0;
+  for (const int cut : camera.cuts) {
+    if (cut <= before || cut >= camera.frame_count()) {
+      return Error("camera-cut",
+                   fmt::format("a cut is at frame {}, expected more than {} and less than {}", cut,
+                               before, camera.frame_count()));
+    }
+    before = cut;
+  }
   return {};
 }
 
@@ -39,6 +48,7 @@ CameraMotion camera_motion(const CameraTrack& track) {
   motion.least_field_of_view = static_cast<double>(least);
   motion.most_field_of_view = static_cast<double>(most);
   for (int frame = 0; frame + 1 < track.frame_count(); ++frame) {
+    if (track.is_cut(frame + 1)) continue;
     const auto f = static_cast<std::size_t>(frame);
     const double way = (track.positions[f + 1] - track.positions[f]).cast<double>().norm();
     const double turn = angle_between(track.orientations[f].cast<double>(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "core/result.h"
@@ -15,15 +16,20 @@ struct CameraTrack {
   std::vector<Vec3f> positions;       // metres
   std::vector<Quatf> orientations;    // camera_to_world, unit
   std::vector<float> fields_of_view;  // vertical, radians, in (0, pi)
+  // Frames at which a new shot begins: the frame before holds until then, nothing is interpolated.
+  // They increase and are at least 1.
+  std::vector<int> cuts;
   Provenance provenance;
 
   int frame_count() const { return static_cast<int>(positions.size()); }
+  bool is_cut(int frame) const { return std::ranges::binary_search(cuts, frame); }
 };
 
-// Checks everything documented above. Codes: camera-shape, camera-rate, camera-value.
+// Checks everything documented above. Codes: camera-shape, camera-rate, camera-value,
+// camera-cut.
 Status check(const CameraTrack& camera);
 
-// Metrics of a camera's motion between frames.
+// Metrics of a camera's motion between frames; a cut is none.
 struct CameraMotion {
   double length = 0;           // path length, metres
   double largest_speed = 0;    // metres per second

@@ -160,6 +160,9 @@ Result<Description> describe_cam(const InputFile& file, const SkeletonOptions&, 
     Eigen::AlignedBox3d box;
     for (const Vec3f& position : camera->positions) box.extend(position.cast<double>());
     const Vec3 size = box.sizes();
+    if (!camera->cuts.empty())
+      out.add("cuts at", fmt::format("frame {}", fmt::join(camera->cuts, ", ")));
+    out.json["cuts"] = camera->cuts;
     out.add("moves within", fmt::format("{} x {} x {} m", readable(size.x(), 4),
                                         readable(size.y(), 4), readable(size.z(), 4)));
     out.json["range"] = {size.x(), size.y(), size.z()};

@@ -294,14 +294,15 @@ void Shot::choose_scale(int jobs) {
   }
 }
 
-// Between frames along the shorter arc; held at both ends.
+// Between frames along the shorter arc; held at both ends and before cuts.
 render::Lens Shot::lens_at(double time) const {
   const CameraTrack& track = *track_;
   const double last = track.frame_count() - 1;
   const double place = std::clamp(time * track.rate, 0.0, last);
   const auto before = static_cast<std::size_t>(std::floor(place));
   const std::size_t after = std::min(before + 1, static_cast<std::size_t>(last));
-  const double share = place - std::floor(place);
+  const bool cut = track.is_cut(static_cast<int>(after));
+  const double share = cut ? 0 : place - std::floor(place);
   const auto mix = [&](double a, double b) { return a + share * (b - a); };
   render::Lens lens;
   for (int i = 0; i < 3; ++i) {

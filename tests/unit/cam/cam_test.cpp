@@ -40,6 +40,18 @@ TEST(Cam, RoundTrip) {
   }
 }
 
+TEST(Cam, KeepsCuts) {
+  CameraTrack camera = samples::camera();
+  const auto without = samples::bytes_of(camera);
+  camera.cuts = {1};
+  const auto bytes = samples::bytes_of(camera);
+  const auto back = cam::read(bytes);
+  ASSERT_TRUE(back.ok()) << back.error().message;
+  EXPECT_EQ(back->cuts, camera.cuts);
+  EXPECT_EQ(samples::bytes_of(*back), bytes);
+  EXPECT_TRUE(cam::read(without)->cuts.empty());
+}
+
 TEST(Cam, NoFramesAreFine) {
   CameraTrack camera;
   const auto back = cam::read(samples::bytes_of(camera));
@@ -64,6 +76,9 @@ TEST(Cam, WriterRefusesWhatIsNoCamera) {
   EXPECT_EQ(code([](CameraTrack& c) { c.fields_of_view[0] = 3.2f; }), "camera-value");
   EXPECT_EQ(code([](CameraTrack& c) { c.rate = -1; }), "camera-rate");
   EXPECT_EQ(code([](CameraTrack& c) { c.positions.pop_back(); }), "camera-shape");
+  EXPECT_EQ(code([](CameraTrack& c) { c.cuts = {0}; }), "camera-cut");
+  EXPECT_EQ(code([](CameraTrack& c) { c.cuts = {1, 1}; }), "camera-cut");
+  EXPECT_EQ(code([](CameraTrack& c) { c.cuts = {c.frame_count()}; }), "camera-cut");
 }
 
 TEST(Cam, ReaderRefusesCountsThatTheFileHasNoBytesFor) {

@@ -237,6 +237,24 @@ TEST(KeyedCamera, RefusesWhatMakesNoCamera) {
   EXPECT_EQ(code([](KeyedCamera& c) { c.keys[3].position.x() = 1e300; }), "camera-keys");
 }
 
+// Else a cut is flown through, and its lens zooms while the picture is to hold still.
+TEST(KeyedCamera, AStepEndsInACut) {
+  KeyedCamera camera = {{key_at(0, kA), key_at(1, kB), key_at(2.004, kC), key_at(3, kD)}};
+  camera.keys[0].between = camera.keys[2].between = Between::linear;
+  camera.keys[1].between = Between::step;
+  camera.keys[0].field_of_view = 0.5;
+  camera.keys[3].field_of_view = 1.5;
+  const CameraTrack track = track_of(camera);
+  EXPECT_EQ(track.cuts, (std::vector<int>{201}));
+  EXPECT_NEAR(lens(track, 1.0), lens(track, 2.0), 1e-6);
+  EXPECT_GT(lens(track, 2.01), lens(track, 2.0) + 0.3);
+  EXPECT_LT(camera_motion(track).largest_speed, (kC - kD).norm() / 0.996 + 0.01);
+  camera.keys = {camera.keys[0], camera.keys[1]};
+  camera.keys[0].between = Between::step;
+  camera.keys[1].time = 0.001;  // the last frame, at 0.01 s, holds it
+  EXPECT_EQ(track_of(camera).cuts, (std::vector<int>{1}));
+}
+
 TEST(CameraMotion, IsTheFastestStep) {
   CameraTrack track;
   track.rate = 10;

@@ -58,6 +58,19 @@ TEST(ImportedCamera, StandsAndLooksAsInTheScene) {
   EXPECT_FLOAT_EQ(track.fields_of_view[0], 0.8f);
 }
 
+// Else a cut in another program's file is flown through at any other rate.
+TEST(ImportedCamera, CutsAreWhereItsNodeJumps) {
+  nodes::Scene scene = filmed();
+  nodes::Animation& animation = scene.animations[0];
+  add_channel(animation, 1, nodes::Path::translation, 3, {0, 0.4f, 0.4001f, 1},
+              {0, 0, 0, 1, 0, 0, 9, 0, 0, 9, 0, 1});
+  EXPECT_EQ(track_of(scene, 0).cuts, std::vector<int>{5});
+  add_channel(animation, 1, nodes::Path::rotation, 4, {0, 0.3f, 0.7f, 1},
+              {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 0});
+  animation.channels.back().interpolation = nodes::Interpolation::step;
+  EXPECT_EQ(track_of(scene, 0).cuts, (std::vector<int>{5, 7}));
+}
+
 TEST(ImportedCamera, WithoutAnimationItIsOneFrame) {
   nodes::Scene scene = filmed();
   scene.space = {1.0, Quat::Identity()};

@@ -206,6 +206,10 @@ TEST(CameraDifference, MeasuresPositionOrientationAndFieldOfView) {
   EXPECT_NEAR(found->fields_of_view.largest, 0.1, 1e-6);
   EXPECT_EQ(found->fields_of_view.where.frame, 3);
   EXPECT_TRUE(found->orientations.within());
+  // A film with a cut shows something else between the same frames.
+  other = make_camera();
+  other.cuts = {2};
+  EXPECT_FALSE(difference(make_camera(), other, {})->same());
 }
 
 }  // namespace

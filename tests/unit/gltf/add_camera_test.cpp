@@ -103,6 +103,25 @@ TEST(CameraInGltf, AloneIsAWholeFile) {
   expect_as_in(track, *scene, 0);
 }
 
+// Else viewers of 60 Hz show a flight of a thirtieth of a second at each cut.
+TEST(CameraInGltf, HoldsUntilACut) {
+  for (const double rate : {30.0, 120.0}) {
+    CameraTrack track = moving(61, rate);
+    track.cuts = {20, 21};
+    for (std::size_t f = 20; f < 61; ++f) track.positions[f].x() += f < 21 ? 50.f : 100.f;
+    const auto made = camera_alone(track, {});
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    const auto scene = read(made->bytes);
+    ASSERT_TRUE(scene.ok()) << scene.error().message;
+    EXPECT_EQ(scene->animations[0].rate, rate);
+    expect_as_in(track, *scene, 0);
+    for (const auto& [moment, frame] : {std::pair(19.98, 19u), {20.0, 20u}, {20.98, 20u}}) {
+      const Seen seen = seen_at(*scene, 0, moment / rate);
+      EXPECT_LT((seen.place - track.positions[frame].cast<double>()).norm(), 0.01) << moment;
+    }
+  }
+}
+
 TEST(CameraInGltf, GoesIntoTheCharactersSceneAndAnimation) {
   const std::vector<std::byte> before = test::rig().glb();
   const auto old_scene = read(before);

@@ -173,6 +173,7 @@ export class CameraTrack {
   constructor(item, bytes) {
     this.rate = item.rate;
     this.frames = item.frames;
+    this.cuts = new Set(item.cuts);
     this.positions = view(bytes, Float32Array, item.positions);
     this.rotations = view(bytes, Float32Array, item.orientations);
     this.fields = view(bytes, Float32Array, item.fieldsOfView);
@@ -191,8 +192,8 @@ export class CameraTrack {
     if (this.frames === 0) return;
     const at = Math.min(Math.max(time * this.rate, 0), this.frames - 1);
     const frame = Math.min(Math.floor(at + 1e-6), this.frames - 1);
-    const fraction = Math.max(at - frame, 0);
     const next = Math.min(frame + 1, this.frames - 1);
+    const fraction = this.cuts.has(next) ? 0 : Math.max(at - frame, 0);
     this.position.fromArray(this.positions, frame * 3);
     this.position.lerp(this.there.fromArray(this.positions, next * 3), fraction);
     this.orientation.fromArray(this.rotations, frame * 4);
