@@ -14,7 +14,8 @@ namespace krok::cam {
 
 // Reads a track; it passes check(). Orientations stored as x, y, z are read with w <= 0. Safe for
 // untrusted input: memory use is bounded by the file size. Codes: those of
-// formats/container/container.h, camera-shape, camera-cut, those of check(CameraTrack), with byte offsets.
+// formats/container/container.h, camera-shape, camera-cut, those of check(CameraTrack), with byte
+// offsets.
 Result<CameraTrack> read(std::span<const std::byte> file);
 
 struct WriteOptions {

@@ -50,7 +50,8 @@ inline constexpr double kUsualFieldOfView = 45 * kRadiansPerDegree;
 // If all keys have targets, the camera looks at the interpolated target, with world up (for views
 // straight up or down, see look_at.h). If any key has an orientation instead, the orientations at
 // the keys are interpolated. A key without a field of view is ignored in interpolating it; if no
-// key has one, it is 45 degrees. A step holds the field of view, too, and ends in a cut of the track.
+// key has one, it is 45 degrees. A step holds the field of view, too, and ends in a cut of the
+// track.
 //
 // Codes: camera-keys (no keys; times that do not increase, are negative or not finite; a key with
 // neither or both of target and orientation, a target at the camera's position; values that are not

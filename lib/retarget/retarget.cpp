@@ -13,6 +13,7 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
+#include "retarget/copied_frames_internal.h"
 #include "retarget/foot_placement.h"
 #include "retarget/frame_transfer_internal.h"
 #include "retarget/joint_mapping.h"
@@ -28,127 +29,6 @@ namespace {
 // times values are smoothed over 0.12 s on either side.
 constexpr double kOverlap = 2;
 constexpr int kSamples = 8, kOfSample = 2048;  // frames
-
-// Roots nearer to the hips than this, of a leg's length, are at their place.
-constexpr double kAtHips = 0.05;
-
-// Exporters whose reference pose is no body's keep no face in it, either: eyes and jaw sit on the
-// head as in the first frame of the target's own motion. The joints of which that is so.
-std::vector<int> faces_of_motion(const Clip& target, const RoleMap& roles) {
-  const int head = roles.joint(Role::head);
-  if (head < 0 || !roles.humanoid || target.frame_count() == 0) return {};
-  if (is_straight({target.skeleton, roles, target.skeleton.reference})) return {};
-  std::vector<int> faces = joints_below(target.skeleton, head);
-  std::erase(faces, head);
-  return faces;
-}
-
-Quat turn_in_first_frame(const Clip& target, int joint) {
-  const auto turns = target.frame_orientations(0);
-  const Quatf& parent = turns[at(target.skeleton.parents[at(joint)])];
-  return (parent.conjugate() * turns[at(joint)]).cast<double>().normalized();
-}
-
-// A joint that the source lacks: where it is in the frame of another, or in the world (-1).
-struct Follower {
-  int joint, carrier;
-  Transform offset;
-};
-
-// On their parents as in the reference pose, a face as faces_of_motion() has it; what is beside the
-// hips, and roots at their place, goes along with them; other roots stay.
-std::vector<Follower> followers_of(const Clip& target, const RoleMap& roles,
-                                   const SameSkeleton& same) {
-  const Skeleton& skeleton = target.skeleton;
-  const int hips = roles.joint(Role::hips);
-  const std::vector<int> faces = faces_of_motion(target, roles);
-  std::vector<Follower> followers;
-  for (int k = 0; k < skeleton.joint_count(); ++k) {
-    if (same.source_joint[at(k)] >= 0) continue;
-    const int parent = skeleton.parents[at(k)];
-    Follower follower{k, parent, skeleton.reference_local(k)};
-    if (carries(skeleton, k, hips)) {
-      const bool near = length_of(skeleton, k, hips) < kAtHips * leg_length(skeleton, roles);
-      follower.carrier = near ? hips : -1;
-    } else if (carries(skeleton, parent, hips) && parent != hips) {
-      follower.carrier = hips;
-    } else if (std::ranges::find(faces, k) != faces.end()) {
-      follower.offset.orientation = turn_in_first_frame(target, k);
-    }
-    const Transform& own = skeleton.reference[at(k)];
-    if (follower.carrier < 0) follower.offset = own;
-    if (follower.carrier >= 0 && follower.carrier != parent) {
-      follower.offset = skeleton.reference[at(follower.carrier)].inverse() * own;
-    }
-    followers.push_back(follower);
-  }
-  return followers;
-}
-
-void follow(const Follower& follower, int frame, Clip& frames) {
-  const auto positions = frames.frame_positions(frame);
-  const auto orientations = frames.frame_orientations(frame);
-  Transform now = follower.offset;
-  if (follower.carrier >= 0) {
-    now = Transform{positions[at(follower.carrier)].cast<double>(),
-                    orientations[at(follower.carrier)].cast<double>()} *
-          now;
-  }
-  positions[at(follower.joint)] = now.position.cast<float>();
-  orientations[at(follower.joint)] = now.orientation.normalized().cast<float>();
-}
-
-// Copies orientations and scales positions, without rounding except by the scale.
-RetargetedFrames copy_of(const FrameSource& source, const Skeleton& target,
-                         const SameSkeleton& same, std::vector<Follower> followers) {
-  const auto copy = [target, same, followers = std::move(followers)](Clip& frames) {
-    const Clip before = std::exchange(frames, {});
-    frames.skeleton = target;
-    frames.rate = before.rate;
-    frames.resize(before.frame_count());
-    for (int frame = 0; frame < before.frame_count(); ++frame) {
-      const auto positions = before.frame_positions(frame);
-      const auto orientations = before.frame_orientations(frame);
-      for (int k = 0; k < target.joint_count(); ++k) {
-        if (same.source_joint[at(k)] < 0) continue;
-        const auto from = at(same.source_joint[at(k)]);
-        frames.frame_orientations(frame)[at(k)] = orientations[from];
-        const Vec3f& position = positions[from];
-        frames.frame_positions(frame)[at(k)] =
-            same.scale == 1 ? position
-                            : Vec3f((same.scale * position.cast<double>()).cast<float>());
-      }
-      for (const Follower& follower : followers) follow(follower, frame, frames);
-    }
-    return Status();
-  };
-  RetargetedFrames result{changed(source, copy), std::make_shared<Report>()};
-  result.frames.skeleton = target;
-  Report& report = *result.report;
-  report.method = Method::same_skeleton;
-  report.scale = report.path_scale = same.scale;
-  report.source_pose = source.skeleton.reference;
-  report.target_pose = target.reference;
-  std::vector<char> used(source.skeleton.names.size(), 0);
-  for (int k = 0; k < target.joint_count(); ++k) {
-    const int from = same.source_joint[at(k)];
-    if (from >= 0) used[at(from)] = 1;
-    if (target.end_sites[at(k)] != 0) continue;
-    if (from < 0) {
-      report.following_target.push_back(k);
-      continue;
-    }
-    MappedJoint& joint = report.mapped.emplace_back();
-    joint.target = k;
-    joint.source = from;
-  }
-  for (std::size_t j = 0; j < used.size(); ++j) {
-    if (used[j] == 0 && source.skeleton.end_sites[j] == 0) {
-      report.unused_source.push_back(static_cast<int>(j));
-    }
-  }
-  return result;
-}
 
 // All of a short take, eight parts of a longer one.
 Result<Clip> sample_of(const FrameSource& source, int jobs) {
@@ -555,7 +435,7 @@ Result<RetargetedFrames> transfer(const FrameSource& source, const RoleMap& sour
   const bool given = options.source_frame || options.target_frame || !options.source_pose.empty() ||
                      !options.target_pose.empty();
   if (same && !given && (!options.scale || *options.scale == same->scale)) {
-    return copy_of(source, target.skeleton, *same, followers_of(target, target_roles, *same));
+    return copied_frames(source, target, target_roles, *same);
   }
   const auto made =
       std::make_shared<Transfer>(source, source_roles, target, target_roles, options, block_frames);
