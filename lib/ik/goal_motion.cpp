@@ -227,12 +227,12 @@ struct TurnsBefore {
 class FrameSolver {
  public:
   FrameSolver(const FrameRun& run, double duration, std::span<const KeyedGoal> goals,
-              std::span<const int> upright, Solver solver, TurnsBefore before)
+              const GoalMotionOptions& options, Solver solver, TurnsBefore before)
       : clip_(run.clip),
         first_(run.first),
         duration_(duration),
         goals_(goals),
-        upright_(upright),
+        options_(options),
         solver_(std::move(solver)),
         turns_(std::move(before.turns)),
         strengths_before_(std::move(before.strengths)) {
@@ -259,6 +259,7 @@ class FrameSolver {
   void turn_given(const std::vector<Vec3>& turns, double part);
   void list_turns(std::vector<Vec3>& turns);
   void mark_chains();
+  void hold();
   void start_from_before();
   void start_limbs();
   void keep_upright();
@@ -269,7 +270,7 @@ class FrameSolver {
   int first_;  // number of its first frame
   double duration_;
   std::span<const KeyedGoal> goals_;
-  std::span<const int> upright_;
+  const GoalMotionOptions& options_;
   Solver solver_;
   std::vector<Transform> given_, solved_, other_, scratch_, local_, before_solving_;
   std::vector<Goal> active_;
@@ -360,6 +361,24 @@ void FrameSolver::mark_chains() {
   }
 }
 
+// Adds goals for what others would take along.
+void FrameSolver::hold() {
+  const auto& parents = clip_.skeleton.parents;
+  for (const int joint : options_.held) {
+    int carrier = joint;
+    while (carrier >= 0 && in_chain_[at(carrier)] == 0) carrier = parents[at(carrier)];
+    if (carrier < 0 && !solver_.options().root_moves) continue;
+    Goal goal;
+    goal.kind = Goal::Kind::pose;
+    goal.joint = joint;
+    goal.target = given_[at(joint)].position;
+    goal.orientation = given_[at(joint)].orientation;
+    goal.weight = kHeldWeight;
+    active_.push_back(goal);
+  }
+  mark_chains();
+}
+
 // The solution starts from the frame as it was, its joints turned by a part of these.
 void FrameSolver::turn_given(const std::vector<Vec3>& turns, double part) {
   const auto& parents = clip_.skeleton.parents;
@@ -424,7 +443,7 @@ void FrameSolver::start_limbs() {
 void FrameSolver::keep_upright() {
   const auto& parents = clip_.skeleton.parents;
   const Limits& limits = solver_.limits();
-  for (const int joint : upright_) {
+  for (const int joint : options_.upright) {
     const int parent = parents[at(joint)];
     const auto hangs = [&](int j) {
       while (j > joint) j = parents[at(j)];
@@ -499,6 +518,7 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
   clip_.get_pose(frame - first_, given_);
   if (Status status = list_goals(time); !status) return status;
   mark_chains();
+  hold();
   start_from_before();
   const auto solution = solver_.solve(active_, solved_);
   if (!solution) return solution.error();
@@ -574,7 +594,7 @@ class BlockSolver {
     parallel_for(stretches.size(), 1, options_.jobs, [&](std::size_t from, std::size_t to) {
       for (std::size_t s = from; s < to; ++s) {
         const Stretch& stretch = stretches[s];
-        FrameSolver solver(run, duration_, goals_, options_.upright,
+        FrameSolver solver(run, duration_, goals_, options_,
                            *Solver::create(parents_, limits_, options_.solver),
                            stretch.first == first ? before_[number] : TurnsBefore());
         for (int f = stretch.first; f <= stretch.last && failed[s].ok(); ++f) {

@@ -79,11 +79,17 @@ struct GoalMotion {
   std::vector<Shift> shifts;
 };
 
+inline constexpr double kHeldWeight = 4;
+
 struct GoalMotionOptions {
   Options solver;
   // Joints that keep their orientation in the world, but for their limits, where their own goals do
   // not turn them: a head looks where it looked as the trunk leans.
   std::vector<int> upright;
+  // Joints that keep their place and orientation in the world where goals turn or shift what
+  // carries them: feet, whose legs bend as the hips follow a hand. They count kHeldWeight times as
+  // much.
+  std::vector<int> held;
   int jobs = 0;                  // for stretches of frames without goals between them
   Progress* progress = nullptr;  // may be null
 };

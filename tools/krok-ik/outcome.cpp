@@ -163,20 +163,28 @@ Diagnostics missed_goals(const Outcome& outcome) {
   return list;
 }
 
-Diagnostics moved_feet(const Outcome& outcome, const RoleMap& roles, bool root_moves) {
-  constexpr double kMoved = 0.01;  // metres
-  const Skeleton& skeleton = outcome.input.skeleton;
-  krok::ik::GoalMotion::Shift largest{kMoved, -1};
-  int joint = -1;
+std::vector<int> feet_without_goals(const Skeleton& skeleton, const RoleMap& roles,
+                                    std::span<const krok::ik::KeyedGoal> goals) {
+  std::vector<int> feet;
   for (const LegRoles& leg : kLegRoles) {
     const int foot = roles.joint(leg.foot), thigh = roles.joint(leg.upper);
     if (foot < 0 || thigh < 0) continue;
     const std::vector<std::uint8_t> within = subtree(skeleton, thigh);
-    const bool sought = std::ranges::any_of(outcome.goals, [&](const krok::ik::KeyedGoal& goal) {
-      return within[at(goal.goal.joint)] != 0;
-    });
+    const bool sought = std::ranges::any_of(
+        goals, [&](const krok::ik::KeyedGoal& goal) { return within[at(goal.goal.joint)] != 0; });
+    if (!sought) feet.push_back(foot);
+  }
+  return feet;
+}
+
+Diagnostics moved_feet(const Outcome& outcome, const RoleMap& roles) {
+  constexpr double kMoved = 0.01;  // metres
+  const Skeleton& skeleton = outcome.input.skeleton;
+  krok::ik::GoalMotion::Shift largest{kMoved, -1};
+  int joint = -1;
+  for (const int foot : feet_without_goals(skeleton, roles, outcome.goals)) {
     const krok::ik::GoalMotion::Shift& shift = outcome.motion.shifts[at(foot)];
-    if (sought || shift.distance <= largest.distance) continue;
+    if (shift.distance <= largest.distance) continue;
     largest = shift;
     joint = foot;
   }
@@ -185,8 +193,9 @@ Diagnostics moved_feet(const Outcome& outcome, const RoleMap& roles, bool root_m
       "ik-feet",
       fmt::format("goals move {} by up to {} mm, in frame {}", skeleton.names[at(joint)],
                   readable(1000 * largest.distance, 3), largest.frame),
-      root_moves ? "--root-moves shifts all of the body; goals for the feet hold them (--goals)"
-                 : "--depth leaves out joints that carry the legs; goals for the feet hold them");
+      "the goals are further than legs reach from where the feet stay; goals for the feet move "
+      "them, "
+      "too (--goals)");
   warning.frame = largest.frame;
   return {std::move(warning)};
 }

@@ -577,7 +577,10 @@ Result<int> Run::bring_about(const FrameSource& motion,
   krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
-  if (roles_.humanoid) how.upright = roles_.joints(Role::head);
+  if (roles_.humanoid) {
+    how.upright = roles_.joints(Role::head);
+    how.held = feet_without_goals(motion.skeleton, roles_, goals_);
+  }
   const std::string& asked = options_.goals.empty() ? options_.input : options_.goals;
   auto made = krok::ik::apply_goals(motion, goals_, limits_, how);
   if (!made) return std::move(made).error().in_file(asked);
@@ -595,7 +598,7 @@ Result<int> Run::bring_about(const FrameSource& motion,
       missed.where.file = options_.input;
       context_.diagnose(std::move(missed));
     }
-    context_.diagnose_in(options_.input, moved_feet(outcome, roles_, solver_.root_moves));
+    context_.diagnose_in(options_.input, moved_feet(outcome, roles_));
   };
   std::string chart;
   if (looks_with_eyes(options_) || !options_.plot.empty()) {

@@ -224,9 +224,9 @@ TEST_F(KrokIk, ArmsReachBeforeTheTrunkAndTheHeadKeepsItsDirection) {
   }
 }
 
-// Would fail if a hand dragged the feet of rigs whose thighs hang on the spine (Biped), or if feet
-// that all of the body takes along left their places without a word.
-TEST_F(KrokIk, FeetStayWhereThighsHangOnTheSpineAndAreWarnedOfWhereTheyCannot) {
+// Would fail if a hand dragged the feet of rigs whose thighs hang on the spine (Biped), if all of
+// the body slid along with it, or if feet left their places without a word.
+TEST_F(KrokIk, FeetStayAndAreWarnedOfWhereTheyCannot) {
   Clip biped = walk_;
   std::vector<int>& parents = biped.skeleton.parents;
   const int spine = biped.skeleton.find("Spine");
@@ -257,9 +257,21 @@ TEST_F(KrokIk, FeetStayWhereThighsHangOnTheSpineAndAreWarnedOfWhereTheyCannot) {
   ASSERT_EQ(held.exit_code, 0) << held.err;
   EXPECT_THAT(held.err, Not(HasSubstr("ik-feet")));
   EXPECT_LT((place(read("out.anim"), 30, "LeftFoot") - place(biped, 30, "LeftFoot")).norm(), 1e-6);
-  const auto shifted = ik({"biped.anim", "--reach", far, "--root-moves", "-o", "out.anim"});
-  ASSERT_EQ(shifted.exit_code, 0) << shifted.err;
-  EXPECT_THAT(shifted.err, HasSubstr("[ik-feet]"));
+  for (const std::vector<std::string>& whole :
+       {std::vector<std::string>{"--root-moves"}, {"--depth", "0"}}) {
+    std::vector<std::string> arguments = {"biped.anim", "--reach", far, "-o", "out.anim"};
+    arguments.insert(arguments.end(), whole.begin(), whole.end());
+    const auto bent = ik(arguments);
+    ASSERT_EQ(bent.exit_code, 0) << bent.err;
+    EXPECT_THAT(bent.err, Not(HasSubstr("[ik-")));
+    const Clip out = read("out.anim");
+    EXPECT_LT((place(out, 30, "LeftFoot") - place(biped, 30, "LeftFoot")).norm(), 1e-3);
+    EXPECT_GT((place(out, 30, "LeftLeg") - place(biped, 30, "LeftLeg")).norm(), 1e-3);
+  }
+  const auto pulled =
+      ik({"biped.anim", "--reach", reach(Vec3(0, 9, 0)), "--root-moves", "-o", "out.anim"});
+  ASSERT_EQ(pulled.exit_code, 0) << pulled.err;
+  EXPECT_THAT(pulled.err, HasSubstr("[ik-feet]"));
 }
 
 TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
