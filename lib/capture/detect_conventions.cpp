@@ -125,6 +125,7 @@ void detect_unit(const Evidence& evidence, Conventions& found) {
 namespace {
 
 constexpr double kInLine = 0.8;  // cosine: within 37 degrees
+constexpr double kAside = 0.82;  // cosine: over 35 degrees; a character set down diagonally
 
 // The default: perpendicular to `up`.
 Direction default_forward(Direction up) {
@@ -146,6 +147,11 @@ bool detect_forward_in_reference(const Evidence& evidence, Conventions& found) {
       fmt::format("the reference pose faces {}, judging by its left and right side",
                   signed_name(axis.direction));
   found.forward_confidence = axis.cosine > 0.9 ? Confidence::likely : Confidence::guess;
+  if (axis.cosine < kAside) {
+    found.forward_reason += fmt::format(", but {:.0f} degrees aside, and so does all that faces",
+                                        std::acos(axis.cosine) / kRadiansPerDegree);
+    return true;
+  }
   if (!evidence.reference_stands) return true;  // legs bent: toes are no evidence
   const auto toes = toes_direction(evidence.reference, marks, found.up);
   if (!toes) return true;

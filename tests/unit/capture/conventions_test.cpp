@@ -134,6 +134,18 @@ Skeleton folded_person() {
   return skeleton;
 }
 
+// Else a character that was set down diagonally faces aside for ever, without a word.
+TEST(DetectConventions, ADiagonalReferencePoseIsAGuess) {
+  for (const double degrees : {20.0, 44.0}) {
+    Skeleton turned = person(1, Direction::plus_y, Direction::plus_z);
+    const Quat turn(Eigen::AngleAxisd(degrees * kRadiansPerDegree, Vec3::UnitY()));
+    for (Transform& joint : turned.reference) joint = Transform{Vec3::Zero(), turn} * joint;
+    const Conventions found = detect_conventions(turned, find_roles(turned), {});
+    EXPECT_EQ(found.forward, Direction::plus_z);
+    EXPECT_EQ(found.forward_confidence == Confidence::guess, degrees > 40) << found.forward_reason;
+  }
+}
+
 TEST(DetectConventions, AReferencePoseThatDoesNotStandFacesWhereItsPelvisDoes) {
   const Skeleton folded = folded_person();
   const Skeleton upright = person(1, Direction::plus_y, Direction::plus_z);
