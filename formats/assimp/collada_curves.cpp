@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "core/numbers.h"
 #include "formats/assimp/collada_text_internal.h"
@@ -22,6 +23,12 @@ std::string id_of(std::string_view tag, std::string_view name) {
 struct ColladaSampler {
   std::string_view text;                               // the element
   std::map<std::string, std::string_view> contents{};  // by semantic, of the list
+};
+
+struct ColladaChannel {
+  std::string_view tag, sampler;  // the sampler's element
+  std::string id;                 // the sampler's
+  bool shares = false;            // it is another channel's before
 };
 
 // By id.
@@ -117,25 +124,35 @@ ResampledFile resample_collada(std::string_view text) {
     metres = parse_finite(attribute(tag, "meter")).value_or(1);
   });
   CurveSet set;
-  std::vector<std::string_view> elements;  // [curves]
+  std::vector<ColladaChannel> channels;  // [curves]
+  std::set<std::string> used;            // samplers
   std::map<std::string, int> targets;
   for_each_tag(text, "<channel", [&](std::string_view tag, std::string_view) {
-    const auto sampler = samplers.find(id_of(tag, "source"));
+    const std::string id = id_of(tag, "source");
+    const auto sampler = samplers.find(id);
     if (sampler == samplers.end()) return;
     const std::string target = attribute(tag, "target");
     targets[target] = static_cast<int>(set.curves.size());
     set.curves.push_back(curve_of(sampler->second, set.result.gap));
     const bool moves = target.size() > 2 && target[target.size() - 2] == '.';
     set.curves.back().metres = moves ? metres : 0;  // .X, .Y or .Z of a translation
-    elements.push_back(sampler->second.text);
+    channels.push_back({tag, sampler->second.text, id, !used.insert(id).second});
   });
   set.rotations = rotations_of(text, targets);
   resample(set);
   ResampledFile result{.text = {}, .result = set.result};
-  std::map<std::size_t, std::string> replaced;  // by place
-  for (std::size_t c = 0; c < elements.size(); ++c) {
+  const auto place_of = [&](std::string_view part) {
+    return static_cast<std::size_t>(part.data() - text.data());
+  };
+  struct Replacement {
+    std::string by;
+    std::size_t end;
+  };
+  std::map<std::size_t, Replacement> replaced;  // by place
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const ColladaChannel& channel = channels[c];
     const Curve& curve = set.curves[c];
-    if (!curve.changed) continue;
+    if (!curve.changed && !channel.shares) continue;
     std::string sources, inputs;
     const auto add = [&](const char* semantic, const std::vector<double>& numbers) {
       sources += fmt::format(
@@ -146,16 +163,33 @@ ResampledFile resample_collada(std::string_view text) {
           c, semantic, numbers.size(), fmt::join(numbers, " "));
       inputs += fmt::format("<input semantic=\"{1}\" source=\"#krok-{0}-{1}\"/>", c, semantic);
     };
-    add("INPUT", curve.times);
-    add("OUTPUT", curve.values);
-    const std::string_view tag = elements[c].substr(0, elements[c].find('>') + 1);
-    replaced[static_cast<std::size_t>(elements[c].data() - text.data())] =
-        sources.append(tag).append(inputs).append(kEndOfSampler);
+    const std::size_t content = channel.sampler.find('>') + 1;
+    if (curve.changed) {
+      add("INPUT", curve.times);
+      add("OUTPUT", curve.values);
+      inputs += kEndOfSampler;
+    } else {
+      inputs = channel.sampler.substr(content);
+    }
+    std::string tag(channel.sampler.substr(0, content));
+    if (!channel.shares) {
+      const std::size_t place = place_of(channel.sampler);
+      replaced[place] = {sources + tag + inputs, place + channel.sampler.size()};
+      continue;
+    }
+    // The importer gives a sampler to its last channel alone: each further one gets a copy.
+    std::string own(channel.tag);
+    const std::size_t reference = own.find('#' + channel.id, own.find("source"));
+    if (reference == std::string::npos) continue;
+    own.replace(reference + 1, channel.id.size(), fmt::format("krok-{}", c));
+    replaced[place_of(channel.tag)] = {
+        fmt::format("{}<sampler id=\"krok-{}\">{}{}", sources, c, inputs, own),
+        place_of(channel.tag) + channel.tag.size()};
   }
   std::size_t taken = 0;
-  for (const auto& [place, element] : replaced) {
-    result.text.append(text.substr(taken, place - taken)).append(element);
-    taken = text.find(kEndOfSampler, place) + kEndOfSampler.size();
+  for (const auto& [place, replacement] : replaced) {
+    result.text.append(text.substr(taken, place - taken)).append(replacement.by);
+    taken = replacement.end;
   }
   if (!replaced.empty()) result.text += text.substr(taken);
   return result;

@@ -145,5 +145,34 @@ TEST(ColladaCurves, OfSeveralAxes) {
   }
 }
 
+// The importer keeps a sampler's last channel: the other axes of an even scale or of a diagonal
+// would rest.
+TEST(ColladaCurves, OneSamplerForTwoChannels) {
+  const Folder folder;
+  const MovingRig rig;
+  for (const bool spline : {false, true}) {
+    std::string text = collada(rig);
+    const std::string channel = "<channel source=\"#spine-X-sampler\" target=\"rig_Spine/rotate";
+    const std::size_t old = text.find("<channel source=\"#spine-Z-sampler\"");
+    text.erase(old, text.find("/>", old) + 2 - old);
+    text.insert(text.find(channel), channel + "Z.ANGLE\"/>");
+    if (spline) text.replace(text.find("LINEAR", text.find("id=\"spine-X-interp")), 6, "STEP");
+    const auto scene = read_or_fail(folder.add("shared.dae", text));
+    for (const double time : {0.05, 0.3}) {
+      Pose pose = rig.rest[1];
+      for (const int axis : {0, 1, 2}) {
+        const std::size_t key = time < 0.1 ? 0 : 1;
+        const int from = axis == 1 ? 1 : 0;
+        const double part = time < 0.1 ? (spline && axis != 1 ? 0 : 0.5) : 2.0 / 3;
+        pose.angles[axis] = (1 - part) * rig.frames[key][1].angles[from] +
+                            part * rig.frames[key + 1][1].angles[from];
+      }
+      const Mat4 hips = node_to_world(scene, "Hips", 0, time);
+      const Mat4 spine = hips.inverse() * node_to_world(scene, "Spine", 0, time);
+      expect_near(spine, pose.transform().matrix(), kTolerance, fmt::format("{}", time));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace krok
