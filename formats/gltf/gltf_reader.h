@@ -58,4 +58,9 @@ struct PackedGlb {
 // 4 GiB.
 Result<PackedGlb> pack_glb(std::span<const std::byte> gltf, const ReadOptions& options);
 
+// Channels of KHR_animation_pointer for a node's own properties as glTF has them without the
+// extension, for viewers that do not know it; of a GLB that read() takes, which stays as it is if
+// it has none. Codes: gltf-too-large.
+Result<std::vector<std::byte>> plain_channels(std::span<const std::byte> glb);
+
 }  // namespace krok::gltf

@@ -235,36 +235,6 @@ int index_between(std::string_view before, std::string_view pointer, std::string
   return index && *index >= 0 && *index <= 0x7FFFFFFF ? static_cast<int>(*index) : -1;
 }
 
-// Takes the channels of KHR_animation_pointer; those of a node's own properties become channels as
-// glTF has them without the extension.
-std::vector<PointerChannel> take_pointers(Json& json) {
-  std::vector<PointerChannel> all;
-  const auto animations = json.find("animations");
-  if (animations == json.end() || !animations->is_array()) return all;
-  for (std::size_t i = 0; i < animations->size(); ++i) {
-    Json& animation = (*animations)[i];
-    if (!animation.is_object() || !animation.contains("channels")) continue;
-    for (Json& channel : animation["channels"]) {
-      if (!channel.is_object() || !channel.contains("target")) continue;
-      Json& target = channel["target"];
-      const Json* extension = extension_of(target, kPointer);
-      if (extension == nullptr) continue;
-      const std::string pointer = text_member(*extension, "pointer");
-      const std::string path = pointer.substr(pointer.rfind('/') + 1);
-      const int node = index_between("/nodes/", pointer, "/" + path);
-      if (node >= 0 &&
-          (path == "translation" || path == "rotation" || path == "scale" || path == "weights")) {
-        target = {{"node", node}, {"path", path}};
-        continue;
-      }
-      const Json& sampler = member(channel, "sampler");
-      all.push_back({i, sampler.is_number_integer() ? sampler.get<int>() : -1, pointer,
-                     index_between("/cameras/", pointer, "/perspective/yfov")});
-    }
-  }
-  return all;
-}
-
 // Extensions whose data is read. Those of materials are read where they are on materials.
 bool is_shown(std::string_view extension) {
   constexpr std::array kOthers = {"KHR_mesh_quantization", "KHR_texture_transform",
@@ -475,6 +445,34 @@ std::string first_line(const std::string& text) {
 }
 
 }  // namespace
+
+std::vector<PointerChannel> take_pointers(Json& json) {
+  std::vector<PointerChannel> all;
+  const auto animations = json.find("animations");
+  if (animations == json.end() || !animations->is_array()) return all;
+  for (std::size_t i = 0; i < animations->size(); ++i) {
+    Json& animation = (*animations)[i];
+    if (!animation.is_object() || !animation.contains("channels")) continue;
+    for (Json& channel : animation["channels"]) {
+      if (!channel.is_object() || !channel.contains("target")) continue;
+      Json& target = channel["target"];
+      const Json* extension = extension_of(target, kPointer);
+      if (extension == nullptr) continue;
+      const std::string pointer = text_member(*extension, "pointer");
+      const std::string path = pointer.substr(pointer.rfind('/') + 1);
+      const int node = index_between("/nodes/", pointer, "/" + path);
+      if (node >= 0 &&
+          (path == "translation" || path == "rotation" || path == "scale" || path == "weights")) {
+        target = {{"node", node}, {"path", path}};
+        continue;
+      }
+      const Json& sampler = member(channel, "sampler");
+      all.push_back({i, sampler.is_number_integer() ? sampler.get<int>() : -1, pointer,
+                     index_between("/cameras/", pointer, "/perspective/yfov")});
+    }
+  }
+  return all;
+}
 
 const Json& member(const Json& object, std::string_view name) {
   static const Json none;

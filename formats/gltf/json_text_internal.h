@@ -92,6 +92,10 @@ const nlohmann::json& member(const nlohmann::json& object, std::string_view name
 // A string member; empty if there is none.
 std::string text_member(const nlohmann::json& object, const char* name);
 
+// Takes the channels of KHR_animation_pointer; those of a node's own properties become channels as
+// glTF has them without the extension.
+std::vector<PointerChannel> take_pointers(nlohmann::json& json);
+
 // Rejects JSON nested deeper than glTF needs, and unsupported versions and required extensions.
 // Passes only the parts of the file that are used to tinygltf, to limit its exposure to malformed
 // input. Codes: gltf-json, gltf-version, gltf-extension, gltf-structure.

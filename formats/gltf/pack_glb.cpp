@@ -3,6 +3,7 @@
 #include "core/json_internal.h"
 #include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/glb_container_internal.h"
+#include "formats/gltf/json_text_internal.h"
 
 namespace krok::gltf {
 
@@ -102,6 +103,23 @@ Result<PackedGlb> pack_glb(std::span<const std::byte> gltf, const ReadOptions& o
   packer.put_buffers(*buffers);
   packer.put_images();
   return packer.finish();
+}
+
+Result<std::vector<std::byte>> plain_channels(std::span<const std::byte> glb) {
+  const auto container = open_container(glb);
+  if (!container) return container.error();
+  if (container->json.find("KHR_animation_pointer") == std::string_view::npos) {
+    return std::vector<std::byte>(glb.begin(), glb.end());
+  }
+  nlohmann::json json = nlohmann::json::parse(container->json);
+  take_pointers(json);
+  OrderedJson plain = json;
+  std::vector<OrderedJson> more;
+  for (const OrderedJson& buffer : plain.value("buffers", OrderedJson::array())) {
+    more.push_back(buffer);
+  }
+  if (!container->bin.empty() && !more.empty()) more.erase(more.begin());
+  return assemble_glb(plain, container->bin, more);
 }
 
 }  // namespace krok::gltf

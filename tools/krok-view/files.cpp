@@ -234,7 +234,9 @@ Status add_glb(const std::string& path, std::vector<std::byte> bytes, Files& fil
   as_is.draco = false;
   const auto scene = gltf::read(bytes, as_is);
   if (!scene) return Error(scene.error()).in_file(path);
-  Files::Glb glb{path, name_of_input(path), std::move(bytes), {}, {}, 0};
+  auto shown = gltf::plain_channels(bytes);
+  if (!shown) return std::move(shown).error().in_file(path);
+  Files::Glb glb{path, name_of_input(path), *std::move(shown), {}, {}, 0};
   for (const nodes::Animation& animation : scene->animations) {
     Diagnostics notes;
     const auto chosen = character::choose_sampling(animation, {}, notes);

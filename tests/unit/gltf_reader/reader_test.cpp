@@ -424,6 +424,15 @@ TEST(GltfReader, AnimationPointersToNodesAndFieldsOfViewAreRead) {
   EXPECT_EQ(asset.diagnostics[0].code, "gltf-animation-pointer");
   EXPECT_NE(asset.diagnostics[0].message.find("3 animated properties are left out: /materials/0"),
             std::string::npos);
+  // For viewers that do not know pointers: else a page of such a file is still.
+  const auto plain = gltf::plain_channels(builder.glb());
+  ASSERT_TRUE(plain.ok());
+  const std::string text(reinterpret_cast<const char*>(plain->data()), plain->size());
+  EXPECT_EQ(text.find("/nodes/2/rotation"), std::string::npos);
+  const auto again = gltf::read(*plain);
+  ASSERT_TRUE(again.ok());
+  EXPECT_EQ(*again->animations[0].channels.at(0).values, *asset.animations[0].channels[0].values);
+  EXPECT_EQ(again->animations[0].lenses.size(), 1u);
 }
 
 TEST(GltfReader, ImagesMaterialsAndExtrasDoNotMatter) {
