@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "core/parallel.h"
 #include "math/quaternion.h"
@@ -55,11 +57,33 @@ class SpikeFinder {
       forget_limits(length);
       for (int first = 0; first + length <= count_; ++first) {
         const Run run{first, first + length - 1, 0};
-        if (suspicious(first) && is_spike(run)) runs.push_back(replace(run));
+        if (!suspicious(first) || !is_spike(run)) continue;
+        runs.push_back(replace(run));
+        for (int f = std::max(0, run.first - 2); f <= std::min(count_ - 1, run.last + 2); ++f) {
+          deviations_[at(f)] = deviation(f, 1);
+        }
       }
     }
     std::ranges::sort(runs, {}, &Run::first);
     return runs;
+  }
+
+  // The largest distance of the run from the cubic through its neighbours.
+  double stray(const Run& run) const {
+    double largest = 0;
+    for (int f = run.first; f <= run.last; ++f) {
+      largest = std::max(largest, difference(guess(f, support(f, run)), value(f)).norm());
+    }
+    return largest;
+  }
+
+  // Replaces the run by that cubic; returns it with its size.
+  Run replace(Run run) {
+    run.size = stray(run);
+    std::vector<Value> better;
+    for (int f = run.first; f <= run.last; ++f) better.push_back(guess(f, support(f, run)));
+    std::ranges::copy(better, series_.begin() + run.first);
+    return run;
   }
 
  private:
@@ -211,19 +235,6 @@ class SpikeFinder {
     return step(0) > threshold_ * std::max({step(1), step(2), step(3), least_ / threshold_});
   }
 
-  Run replace(Run run) {
-    std::vector<Value> better;
-    for (int f = run.first; f <= run.last; ++f) {
-      better.push_back(guess(f, support(f, run)));
-      run.size = std::max(run.size, difference(better.back(), value(f)).norm());
-    }
-    for (int f = run.first; f <= run.last; ++f) series_[at(f)] = better[at(f - run.first)];
-    for (int f = std::max(0, run.first - 2); f <= std::min(count_ - 1, run.last + 2); ++f) {
-      deviations_[at(f)] = deviation(f, 1);
-    }
-    return run;
-  }
-
   static constexpr double kUnknown = -1;
 
   std::span<Value> series_;
@@ -261,6 +272,134 @@ Lengths lengths_of(const SpikeOptions& options, double rate) {
   return {std::max(1, frames_of(options.longest, 32)), std::max(10, frames_of(0.5, 256))};
 }
 
+// How far a joint is from the way through its places before and after some frames.
+double strays(const Clip& clip, std::size_t joint, const Run& run) {
+  const int first = std::max(0, run.first - 2);
+  std::vector<Vec3> places;
+  for (int f = first; f <= std::min(clip.frame_count() - 1, run.last + 2); ++f) {
+    places.push_back(clip.frame_positions(f)[joint].cast<double>());
+  }
+  return SpikeFinder<Vec3>(places, 0, 0, 0, 0).stray({run.first - first, run.last - first, 0});
+}
+
+constexpr double kNoJump = 0.1 * kRadiansPerDegree;  // not worth a mention
+
+// A fit to markers may turn a joint one way and its children back, so that hands and feet stay
+// where they are: to replace the joint alone throws them aside. What is between is replaced, too;
+// where they are thrown even so, nothing is.
+class ThrowRepair {
+ public:
+  ThrowRepair(const Clip& before, double most, std::span<const std::uint8_t> joints,
+              LocalMotion& motion, std::vector<Spike> spikes)
+      : before_(before),
+        most_(most),
+        joints_(joints),
+        given_(local_motion(before)),
+        motion_(motion),
+        after_(before) {
+    for (const Spike& spike : spikes) replaced_.push_back({spike, replaced_.size()});
+  }
+
+  SpikeRemoval repair() {
+    set_local_motion(motion_, after_);
+    bool changed = false;
+    for (std::size_t i = replaced_.size(); i-- > 0;) changed = extend(i) || changed;
+    // What one replacement made up for, another may have relied on.
+    while (changed) {
+      set_local_motion(motion_, after_);
+      changed = take_back();
+    }
+    SpikeRemoval result{std::move(after_), {}};
+    for (const Replaced& one : replaced_) {
+      if (!one.taken_back) result.spikes.push_back(one.spike);
+    }
+    std::ranges::stable_sort(result.spikes, {}, [](const Spike& spike) {
+      return std::tuple(spike.joint, spike.of_position, spike.first_frame);
+    });
+    return result;
+  }
+
+ private:
+  struct Replaced {
+    Spike spike;
+    std::size_t cause;  // index of the spike for whose sake
+    bool taken_back = false;
+  };
+
+  static std::size_t at(int joint) { return static_cast<std::size_t>(joint); }
+  static Run run_of(const Spike& spike) { return {spike.first_frame, spike.last_frame, 0}; }
+
+  // The joints below that of a spike which are further off their way than before.
+  std::vector<int> thrown(const Spike& spike) const {
+    const auto& parents = before_.skeleton.parents;
+    std::vector<std::uint8_t> below(parents.size(), 0);
+    below[at(spike.joint)] = 1;
+    std::vector<int> found;
+    for (std::size_t j = at(spike.joint) + 1; j < parents.size(); ++j) {
+      below[j] = below[at(parents[j])];
+      if (below[j] == 0) continue;
+      const double more = strays(after_, j, run_of(spike)) - strays(before_, j, run_of(spike));
+      if (more > most_) found.push_back(static_cast<int>(j));
+    }
+    return found;
+  }
+
+  // Replaces the joints between that of a spike and those that it throws.
+  bool extend(std::size_t cause) {
+    const Spike spike = replaced_[cause].spike;
+    const std::vector<int> ends = thrown(spike);
+    if (ends.empty()) return false;
+    const auto& parents = before_.skeleton.parents;
+    std::vector<std::uint8_t> done(parents.size(), 0);
+    for (const auto& [other, of, taken_back] : replaced_) {
+      if (!other.of_position && other.first_frame <= spike.first_frame &&
+          other.last_frame >= spike.last_frame) {
+        done[at(other.joint)] = 1;
+      }
+    }
+    for (const int end : ends) {
+      for (int j = parents[at(end)]; j > spike.joint; j = parents[at(j)]) {
+        if (std::exchange(done[at(j)], 1) != 0) continue;
+        if (!joints_.empty() && joints_[at(j)] == 0) continue;
+        SpikeFinder<Quat> series(motion_.joint_orientations(j), 0, 0, 0, 0);
+        if (series.stray(run_of(spike)) < kNoJump) continue;
+        const double size = series.replace(run_of(spike)).size;
+        replaced_.push_back({{j, spike.first_frame, spike.last_frame, false, size}, cause});
+      }
+    }
+    return true;
+  }
+
+  // Takes back what still throws, and what was replaced for its sake.
+  bool take_back() {
+    std::vector<std::uint8_t> back(replaced_.size(), 0);
+    for (const auto& [spike, cause, taken_back] : replaced_) {
+      if (!taken_back && back[cause] == 0 && !thrown(spike).empty()) back[cause] = 1;
+    }
+    bool any = false;
+    for (auto& [spike, cause, taken_back] : replaced_) {
+      if (taken_back || back[cause] == 0) continue;
+      any = taken_back = true;
+      for (int f = spike.first_frame; f <= spike.last_frame; ++f) {
+        Transform local = motion_.at(spike.joint, f);
+        const Transform given = given_.at(spike.joint, f);
+        if (spike.of_position) local.position = given.position;
+        if (!spike.of_position) local.orientation = given.orientation;
+        motion_.set(spike.joint, f, local);
+      }
+    }
+    return any;
+  }
+
+  const Clip& before_;
+  double most_;  // metres
+  std::span<const std::uint8_t> joints_;
+  const LocalMotion given_;
+  LocalMotion& motion_;
+  Clip after_;
+  std::vector<Replaced> replaced_;
+};
+
 // `moving`: as of moving_joints(), of the whole motion; empty: of this clip.
 SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
                             std::span<const std::uint8_t> joints, std::vector<std::uint8_t> moving,
@@ -291,12 +430,11 @@ SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
     }
   });
 
-  SpikeRemoval result{clip, {}};
-  for (const auto& spikes : found) {
-    result.spikes.insert(result.spikes.end(), spikes.begin(), spikes.end());
-  }
-  if (!result.spikes.empty()) set_local_motion(motion, result.clip);
-  return result;
+  std::vector<Spike> spikes;
+  for (const auto& of_joint : found) spikes.insert(spikes.end(), of_joint.begin(), of_joint.end());
+  if (spikes.empty()) return {clip, {}};
+  return ThrowRepair(clip, 0.5 * options.least_distance, joints, motion, std::move(spikes))
+      .repair();
 }
 
 }  // namespace

@@ -45,6 +45,10 @@ struct SpikeRemoval {
 // frame of the clip is a spike if the step to it is more than the threshold times the steps next to
 // it. A jump that does not return is not a spike.
 //
+// Where joints below are thrown aside by that, by half of `least_distance` or more (a fit to
+// markers turned them back), those between are replaced in the same frames, and are listed, too;
+// where they are thrown even so, the spike stays.
+//
 // Joints with 0 in `joints` are unchanged; an empty span selects all joints. Without spikes the
 // clip is returned bit for bit. Clips of fewer than five frames have none. Codes: filter-threshold
 // for options that are not positive and finite.

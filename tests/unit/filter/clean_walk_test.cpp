@@ -152,6 +152,41 @@ TEST(CleanWalk, WithoutSpikesNothingChanges) {
   }
 }
 
+// Fits to markers turn the hips one way and the legs back, each by less than a spike. Else the foot
+// that stands is thrown aside by the length of the leg.
+TEST(CleanWalk, FeetAreNotThrownWhereTheHipsJumpAlone) {
+  const Clip truth = walk();
+  LocalMotion motion = local_motion(truth);
+  const Quat jump = from_rotation_vector(Vec3(0.06, 0.05, 0.06));
+  const auto turn = [&](const char* name, const Quat& by) {
+    const int joint = truth.skeleton.find(name);
+    ASSERT_GE(joint, 0) << name;
+    Transform local = motion.at(joint, 70);
+    local.orientation = local.orientation * by;
+    motion.set(joint, 70, local);
+  };
+  turn("Hips", jump);
+  const Quat back = slerp(Quat::Identity(), jump.conjugate(), 0.5);
+  for (const char* name : {"LeftUpLeg", "LeftLeg", "RightUpLeg", "RightLeg"}) turn(name, back);
+  Clip spoilt = truth;
+  set_local_motion(motion, spoilt);
+  const auto removal = remove_spikes(spoilt, {}, {});
+  ASSERT_TRUE(removal.ok());
+  EXPECT_FALSE(removal->spikes.empty());
+  for (const char* name : {"LeftFoot", "RightFoot"}) {
+    const auto foot = static_cast<std::size_t>(truth.skeleton.find(name));
+    EXPECT_LT((removal->clip.frame_positions(70)[foot] - truth.frame_positions(70)[foot]).norm(),
+              0.005f)
+        << name;
+  }
+  // What may not be replaced to go with it keeps the spike.
+  std::vector<std::uint8_t> hips(truth.skeleton.names.size(), 0);
+  hips[0] = 1;
+  const auto alone = remove_spikes(spoilt, {}, hips);
+  ASSERT_TRUE(alone.ok());
+  EXPECT_TRUE(alone->spikes.empty());
+}
+
 TEST(CleanWalk, AJumpThatStaysIsNoSpike) {
   Clip clip = walk();
   LocalMotion motion = local_motion(clip);
