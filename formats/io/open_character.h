@@ -39,6 +39,7 @@ struct ActorOptions {
   bool with_camera = false;         // take a file with a camera alone, which is refused otherwise
   bool with_stretches = false;      // otherwise joints that change scale are a warning
   bool rest_frame_is_note = false;  // as in MotionOptions
+  bool stays_still = false;  // of scenes: warn of animations, and of a pose, that will not be shown
 };
 
 // What a file holds, whatever it is: a motion with its skeleton, a model, a character, a camera, or

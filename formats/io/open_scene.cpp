@@ -158,6 +158,25 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
   return actor;
 }
 
+// What moves or poses the file's character is not in a result of the character alone.
+void warn_of_stillness(const nodes::Scene& scene, Diagnostics& found) {
+  if (!scene.animations.empty()) {
+    found.push_back(
+        make_warning("scene-still",
+                     fmt::format("{} of the file: not in the result, as no motion is given",
+                                 counted(std::ssize(scene.animations), "animation")),
+                     "krok-import FILE --clip all -o '{clip}.anim' writes them as motions, to be "
+                     "given after the "
+                     "mesh"));
+    return;
+  }
+  for (Diagnostic& one : found) {
+    if (one.code != "scene-pose") continue;
+    one.severity = Severity::warning;
+    one.hint = "krok-import FILE -o pose.anim writes the pose that the file shows as a motion";
+  }
+}
+
 }  // namespace
 
 Result<Actor> read_scene_actor(const Format& format, const InputFile& file, Inputs& inputs,
@@ -167,6 +186,7 @@ Result<Actor> read_scene_actor(const Format& format, const InputFile& file, Inpu
   Diagnostics found = scene->diagnostics;
   auto actor = actor_of(*scene, file.path(), inputs, options, found);
   if (options.rest_frame_is_note) rest_frame_as_note(found);
+  if (options.stays_still) warn_of_stillness(*scene, found);
   inputs.diagnose_in(file.path(), found);
   if (!actor) return std::move(actor.error()).in_file(file.path());
   return actor;

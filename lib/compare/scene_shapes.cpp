@@ -28,6 +28,8 @@ bool is_bake_of(const SceneMesh& a, const SceneMesh& b) {
   return a.animates_weights && b.animates_weights && !share_a_name(a, b);
 }
 
+constexpr int kNamesShown = 3;
+
 // The displacements of a morph target in world space.
 SceneMesh::Target displaced(const ScenePlacement& placement, const SceneMesh& mesh, int mesh_index,
                             int target, ScenePlacement::Memory& memory) {
@@ -81,9 +83,11 @@ void compare_targets(SceneComparison& comparison, std::pair<int, int> meshes,
     const auto other = displaced(comparison.second_placement, b, meshes.second, j, second_memory);
     place.target = i;
     const Matching matching = comparison.options.matching;
-    if (!is_bake_of(a, b) && matching != Matching::order) {
+    // Bakes have hundreds of them.
+    const bool bake = is_bake_of(a, b);
+    if (matching != Matching::order && (!bake || i < kNamesShown)) {
       report_name(comparison, "morph target", a.targets[static_cast<std::size_t>(i)].name,
-                  b.targets[static_cast<std::size_t>(j)].name, true);
+                  b.targets[static_cast<std::size_t>(j)].name, !bake);
     }
     add_distances(or_none(target.positions), or_none(other.positions), place,
                   comparison.result.target_positions);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "character/space.h"
 #include "core/file.h"
@@ -69,6 +71,15 @@ Result<int> import_scene(const InputFile& input, const Options& options, ToolCon
   if (!options.model.empty() || !options.character.empty()) {
     for (Diagnostic& diagnostic : scene->diagnostics) {
       if (diagnostic.code == "gltf-unread") diagnostic.severity = Severity::warning;
+    }
+    // Such as a VRM's expressions, which are not its morph targets.
+    std::vector<std::string> extensions;
+    std::ranges::copy_if(scene->not_shown, std::back_inserter(extensions),
+                         [](const std::string& one) { return one.starts_with("extension "); });
+    if (!extensions.empty()) {
+      context.diagnose_in(input.path(),
+                          {make_warning("import-extension",
+                                        fmt::format("not read: {}", fmt::join(extensions, ", ")))});
     }
   }
   context.diagnose(scene->diagnostics);

@@ -258,5 +258,17 @@ TEST_F(CharacterImportTest, WithoutAMeshIsRefused) {
   EXPECT_EQ(listing(), std::vector<std::string>{"in.glb"});
 }
 
+// A VRM's expressions would be gone without a word.
+TEST_F(CharacterImportTest, ExtensionsThatAreNotReadAreNamed) {
+  GlbBuilder builder = character({});
+  builder.json["extensionsUsed"] = {"KHR_materials_unlit", "VRMC_vrm"};
+  put_glb(builder);
+  const ToolRun run = import({"--save-character", path("c.character")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(has_code(run.err, "import-extension")) << run.err;
+  EXPECT_NE(run.err.find("not read: extension VRMC_vrm ["), std::string::npos) << run.err;
+  EXPECT_FALSE(has_code(import({"-o", path("c.anim")}).err, "import-extension"));
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -91,5 +91,17 @@ TEST_F(SkinMethods, TheReportNamesIt) {
   EXPECT_EQ(json::parse(run.out)["options"]["method"], "dual-quaternion");
 }
 
+// Who only means to compress a character would lose its clips without a word.
+TEST_F(SkinMethods, AFilesOwnClipsAreNotLostSilently) {
+  ASSERT_EQ(tool("krok-skin", {"in.model", "in.anim", "-o", "hero.glb"}).exit_code, 0);
+  const ToolRun still = tool("krok-skin", {"hero.glb", "--quantize", "-o", "small.glb"});
+  EXPECT_EQ(still.exit_code, 0) << still.err;
+  EXPECT_TRUE(has_code(still.err, "scene-still")) << still.err;
+  const ToolRun moved =
+      tool("krok-skin", {"hero.glb", "hero.glb", "--quantize", "-o", "small.glb"});
+  EXPECT_EQ(moved.exit_code, 0) << moved.err;
+  EXPECT_FALSE(has_code(moved.err, "scene-still")) << moved.err;
+}
+
 }  // namespace
 }  // namespace krok::test
