@@ -20,6 +20,7 @@ constexpr double kMaxLift = 15 * kRadiansPerDegree;
 constexpr double kMaxRollingLift = 30 * kRadiansPerDegree;
 constexpr double kMinLever = 0.2;  // of the way from ball to ankle
 constexpr double kLiftCutoff = 6;  // Hz
+constexpr double kSteep = 0.5;     // cosine of a foot's slope
 
 constexpr double kCalmCutoff = 6;      // Hz
 constexpr double kCalmJitter = 0.001;  // metres
@@ -36,7 +37,8 @@ class FootSolver {
         lever_(kFootLength * body.leg_length),
         frames_(static_cast<std::size_t>(clip.frame_count())),
         ball_(index_of(FootPart::ball)),
-        tip_(index_of(FootPart::tip)) {}
+        tip_(index_of(FootPart::tip)),
+        usual_sideways_(find_usual_sideways()) {}
 
   std::vector<Vec3> turns() const {
     KnownCurve turn(frames_);
@@ -195,10 +197,28 @@ class FootSolver {
     return parts;
   }
 
-  // About this axis the heel comes up.
-  Vec3 sideways(std::size_t f) const {
+  // Across the way from ankle to ball, in the world, and as long as that is level.
+  Vec3 across(std::size_t f) const {
     const Vec3 ankle = joint_at(clip_, static_cast<int>(f), leg_.foot).position;
-    return Vec3::UnitY().cross(Vec3(track(ball_)[f] - ankle)).stableNormalized();
+    return Vec3::UnitY().cross(Vec3(track(ball_)[f] - ankle).stableNormalized());
+  }
+
+  Vec3 find_usual_sideways() const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t f = 0; f < frames_ && ball_ >= 0; ++f) {
+      sum += joint_at(clip_, static_cast<int>(f), leg_.foot).orientation.conjugate() * across(f);
+    }
+    return sum.stableNormalized();
+  }
+
+  // About this axis the heel comes up. A foot that points down has its usual one: across turns
+  // over there.
+  Vec3 sideways(std::size_t f) const {
+    const Vec3 level = across(f);
+    const double u = std::min(1.0, level.norm() / kSteep), share = u * u * (3 - 2 * u);
+    const Vec3 usual =
+        joint_at(clip_, static_cast<int>(f), leg_.foot).orientation * usual_sideways_;
+    return (share * level.stableNormalized() + (1 - share) * usual).stableNormalized();
   }
 
   // The turn about the ball, radians, that brings the ankle as near to the hip as it was, or within
@@ -285,6 +305,7 @@ class FootSolver {
   double speed_, lever_;
   std::size_t frames_;
   int ball_, tip_;
+  Vec3 usual_sideways_;  // in the foot's frame
 };
 
 }  // namespace
