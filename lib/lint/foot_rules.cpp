@@ -21,6 +21,9 @@ constexpr double kFastest = 1.7;         // metres per second; faster is a swing
 constexpr double kShortestSlide = 0.1;   // seconds
 constexpr double kStepEnd = 0.06;        // seconds in which a foot lands or leaves
 constexpr double kResting = 0.045;       // metres per second; slower is rest
+constexpr double kCreeping = 0.2;        // metres per second; faster is a slide or a step
+constexpr double kCreepTime = 1;         // seconds
+constexpr double kMinCreep = 1.35;       // times the threshold of foot-slide
 constexpr double kTogether = 0.35;       // difference of two feet's velocities over their size
 constexpr double kUneven = 0.1;          // metres, of heights of contacts on level ground
 constexpr double kFloor = 2;             // times the threshold, of the floor's height
@@ -164,6 +167,50 @@ class Slides {
   bool after_step_ = false;  // a foot landed just before
   int both_ = 0, together_ = 0;
 };
+
+// Feet that creep: how far the slowest points of the soles near the ground move within a second,
+// from stance to stance, landing and leaving left out. Finds what is too slow for Slides and too
+// short in each contact for find_stays().
+void find_creep(const Series& series, const Soles& soles, std::vector<Finding>& found) {
+  const int window = series.frames_in(kCreepTime, 3), margin = series.frames_in(kStepEnd, 1);
+  std::vector<Vec3> way(at(series.frames), Vec3::Zero());  // in the frame after
+  std::vector<int> slowest(at(series.frames), -1);
+  int nearest_step = -margin - 1;
+  for (int f = 0; f < series.frames; ++f) {
+    double least = kCreeping * series.scale;
+    for (const int track : carrying(series, soles, f)) {
+      if (track < 0 || soles.velocities[at(track)][at(f)].norm() > least) continue;
+      slowest[at(f)] = track, way[at(f)] = soles.velocities[at(track)][at(f)] / series.rate;
+      least = soles.velocities[at(track)][at(f)].norm();
+    }
+    if (slowest[at(f)] < 0) {
+      nearest_step = f;
+      for (int g = std::max(0, f - margin); g < f; ++g) way[at(g)].setZero();
+    }
+    if (f - nearest_step <= margin) way[at(f)].setZero();
+  }
+  Vec3 sum = Vec3::Zero();
+  Finding finding;
+  for (int f = 0; f <= series.frames; ++f) {
+    if (f < series.frames) sum += way[at(f)];
+    if (f >= window) sum -= way[at(f - window)];
+    const double moved = f < series.frames ? sum.norm() : 0;
+    if (moved > kMinCreep * series.threshold(Rule::foot_slide) * series.scale) {
+      if (finding.value == 0) finding.first = std::max(0, f - window + 1);
+      finding.last = f;
+      if (moved > finding.value) finding.value = moved, finding.worst = f - window / 2;
+    } else if (finding.value > 0 && (f - finding.last > window || f == series.frames)) {
+      finding.rule = Rule::foot_slide;
+      finding.worst = std::max(finding.first, finding.worst);
+      const int point = std::max(0, slowest[at(finding.worst)]);
+      finding.joint = soles.found.tracks[at(point)].point.joint;
+      finding.threshold = series.threshold(Rule::foot_slide) * series.scale, finding.unit = "m";
+      finding.detail = "in a second of stances";
+      found.push_back(finding);
+      finding = {};
+    }
+  }
+}
 
 // How far a foot moves in one contact.
 void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& found) {
@@ -358,6 +405,7 @@ void find_foot_faults(const Series& series, MotionFaults& out) {
   if (slides && !series.options.treadmill) {
     Slides(series, *soles, found).find();
     find_stays(series, *soles, found);
+    find_creep(series, *soles, found);
     if (soles->found.stays.empty() && series.frames > series.rate) {
       out.notes.emplace_back("foot-slide: no foot rests; --treadmill if the ground moves");
     }

@@ -52,8 +52,9 @@ struct MotionFaults {
 //
 // - pop, flip, jitter, over-smooth: rotations of each joint in its parent, and the path of the
 //   hips. A pop is a pattern of accelerations that only a jump makes (1 -2 1 for a spike of one
-//   frame, 1 -1 for a step), larger than what is left around it when it is taken out, unlike in a
-//   fast gesture, and than the usual of the second around it. Noise is the deviation left by the
+//   frame, 1 -1 for a step), larger than what is left around it when it is taken out, than the
+//   usual of the second around it and, if not far larger, than what is like it elsewhere, as
+//   gestures and impacts come again. Noise is the deviation left by the
 //   fourth difference (weights 1 -4 6 -4 1), where successive accelerations have opposite signs as
 //   noise makes them.
 // - foot-slide: how far the slowest point of the soles near the ground moves without a rest, and

@@ -133,11 +133,15 @@ void find_smooth(const Series& series, const Windows& windows, const DetailOfBod
   std::vector<double> known;
   std::ranges::copy_if(detail, std::back_inserter(known), [](double v) { return !std::isnan(v); });
   if (known.size() < 6) return;
-  const double usual = median(known);
+  // What is smoothed may be over half of a take: the usual is that of the windows with more detail.
+  const auto upper = known.begin() + static_cast<std::ptrdiff_t>(known.size() * 3 / 4);
+  std::ranges::nth_element(known, upper);
+  const double usual = *upper, limit = series.threshold(Rule::over_smooth);
+  std::erase_if(known, [&](double value) { return usual - value >= std::log(limit); });
+  const double middle = median(known);
   std::vector<double> off;
-  for (const double value : known) off.push_back(std::abs(value - usual));
+  for (const double value : known) off.push_back(std::abs(value - middle));
   const double spread = 1.4826 * median(off);
-  const double limit = series.threshold(Rule::over_smooth);
   for (int w = 0; w < windows.count; ++w) {
     const double less = usual - detail[at(w)];
     if (std::isnan(less) || less < std::log(limit) || less < kDeviations * spread) continue;

@@ -58,16 +58,25 @@ class UsualSize {
 
 // What a jump of size 1 does to the accelerations of successive frames, and how the jump must stand
 // out: `over_rest` times the largest acceleration around it that is left without the jump, and
-// `over_usual` times the median of the second.
+// `over_usual` times the median of the second. Where it is `unlike` times as large as what else
+// fits the template in the seconds around, less is enough: gestures and impacts come again.
+struct Clearness {
+  float over_rest, over_usual;
+};
 struct Template {
   PopKind kind;
   int length;
   std::array<float, 4> weights;
-  float over_rest, over_usual;
+  Clearness alone, unlike_others;
+  float unlike;
 };
-constexpr std::array<Template, 3> kTemplates = {{{PopKind::spike, 3, {1, -2, 1, 0}, 0.9F, 3},
-                                                 {PopKind::spike, 4, {1, -1, -1, 1}, 1.2F, 4},
-                                                 {PopKind::step, 2, {1, -1, 0, 0}, 2.2F, 5}}};
+constexpr std::array<Template, 3> kTemplates = {
+    {{PopKind::spike, 3, {1, -2, 1, 0}, {2.2F, 3}, {1, 2}, 1.5F},
+     {PopKind::spike, 4, {1, -1, -1, 1}, {2.4F, 4}, {1.2F, 3}, 1.5F},
+     {PopKind::step, 2, {1, -1, 0, 0}, {3.5F, 5}, {1.6F, 3}, 1.7F}}};
+// Toes spring back within a frame or two when they leave the ground.
+constexpr Clearness kOfToes = {3, 4};
+constexpr double kAround = 10;  // seconds before and after in which a jump is unlike others
 
 // A place where a template was tried.
 struct Match {
@@ -77,8 +86,15 @@ struct Match {
 
 class PopFinder {
  public:
-  PopFinder(std::span<const Vec3f> turns, float threshold, int block, std::vector<float>& sizes)
-      : turns_(turns), threshold_(threshold), block_(block), sizes_(sizes) {}
+  // `around`: frames before and after that a jump is compared with.
+  PopFinder(std::span<const Vec3f> turns, float threshold, int block, int around, bool toes,
+            std::vector<float>& sizes)
+      : turns_(turns),
+        threshold_(threshold),
+        block_(block),
+        around_(around),
+        toes_(toes),
+        sizes_(sizes) {}
 
   std::vector<Pop> find() {
     const int frames = static_cast<int>(turns_.size());
@@ -125,20 +141,37 @@ class PopFinder {
     return most;
   }
 
+  // The jump by which a template fits best, over the frames of it that are there.
+  Vec3f jump(const Template& shape, int first) const {
+    const int begin = std::max(first, 1);
+    const int end = std::min(first + shape.length, static_cast<int>(turns_.size()) - 1);
+    Vec3f size = Vec3f::Zero();
+    float norm = 0;
+    for (int f = begin; f < end; ++f) {
+      const float weight = shape.weights[at(f - first)];
+      size += weight * acceleration(f);
+      norm += weight * weight;
+    }
+    return size / norm;
+  }
+
+  // The largest that fits elsewhere.
+  float largest_elsewhere(const Template& shape, int first) const {
+    const int frames = static_cast<int>(turns_.size()), near = kNeighbours;
+    float most = 0;
+    for (int f = std::max(1, first - around_); f < std::min(frames - 4, first + around_); ++f) {
+      if (std::abs(f - first) > near) most = std::max(most, jump(shape, f).squaredNorm());
+    }
+    return std::sqrt(most);
+  }
+
   // How well a template fits that begins at a frame; of one that is cut off by an end of the
   // motion, what is there.
   Match fit(const Template& shape, int first, float usual) const {
     const int frames = static_cast<int>(turns_.size());
     const int last = first + shape.length - 1;
     const int begin = std::max(first, 1), end = std::min(last, frames - 2);
-    Vec3f size = Vec3f::Zero();
-    float norm = 0;
-    for (int f = begin; f <= end; ++f) {
-      const float weight = shape.weights[at(f - first)];
-      size += weight * acceleration(f);
-      norm += weight * weight;
-    }
-    size /= norm;
+    const Vec3f size = jump(shape, first);
     const float value = size.norm();
     if (value < threshold_) return {};
     float rest = largest_beside(begin, end);
@@ -147,11 +180,23 @@ class PopFinder {
     }
     const bool cut = end - begin < shape.length - 1;
     const float doubt = begin < 3 || end + 3 >= frames ? kDoubt : 1.0F;
-    const float over_rest = cut ? kTimesNeighbours : doubt * shape.over_rest;
-    const float over_usual = cut ? kTimesUsual : doubt * shape.over_usual;
-    return {{shape.kind, std::max(first, 0), std::min(last, frames - 1), first + 1, value},
-            std::min(value / (over_rest * std::max(rest, 1e-6F)),
-                     value / (over_usual * std::max(usual, 1e-6F)))};
+    const auto clear_by = [&](const Clearness& least) {
+      return std::min(value / (doubt * least.over_rest * std::max(rest, 1e-6F)),
+                      value / (doubt * least.over_usual * std::max(usual, 1e-6F)));
+    };
+    float score = 0;
+    if (cut) {
+      score = std::min(value / (kTimesNeighbours * std::max(rest, 1e-6F)),
+                       value / (kTimesUsual * std::max(usual, 1e-6F)));
+    } else {
+      if (!toes_) score = clear_by(shape.alone);
+      float other = score >= 1 ? 0 : clear_by(toes_ ? kOfToes : shape.unlike_others);
+      if (other >= 1) {
+        other = std::min(other, value / (shape.unlike * largest_elsewhere(shape, first) + 1e-6F));
+      }
+      score = std::max(score, other);
+    }
+    return {{shape.kind, std::max(first, 0), std::min(last, frames - 1), first + 1, value}, score};
   }
 
   // The template that begins at a frame and fits best.
@@ -172,7 +217,7 @@ class PopFinder {
     if (first + spike.length >= frames) try_at(spike, first);
     // A change of speed alone.
     const float rest = largest_beside(first, first);
-    if (best.score < 1 && first >= 3 && first + 3 < frames &&
+    if (!toes_ && best.score < 1 && first >= 3 && first + 3 < frames &&
         sizes_[at(first)] > kTimesNeighbours * rest && sizes_[at(first)] > kTimesUsual * usual) {
       best = {{PopKind::kink, first, first, first, sizes_[at(first)]}, 1};
     }
@@ -181,14 +226,10 @@ class PopFinder {
 
   std::span<const Vec3f> turns_;
   float threshold_;
-  int block_;
+  int block_, around_;
+  bool toes_;
   std::vector<float>& sizes_;
 };
-
-std::vector<Pop> pops_of(std::span<const Vec3f> turns, float threshold, int block,
-                         std::vector<float>& sizes) {
-  return PopFinder(turns, threshold, block, sizes).find();
-}
 
 // Joints that turn anywhere, and are more than the mark of a bone's end.
 std::vector<int> moving(const Series& series) {
@@ -237,7 +278,7 @@ void find_flips(const Series& series, int joint, std::span<const Vec3f> turns,
 }  // namespace
 
 void find_rotation_faults(const Series& series, MotionFaults& out) {
-  const int block = series.frames_in(1, 21);
+  const int block = series.frames_in(1, 21), around = series.frames_in(kAround, 1);
   const double degrees = series.threshold(Rule::pop);
   std::vector<Finding> flips, pops, kinks, found;
   std::vector<float> sizes;
@@ -258,16 +299,18 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
   for (const int j : joints) {
     const auto turns = series.turns_of(j);
     if (series.has(Rule::flip)) find_flips(series, j, turns, flips);
-    // Toes spring back within a frame or two when they leave the ground.
+    if (!series.has(Rule::pop)) continue;
     const Role role = series.roles.roles[at(j)];
-    if (!series.has(Rule::pop) || role == Role::left_toes || role == Role::right_toes) continue;
+    const bool toes = role == Role::left_toes || role == Role::right_toes;
     // A change of speed is at most twice the largest speed.
     if (4.001F * series.largest[at(j)] < limit * limit) continue;
-    for (const Pop& pop : pops_of(turns, limit, block, sizes)) add(pop, j, false);
+    PopFinder finder(turns, limit, block, around, toes, sizes);
+    for (const Pop& pop : finder.find()) add(pop, j, false);
   }
   if (series.has(Rule::pop)) {
-    for (const Pop& pop :
-         pops_of(series.steps, static_cast<float>(kMinPath * series.scale), block, sizes)) {
+    PopFinder finder(series.steps, static_cast<float>(kMinPath * series.scale), block, around,
+                     false, sizes);
+    for (const Pop& pop : finder.find()) {
       if (pop.kind != PopKind::kink) add(pop, series.carrier, true);
     }
   }

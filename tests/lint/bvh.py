@@ -124,8 +124,15 @@ class Bvh:
                 turns[:, j] = turns[:, parent] @ self.rotations[:, j]
         return places
 
-    def keep(self, frames):
-        self.rotations, self.places = self.rotations[frames].copy(), self.places[frames].copy()
+    def resample(self, frames):
+        """Keeps the motion at these frames, which may lie between two: cubic through the four around it."""
+        first = np.floor(frames).astype(int)
+        t = (frames - first)[:, None]
+        weights = np.concatenate([-t + 2 * t**2 - t**3, 2 - 5 * t**2 + 3 * t**3, t + 4 * t**2 - 3 * t**3, t**3 - t**2], 1) / 2
+        around = np.clip(first[:, None] + np.arange(-1, 3), 0, len(self.places) - 1)
+        self.places = np.einsum("fk,fkja->fja", weights, self.places[around])
+        u, _, v = np.linalg.svd(np.einsum("fk,fkjab->fjab", weights, self.rotations[around]))
+        self.rotations = u @ v
 
     def write(self, path):
         moves = {j for j in self.moving if np.ptp(self.places[:, j], axis=0).max() > 1e-9 or j == self.moving[0]}

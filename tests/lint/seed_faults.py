@@ -121,8 +121,9 @@ def their_slide(motion):
     speed = np.linalg.norm(np.delete(np.diff(world, axis=0), up, axis=2), axis=2) * 20
     sliding = np.ones(len(world) - 1, bool)
     for side in ("left", "right"):
-        foot = next((j for j, n in enumerate(names) if n.startswith(side[0]) and "foot" in n), None)
-        toes = next((j for j, n in enumerate(names) if n.startswith(side[0]) and "toe" in n), foot)
+        mine = [(j, n) for j, n in enumerate(names) if n.startswith(side[0]) or n.endswith("_" + side[0])]
+        foot = next((j for j, n in mine if "foot" in n), None)
+        toes = next((j for j, n in mine if "toe" in n), foot)
         if foot is None:
             return np.zeros(len(world), bool)
         sliding &= (speed[:, foot] > 0.1) & (speed[:, toes] > 0.1) & (height[:-1, foot] < 0.15) & (height[:-1, toes] < 0.1)
@@ -202,8 +203,8 @@ def main():
         place = folder / path.name
         if not place.exists():
             motion = Bvh(path)
-            stride = max(1, round(1 / (20 * motion.frame_time)))
-            motion.keep(slice(1, 1 + 400 * stride, stride))  # without a rest pose; 20 s at most
+            stride = 1 / (20 * motion.frame_time)
+            motion.resample(np.arange(1, min(len(motion.places) - 1, 400 * stride), stride))  # no rest pose; 20 s at most
             motion.frame_time = 1 / 20
             if len(motion.places) < 60:
                 continue

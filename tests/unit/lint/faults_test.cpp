@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <random>
 
@@ -207,6 +208,70 @@ TEST(LintFaults, EachIsFoundByItsRuleWhereItIs) {
     }
     EXPECT_GT(found->excess(), 1) << seeded.name;
   }
+}
+
+// Would fail if gestures and impacts, which come again, were pops, or one alone were none.
+TEST(LintFaults, ImpactsThatComeAgainAreNoPops) {
+  const auto with_impacts = [](int every) {
+    return changed(usual_walk(), [=](LocalMotion& m, Clip& clip) {
+      auto all = m.joint_orientations(clip.skeleton.find("LeftForeArm"));
+      for (int f = kAt % every; f < m.frames; f += every) {
+        for (int k = -3; k <= 3; ++k) {
+          const int here = f + k;
+          if (here < 0 || here >= m.frames) continue;
+          all[at(here)] = all[at(here)] * turn(20 * std::exp(-k * k));
+        }
+      }
+    });
+  };
+  const Clip once = with_impacts(1000), often = with_impacts(30);
+  EXPECT_NE(find(faults_of(once), Rule::pop, kAt), nullptr);
+  EXPECT_EQ(find(faults_of(often), Rule::pop, kAt), nullptr) << listed(often, faults_of(often));
+}
+
+// Would fail if toes were left out, or blamed for springing back when they leave the ground.
+TEST(LintFaults, ToesJumpToo) {
+  const int toes = usual_walk().skeleton.find("LeftToeBase");
+  const Clip clip = changed(usual_walk(), [=](LocalMotion& m, Clip&) {
+    auto all = m.joint_orientations(toes);
+    all[kAt] = all[kAt] * turn(30);
+  });
+  EXPECT_NE(find(faults_of(clip), Rule::pop, kAt), nullptr) << listed(clip, faults_of(clip));
+}
+
+// Would fail if what is usual were that of most windows: two thirds of this take are smoothed.
+TEST(LintFaults, ATakeThatIsSmoothedForMostOfItsTime) {
+  const Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
+    for (int j = 0; j < m.joints; ++j) {
+      auto all = m.joint_orientations(j);
+      const std::vector<Quat> before(all.begin(), all.end());
+      for (int f = m.frames / 6; f < m.frames * 5 / 6; ++f) {
+        Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+        for (int k = -8; k <= 8; ++k) {
+          const Quat& one = before[at(f + k)];
+          sum += (one.dot(before[at(f)]) < 0 ? -1 : 1) * std::exp(-k * k / 18.0) * one.coeffs();
+        }
+        all[at(f)] = Quat(sum.normalized());
+      }
+    }
+  });
+  EXPECT_NE(find(faults_of(clip), Rule::over_smooth, clip.frame_count() / 2), nullptr);
+}
+
+// Would fail if only feet that slide without a rest, or far in one contact, counted: these are
+// carried on by 7 cm a second, now faster and now slower.
+TEST(LintFaults, FeetCreepFromStanceToStance) {
+  const Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
+    auto all = m.joint_positions(0);
+    const std::vector<Vec3> before(all.begin(), all.end());
+    for (std::size_t f = 1; f < all.size(); ++f) {
+      Vec3 step = before[f] - before[f - 1];
+      const double more = 0.06 * (1 + std::sin(0.5 * static_cast<double>(f)));
+      step.x() *= 1 + more, step.z() *= 1 + more;
+      all[f] = all[f - 1] + step;
+    }
+  });
+  EXPECT_NE(find(faults_of(clip), Rule::foot_slide, kAt), nullptr);
 }
 
 // Would fail if a take of two steps passed at four times its speed, as too few to judge by.
