@@ -76,6 +76,7 @@ constexpr std::array<Template, 3> kTemplates = {
      {PopKind::step, 2, {1, -1, 0, 0}, {3.5F, 5}, {1.6F, 3}, 1.7F}}};
 // Toes spring back within a frame or two when they leave the ground.
 constexpr Clearness kOfToes = {3, 4};
+constexpr float kMinOverUsual = 2, kMinOverRest = 1;  // of all of them
 constexpr double kAround = 10;  // seconds before and after in which a jump is unlike others
 
 // A place where a template was tried.
@@ -155,14 +156,21 @@ class PopFinder {
     return size / norm;
   }
 
-  // The largest that fits elsewhere.
-  float largest_elsewhere(const Template& shape, int first) const {
-    const int frames = static_cast<int>(turns_.size()), near = kNeighbours;
+  // Of accelerations [begin, end); a jump is at most as large.
+  float largest_of(int begin, int end) const {
+    return 1.001F * *std::max_element(&sizes_[at(begin)], &sizes_[at(end - 1)] + 1);
+  }
+
+  // The largest jump that fits elsewhere; any that is over `enough`, if there is one.
+  float largest_elsewhere(const Template& shape, int first, float enough) const {
+    const int frames = static_cast<int>(turns_.size());
     float most = 0;
     for (int f = std::max(1, first - around_); f < std::min(frames - 4, first + around_); ++f) {
-      if (std::abs(f - first) > near) most = std::max(most, jump(shape, f).squaredNorm());
+      if (std::abs(f - first) <= kNeighbours || largest_of(f, f + shape.length) < most) continue;
+      most = std::max(most, jump(shape, f).norm());
+      if (most > enough) break;
     }
-    return std::sqrt(most);
+    return most;
   }
 
   // How well a template fits that begins at a frame; of one that is cut off by an end of the
@@ -171,18 +179,21 @@ class PopFinder {
     const int frames = static_cast<int>(turns_.size());
     const int last = first + shape.length - 1;
     const int begin = std::max(first, 1), end = std::min(last, frames - 2);
+    const float least = std::max(threshold_, kMinOverUsual * usual);
+    if (largest_of(begin, end + 1) < least) return {};  // as at most frames
     const Vec3f size = jump(shape, first);
     const float value = size.norm();
-    if (value < threshold_) return {};
+    if (value < least) return {};
     float rest = largest_beside(begin, end);
+    if (value < kMinOverRest * rest) return {};
     for (int f = begin; f <= end; ++f) {
       rest = std::max(rest, (acceleration(f) - shape.weights[at(f - first)] * size).norm());
     }
     const bool cut = end - begin < shape.length - 1;
     const float doubt = begin < 3 || end + 3 >= frames ? kDoubt : 1.0F;
-    const auto clear_by = [&](const Clearness& least) {
-      return std::min(value / (doubt * least.over_rest * std::max(rest, 1e-6F)),
-                      value / (doubt * least.over_usual * std::max(usual, 1e-6F)));
+    const auto clear_by = [&](const Clearness& limits) {
+      return std::min(value / (doubt * limits.over_rest * std::max(rest, 1e-6F)),
+                      value / (doubt * limits.over_usual * std::max(usual, 1e-6F)));
     };
     float score = 0;
     if (cut) {
@@ -192,7 +203,8 @@ class PopFinder {
       if (!toes_) score = clear_by(shape.alone);
       float other = score >= 1 ? 0 : clear_by(toes_ ? kOfToes : shape.unlike_others);
       if (other >= 1) {
-        other = std::min(other, value / (shape.unlike * largest_elsewhere(shape, first) + 1e-6F));
+        const float elsewhere = largest_elsewhere(shape, first, value / shape.unlike);
+        other = std::min(other, value / (shape.unlike * elsewhere + 1e-6F));
       }
       score = std::max(score, other);
     }
@@ -216,9 +228,9 @@ class PopFinder {
     for (int begin = -1; begin < 1 && first == 1; ++begin) try_at(spike, begin);
     if (first + spike.length >= frames) try_at(spike, first);
     // A change of speed alone.
-    const float rest = largest_beside(first, first);
     if (!toes_ && best.score < 1 && first >= 3 && first + 3 < frames &&
-        sizes_[at(first)] > kTimesNeighbours * rest && sizes_[at(first)] > kTimesUsual * usual) {
+        sizes_[at(first)] > kTimesUsual * usual &&
+        sizes_[at(first)] > kTimesNeighbours * largest_beside(first, first)) {
       best = {{PopKind::kink, first, first, first, sizes_[at(first)]}, 1};
     }
     return best;
