@@ -6,6 +6,7 @@
 
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
+#include "math/window.h"
 #include "plant/smooth_curve_internal.h"
 
 namespace krok::plant {
@@ -346,6 +347,10 @@ constexpr double kSpread = 0.3;    // seconds
 constexpr double kMargin = 0.008;  // of the leg
 constexpr double kReached = 1e-5;  // metres
 
+constexpr double kBentBack = kPi / 2;  // about the leg's line, from the usual axis
+constexpr double kGivesWay = 0.25;     // of the captured flexion
+constexpr double kTurnsWithin = 0.05;  // seconds
+
 // A leg in one frame, as captured but for the pelvis.
 struct LegNow {
   Transform upper, lower, foot;
@@ -374,32 +379,82 @@ double drop_for(const Vec3& from_hip, double reach) {
   return std::max(0.0, -from_hip.y() - below);
 }
 
-// The pose of a chain, and the rotations that lead there.
-TwoBoneSolution solve(const Leg& leg, const LegNow& now) {
+// A knee as captured: its flexion, in radians, and the direction of its axis, as an angle about
+// the leg's line from the usual one. What is added flexes about the usual one.
+struct Knee {
+  double bend = 0, angle = 0, added = 0;
+};
+
+Vec3 line_of(const LegNow& now) {
+  return (now.foot.position - now.upper.position).stableNormalized();
+}
+
+// The usual axis, square to the line from hip to ankle.
+Vec3 usual_axis(const Leg& leg, const LegNow& now) {
+  const Vec3 line = line_of(now), usual = now.upper.orientation * leg.knee_axis;
+  return (usual - line * line.dot(usual)).stableNormalized();
+}
+
+Knee knee_of(const Leg& leg, const LegNow& now) {
+  const Vec3 thigh = now.lower.position - now.upper.position;
+  const Vec3 hinge = thigh.cross(now.foot.position - now.lower.position);
+  const Vec3 usual = usual_axis(leg, now);
+  Knee knee;
+  knee.bend = two_bone_bend(now.thigh, now.shank, now.reach);
+  knee.added =
+      two_bone_bend(now.thigh, now.shank, (now.goal - now.upper.position).norm()) - knee.bend;
+  if (hinge.norm() > 1e-5 * now.thigh * now.shank) {
+    knee.angle = std::atan2(line_of(now).dot(usual.cross(hinge)), usual.dot(hinge));
+  }
+  return knee;
+}
+
+// The plane of a nearly straight leg is mostly noise, or that of a knee bent backwards or to a
+// side. It gives way to the usual one as flexion is added: all of it does where the knee is bent
+// against that, by a quarter of what is captured.
+double part_given_way(const Knee& knee) {
+  const double added = std::max(0.0, knee.added), bend = std::max(knee.bend, 1e-9);
+  if (std::abs(knee.angle) > kBentBack) {
+    const double u = std::min(1.0, added / (kGivesWay * bend));
+    return u * u * (3 - 2 * u);
+  }
+  const double straight = std::max(0.0, 1 - bend / kNearlyStraight);
+  const double give_way = straight * std::min(1.0, added / bend);
+  const double along = bend * std::cos(knee.angle) + added * std::max(0.0, std::cos(knee.angle));
+  const double left = std::atan2((1 - give_way) * bend * std::sin(knee.angle),
+                                 (1 - give_way) * along + give_way * (bend + added));
+  return std::abs(knee.angle) < 1e-9 ? 0 : 1 - left / knee.angle;
+}
+
+// The directions of the knee's axis, [frames], as Knee::angle. Not from one frame to the next: a
+// knee that swings from one side of the leg to the other takes its time.
+std::vector<double> knee_angles(const Clip& clip, const Leg& leg, const FootPath& path,
+                                const std::vector<double>& lowered) {
+  std::vector<double> parts, angles;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const Knee knee = knee_of(leg, {clip, f, leg, path, lowered[static_cast<std::size_t>(f)]});
+    parts.push_back(part_given_way(knee));
+    // Round the same side as before.
+    const double before = angles.empty() ? 0 : angles.back();
+    const bool stays = std::min(std::abs(before), std::abs(knee.angle)) > kBentBack;
+    angles.push_back(stays ? before + std::remainder(knee.angle - before, 2 * kPi) : knee.angle);
+  }
+  const int reach = static_cast<int>(std::lround(kTurnsWithin * clip.rate));
+  parts = mean_within(mean_within(parts, reach), reach);
+  for (std::size_t f = 0; f < angles.size(); ++f) angles[f] *= 1 - parts[f];
+  return angles;
+}
+
+// The pose of a chain whose knee's axis is at this angle, and the rotations that lead there. Thigh
+// and shank turn about their lengths no more than captured.
+TwoBoneSolution solve(const Leg& leg, const LegNow& now, double angle) {
   TwoBoneChain chain{now.upper.position, now.lower.position, now.foot.position, Vec3::Zero()};
-  const Vec3 usual = now.upper.orientation * leg.knee_axis;
-  const Vec3 hinge = Vec3(chain.middle - chain.root).cross(Vec3(chain.end - chain.middle));
-  const double sine = hinge.norm() / std::max(1e-12, now.thigh * now.shank);
-  chain.hinge = sine > 1e-5 ? Vec3(hinge.normalized()) : usual;
+  const Vec3 line = line_of(now);
+  chain.hinge = from_rotation_vector(angle * line) * usual_axis(leg, now);
   TwoBoneGoal goal;
   goal.target = now.goal;
-  // Added flexion is about the usual axis: the plane of a nearly straight leg is mostly noise, or
-  // that of a knee bent backwards. It gives way to the usual one as flexion is added.
-  const double bend = two_bone_bend(now.thigh, now.shank, now.reach);
-  const double then = two_bone_bend(now.thigh, now.shank, (goal.target - chain.root).norm());
-  const double added = std::max(0.0, then - bend);
-  const double agree = std::max(0.0, chain.hinge.dot(usual));
-  const double straight = std::max(0.0, 1 - bend / kNearlyStraight);
-  const double give_way = straight * std::min(1.0, added / std::max(bend, 1e-9));
-  const Vec3 captured = bend * chain.hinge + added * agree * usual;
-  const Vec3 axis = (1 - give_way) * captured + give_way * then * usual;
-  // So does where thigh and shank turn from: a knee that was bent backwards, or to a side, and now
-  // bends does not turn them over.
-  const double alike = axis.stableNormalized().dot(chain.hinge);
-  chain.hinge = (1 - give_way) * alike * chain.hinge + give_way * usual;
-  const Vec3 line = goal.target - chain.root;
-  const Quat swing = shortest_arc(chain.end - chain.root, line);
-  goal.pole = line.cross(swing * (axis.norm() > 1e-9 ? axis : usual));
+  const Vec3 wanted = goal.target - chain.root;
+  goal.pole = wanted.cross(shortest_arc(line, wanted) * chain.hinge);
   return solve_two_bone(chain, goal);
 }
 
@@ -414,8 +469,9 @@ struct Move {
 constexpr std::size_t kBodies = 6;
 using Moves = std::array<Move, kBodies>;  // [Body]
 
-Moves moves_of(const Clip& clip, int frame, const Leg& leg, const LegNow& now, const Vec3& turn) {
-  const TwoBoneSolution solution = solve(leg, now);
+Moves moves_of(const Clip& clip, int frame, const Leg& leg, const LegNow& now, const Vec3& turn,
+               double knee) {
+  const TwoBoneSolution solution = solve(leg, now, knee);
   const auto captured = [&](int joint) { return joint_at(clip, frame, joint).position; };
   Moves moves;
   const auto set = [&](Body body, int joint, const Vec3& then, const Quat& rotation) {
@@ -460,13 +516,17 @@ int apply(const PlantedBody& body, const std::vector<FootPath>& paths,
           const std::vector<double>& lowered, Clip& clip) {
   int out_of_reach = 0;
   std::array<Moves, 2> moves;
+  std::array<std::vector<double>, 2> knees;
+  for (std::size_t i = 0; i < body.legs.size(); ++i) {
+    knees[i] = knee_angles(clip, body.legs[i], paths[i], lowered);
+  }
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const auto f = static_cast<std::size_t>(frame);
     const Vec3 shift = -lowered[f] * Vec3::UnitY();
     bool reached = true;
     for (std::size_t i = 0; i < body.legs.size(); ++i) {
       const LegNow now(clip, frame, body.legs[i], paths[i], lowered[f]);
-      moves[i] = moves_of(clip, frame, body.legs[i], now, paths[i].turn[f]);
+      moves[i] = moves_of(clip, frame, body.legs[i], now, paths[i].turn[f], knees[i][f]);
       reached = reached &&
                 (moves[i][static_cast<std::size_t>(Body::foot)].then - now.goal).norm() < kReached;
     }

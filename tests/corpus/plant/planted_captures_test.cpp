@@ -9,11 +9,32 @@
 #include "core/file.h"
 #include "corpus/bvh/corpus_files.h"
 #include "formats/bvh/bvh_reader.h"
+#include "math/quaternion.h"
+#include "motion/ground_frame.h"
 #include "support/planted_measures.h"
 #include "support/this_build.h"
 
 namespace krok {
 namespace {
+
+// The largest turn of a leg's joint in its parent from a frame to the next, radians.
+double largest_turn(const Clip& clip, const RoleMap& roles) {
+  double largest = 0;
+  for (const LegRoles& leg : kLegRoles) {
+    for (const Role role : {leg.upper, leg.lower, leg.foot}) {
+      const int joint = roles.joint(role);
+      const auto local = [&](int f) {
+        const Quat own = test::joint_of(clip, f, joint).orientation;
+        const int parent = clip.skeleton.parents[static_cast<std::size_t>(joint)];
+        return Quat(test::joint_of(clip, f, parent).orientation.conjugate() * own);
+      };
+      for (int f = 1; f < clip.frame_count(); ++f) {
+        largest = std::max(largest, angle_between(local(f - 1), local(f)));
+      }
+    }
+  }
+  return largest;
+}
 
 class PlantedCaptures : public testing::TestWithParam<const char*> {};
 
@@ -36,6 +57,8 @@ TEST_P(PlantedCaptures, StandStillAndBendAsBefore) {
   EXPECT_LT(measures.height, 0.001);
   EXPECT_LT(measures.stretch, 5e-6);
   EXPECT_EQ(feet->out_of_reach, 0);
+  // Neither a knee that is bent backwards nor a foot that points down turns over.
+  EXPECT_LE(largest_turn(feet->clip, roles), largest_turn(clip, roles) + 0.05);
   // Twice is once, with the same contacts and with contacts detected again.
   const auto again = plant_feet(feet->clip, roles);
   ASSERT_TRUE(again.ok());
