@@ -155,6 +155,17 @@ TEST_F(Krok, GitShowsWhatChangedInAMotion) {
   }
   put("in.bvh", text);
   EXPECT_EQ(changed_lines(), 0);
+  // Nor do its rounding errors: 0.00005 degrees in all frames.
+  const auto turned = [&](const char* angle) {
+    std::string other = text;
+    for (std::size_t i = 0; (i = other.find(" 0 10\n", i)) != std::string::npos;) {
+      other.replace(i, 6, angle);
+    }
+    put("turned.bvh", other);
+    return run_here("krok-info", {"--textconv", "turned.bvh"}).out;
+  };
+  EXPECT_EQ(turned(" 0 9.99916\n"), turned(" 0 9.99921\n"));
+  EXPECT_NE(turned(" 0 9.99916\n"), turned(" 0 9.98\n"));
   EXPECT_EQ(run_here("krok-info", {"--textconv", "pointer.bvh"}).out,
             "Git LFS pointer: oid sha256:12ab size 99\n");
   const ToolRun broken = run_here("krok-info", {"--textconv", "broken.bvh"});
