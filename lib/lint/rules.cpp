@@ -18,7 +18,7 @@ constexpr std::array<RuleFacts, kRuleCount> kRules = {{
     {Rule::pop, "pop", kError, 4, "deg", "A joint jumps: a spike, a step, or a seam of two takes"},
     {Rule::frozen, "frozen", kError, 0.15, "s", "The whole body stands still, to the last digit"},
     {Rule::jitter, "jitter", kWarning, 0.8, "deg", "Joints shake from frame to frame"},
-    {Rule::over_smooth, "over-smooth", kWarning, 6, "",
+    {Rule::over_smooth, "over-smooth", kWarning, 8, "",
      "A stretch has lost the detail that the rest of the motion has"},
     {Rule::foot_slide, "foot-slide", kWarning, 0.04, "m", "A foot slides while it stands"},
     {Rule::drift, "drift", kWarning, 0.1, "m",
