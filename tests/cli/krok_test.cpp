@@ -190,6 +190,26 @@ TEST_F(Krok, TheHookNamesTheFaultsOfACommit) {
   EXPECT_EQ(known.exit_code, 0) << known.out << known.err;
 }
 
+// Would fail if the Action's step linted motions that nobody touched, or passed what is faulty.
+TEST_F(Krok, TheActionLintsAndComparesWhatChanged) {
+  if (!std::filesystem::exists("/usr/bin/git")) GTEST_SKIP() << "skipped: there is no git";
+  const std::string action = get(test::source_folder() + "/action.yml");
+  put("step.sh", action.substr(action.rfind("run: |") + 6));
+  put("untouched.bvh", capture(30, "9"));
+  ASSERT_EQ(in_git("git init -q . && git config user.name a && git config user.email a@b.c && git "
+                   "add *.bvh && git commit -qm one")
+                .exit_code,
+            0);
+  const std::string step = "SINCE=HEAD~1 bash -e -o pipefail step.sh";
+  const ToolRun none = in_git("git commit -qm none --allow-empty; " + step);
+  EXPECT_EQ(none.exit_code, 0) << none.out << none.err;
+  put("in.bvh", capture(30, "9"));
+  const ToolRun faulty = in_git("git commit -qam two; " + step);
+  EXPECT_EQ(faulty.exit_code, 1) << faulty.err;
+  EXPECT_THAT(faulty.out, AllOf(HasSubstr("differs: positions"), HasSubstr("in.bvh: 0.03 s: error"),
+                                Not(HasSubstr("untouched"))));
+}
+
 TEST_F(Krok, AFullStandardOutputIsTrouble) {
   ToolOptions full;
   full.output_path = "/dev/full";
