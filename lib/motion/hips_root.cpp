@@ -29,61 +29,105 @@ std::string appended_name(const Skeleton& skeleton, int joint) {
 
 }  // namespace
 
-HipsRoot::HipsRoot(std::span<const Clip* const> clips, int carrier) : carrier_(carrier) {
-  if (clips.empty()) return;
-  const Skeleton& skeleton = clips.front()->skeleton;
+// What stays the same of each joint above the hips, over the frames of some clips.
+class HipsRoot::KeptFinder {
+ public:
+  KeptFinder(HipsRoot& root, const Skeleton& skeleton)
+      : root_(root),
+        parents_(skeleton.parents),
+        found_(root.above_.size()),
+        pose_(at(root.joints_)) {}
+
+  // `begins`: the first frame is that of a clip.
+  void add(const Clip& frames, bool begins) {
+    for (int f = 0; f < frames.frame_count(); ++f) {
+      if (std::ranges::none_of(found_, &Found::any)) return;
+      frames.get_pose(f, pose_);
+      for (std::size_t i = 0; i < found_.size(); ++i) {
+        Found& found = found_[i];
+        for (std::size_t k = 0; k < kAll.size(); ++k) {
+          if (!found.same[k]) continue;
+          const Transform now = relative(root_.above_[i].joint, kAll[k]);
+          if (begins && f == 0) found.begin[k] = now;
+          if (!found.first[k]) found.first[k] = now;
+          found.same[k] = is_same(found.begin[k], now);
+        }
+      }
+    }
+  }
+
+  void finish() {
+    int count = root_.joints_;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+      Above& above = root_.above_[i];
+      for (std::size_t k = 0; k < kAll.size() && above.keeps == Keeps::nothing; ++k) {
+        if (!found_[i].same[k] || !found_[i].first[k]) continue;
+        above.keeps = kAll[k];
+        above.kept = *found_[i].first[k];
+      }
+      if (above.keeps == Keeps::nothing) above.appended = count++;
+    }
+  }
+
+ private:
+  static constexpr std::array kAll = {Keeps::world, Keeps::to_hips, Keeps::to_parent};
+  struct Found {
+    std::array<bool, kAll.size()> same = {true, true, true};
+    std::array<Transform, kAll.size()> begin;
+    std::array<std::optional<Transform>, kAll.size()> first;
+    bool any() const { return same[0] || same[1] || same[2]; }
+  };
+
+  Transform relative(int joint, Keeps keeps) const {
+    const int parent = parents_[at(joint)];
+    if (keeps == Keeps::world || (keeps == Keeps::to_parent && parent < 0)) return pose_[at(joint)];
+    return pose_[at(keeps == Keeps::to_hips ? root_.carrier_ : parent)].inverse() *
+           pose_[at(joint)];
+  }
+
+  HipsRoot& root_;
+  const std::vector<int>& parents_;
+  std::vector<Found> found_;  // of HipsRoot::above_
+  std::vector<Transform> pose_;
+};
+
+void HipsRoot::find_joints(const Skeleton& skeleton) {
   joints_ = skeleton.joint_count();
   if (joints_ == 0) return;
-  below_ = subtree(skeleton, carrier);
-  for (int j = skeleton.parents[at(carrier)]; j >= 0; j = skeleton.parents[at(j)]) {
+  below_ = subtree(skeleton, carrier_);
+  for (int j = skeleton.parents[at(carrier_)]; j >= 0; j = skeleton.parents[at(j)]) {
     above_.insert(above_.begin(), {j, Keeps::nothing, {}, -1});
   }
   for (int j = 1; j < joints_; ++j) {
-    const bool is_above = subtree(skeleton, j)[at(carrier)] != 0;
+    const bool is_above = subtree(skeleton, j)[at(carrier_)] != 0;
     if (!is_above && below_[at(j)] == 0) beside_.push_back(j);
   }
-  find_what_is_kept(clips);
-  int count = joints_;
-  for (Above& above : above_) {
-    if (above.keeps == Keeps::nothing) above.appended = count++;
-  }
+}
+
+HipsRoot::HipsRoot(std::span<const Clip* const> clips, int carrier) : carrier_(carrier) {
+  if (clips.empty()) return;
+  find_joints(clips.front()->skeleton);
+  KeptFinder finder(*this, clips.front()->skeleton);
+  for (const Clip* clip : clips) finder.add(*clip, true);
+  finder.finish();
 }
 
 HipsRoot::HipsRoot(const Clip& clip, int carrier)
     : HipsRoot(std::array<const Clip*, 1>{&clip}, carrier) {}
 
-void HipsRoot::find_what_is_kept(std::span<const Clip* const> clips) {
-  constexpr std::array kAll = {Keeps::world, Keeps::to_hips, Keeps::to_parent};
-  std::vector<Transform> pose(at(joints_));
-  const auto relative = [&](int joint, Keeps keeps) -> Transform {
-    if (keeps == Keeps::world) return pose[at(joint)];
-    const int parent = clips.front()->skeleton.parents[at(joint)];
-    if (keeps == Keeps::to_parent && parent < 0) return pose[at(joint)];
-    return pose[at(keeps == Keeps::to_hips ? carrier_ : parent)].inverse() * pose[at(joint)];
-  };
-  for (Above& above : above_) {
-    std::array<bool, kAll.size()> same = {true, true, true};
-    std::array<std::optional<Transform>, kAll.size()> first;
-    for (const Clip* clip : clips) {
-      std::array<Transform, kAll.size()> begin;
-      for (int f = 0; f < clip->frame_count(); ++f) {
-        clip->get_pose(f, pose);
-        for (std::size_t k = 0; k < kAll.size(); ++k) {
-          if (!same[k]) continue;
-          const Transform now = relative(above.joint, kAll[k]);
-          if (f == 0) begin[k] = now;
-          if (!first[k]) first[k] = now;
-          same[k] = is_same(begin[k], now);
-        }
-        if (std::ranges::none_of(same, [](bool one) { return one; })) break;
-      }
-    }
-    for (std::size_t k = 0; k < kAll.size() && above.keeps == Keeps::nothing; ++k) {
-      if (!same[k] || !first[k]) continue;
-      above.keeps = kAll[k];
-      above.kept = *first[k];
-    }
-  }
+Result<HipsRoot> HipsRoot::of(const FrameSource& source, int carrier, int jobs) {
+  HipsRoot root;
+  root.carrier_ = carrier;
+  root.find_joints(source.skeleton);
+  if (!root.changes()) return root;
+  KeptFinder finder(root, source.skeleton);
+  const Status status = for_each_block(source, jobs, [&](int first, const Clip& block) {
+    finder.add(block, first == 0);
+    return Status();
+  });
+  if (!status) return status.error();
+  finder.finish();
+  return root;
 }
 
 void HipsRoot::stand_at(const Transform& root_to_world) {

@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 // One representation of motions for all operations that sum, interpolate or compare poses: rooted
 // at the hips.
@@ -29,6 +31,9 @@ class HipsRoot {
   // Clips without frames do not count.
   HipsRoot(std::span<const Clip* const> clips, int carrier);
   HipsRoot(const Clip& clip, int carrier);
+  // The same of frames that are produced on demand, read once if there are joints above the hips.
+  // Errors are those of the source.
+  static Result<HipsRoot> of(const FrameSource& source, int carrier, int jobs);
 
   // Whether there are joints above the hips.
   bool changes() const { return !above_.empty(); }
@@ -68,7 +73,8 @@ class HipsRoot {
     int appended = -1;  // its joint in rooted clips, if it keeps nothing
   };
 
-  void find_what_is_kept(std::span<const Clip* const> clips);
+  class KeptFinder;
+  void find_joints(const Skeleton& skeleton);
 
   int joints_ = 0;  // of the original skeleton
   int carrier_ = 0;

@@ -103,6 +103,8 @@ class ActorView {
 // whose roles are missing keep their place. Without `limbs` the body is only turned upright as a
 // whole. Where a motion begins with a T-pose, as some exporters have it, that is the stance.
 std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs);
+// build_stance() looks at every so many of a take's frames.
+int step_in_take(int frames);
 
 // Whether limbs are straight in the first frame, legs down and arms to the sides.
 bool begins_in_a_stance(const Clip& clip, const RoleMap& roles);

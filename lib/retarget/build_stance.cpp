@@ -14,7 +14,6 @@ namespace krok::retarget {
 
 namespace {
 
-constexpr int kMaxFrames = 2000;
 // Share of the frames, in which a foot is flat on the ground.
 constexpr double kLowest = 0.05;
 constexpr float kUpright = 0.7F;  // cosine of a shank's angle with up, over a foot that stands
@@ -38,7 +37,7 @@ class StanceBuilder {
       : clip_(clip),
         roles_(roles),
         pose_(clip.skeleton.reference),
-        step_(1 + clip.frame_count() / kMaxFrames) {}
+        step_(step_in_take(clip.frame_count())) {}
 
   std::vector<Transform> build(bool limbs) {
     if (limbs && begins_in_a_stance()) {
@@ -438,6 +437,11 @@ class StanceBuilder {
 };
 
 }  // namespace
+
+int step_in_take(int frames) {
+  constexpr int kMaxFrames = 2000;
+  return 1 + frames / kMaxFrames;
+}
 
 std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs) {
   return StanceBuilder(clip, roles).build(limbs);

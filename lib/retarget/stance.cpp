@@ -117,4 +117,18 @@ Skeleton neutral_skeleton(const Clip& clip, const RoleMap& roles) {
   return neutral;
 }
 
+Result<Skeleton> neutral_skeleton(const FrameSource& source, const RoleMap& roles) {
+  Clip looked_at{source.skeleton, source.rate, {}, {}, {}};
+  const int step = step_in_take(source.frame_count);
+  for (int f = 0; f < source.frame_count; f += step) {
+    const auto frame = load(part_of(source, f, 1), 1);
+    if (!frame) return frame.error();
+    looked_at.positions.insert(looked_at.positions.end(), frame->positions.begin(),
+                               frame->positions.end());
+    looked_at.orientations.insert(looked_at.orientations.end(), frame->orientations.begin(),
+                                  frame->orientations.end());
+  }
+  return neutral_skeleton(looked_at, roles);
+}
+
 }  // namespace krok::retarget

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "math/hermite.h"
 #include "math/window.h"
+#include "scene/frame_blocks.h"
 #include "settle/settler_internal.h"
 
 namespace krok::settling {
@@ -43,23 +44,32 @@ std::vector<Transform> Settler::pose_of(const LocalMotion& motion, int frame) co
   return pose;
 }
 
-Heights Settler::heights(const LocalMotion& motion, const Over& over) const {
+void Settler::each(const FrameSource& rooted,
+                   const std::function<void(int first, LocalMotion& block)>& use) const {
+  if (!status_) return;
+  status_ = for_each_run(rooted, {4096, 0}, options_.jobs, [&](const FrameRun& run) {
+    LocalMotion block = local_motion(run.clip);
+    use(run.first, block);
+    return Status();
+  });
+}
+
+Heights Settler::heights(const FrameSource& rooted, const Over& over) const {
   Heights heights;
-  const auto count = at(motion.frames);
-  heights.of_points.resize(count * points_.size());
+  const auto count = at(frames());
   heights.of_bodies.assign(count * bodies_.size(), std::numeric_limits<double>::infinity());
-  parallel_for(count, 16, options_.jobs, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t f = begin; f < end; ++f) {
-      const std::vector<Transform> pose = pose_of(motion, static_cast<int>(f));
-      for (std::size_t p = 0; p < points_.size(); ++p) {
-        const SupportPoint& point = points_[p];
-        const int joint = bodies_[at(point.body)].joint;
-        const double height = over(point, pose[at(joint)] * point.centre, static_cast<int>(f));
-        heights.of_points[f * points_.size() + p] = height;
-        double& lowest = heights.of_bodies[at(point.body) * count + f];
-        lowest = std::min(lowest, height);
+  each(rooted, [&](int first, const LocalMotion& block) {
+    parallel_for(at(block.frames), 16, options_.jobs, [&](std::size_t begin, std::size_t end) {
+      for (int i = static_cast<int>(begin); i < static_cast<int>(end); ++i) {
+        const std::vector<Transform> pose = pose_of(block, i);
+        for (const SupportPoint& point : points_) {
+          const int joint = bodies_[at(point.body)].joint;
+          const double height = over(point, pose[at(joint)] * point.centre, first + i);
+          double& lowest = heights.of_bodies[at(point.body) * count + at(first + i)];
+          lowest = std::min(lowest, height);
+        }
       }
-    }
+    });
   });
   const retarget::TouchLimits limits = {kNear * scale_, kFar * scale_, kRising * scale_, kShortest};
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
@@ -70,13 +80,13 @@ Heights Settler::heights(const LocalMotion& motion, const Over& over) const {
       rising[f] = std::abs(distance[after] - distance[before]) * rooted_.rate /
                   static_cast<double>(after - before);
     }
-    heights.touches.push_back(retarget::find_touch(distance, rising, limits, rooted_.rate));
+    heights.stays.push_back(retarget::find_touch(distance, rising, limits, rooted_.rate).stays);
   }
   return heights;
 }
 
-Heights Settler::over_ground(const LocalMotion& motion) const {
-  return heights(motion, [&](const SupportPoint& point, const Vec3& place, int) {
+Heights Settler::over_ground(const FrameSource& rooted) const {
+  return heights(rooted, [&](const SupportPoint& point, const Vec3& place, int) {
     return clearance(ground_, place, point.radius);
   });
 }
@@ -103,12 +113,12 @@ double Settler::usual(const Heights& heights) const {
 }
 
 GroundFit Settler::fit(const Heights& on_ground, const Heights& over_rest,
-                       std::span<const retarget::Touch> touches) const {
+                       const Stays& touches) const {
   GroundFit fit;
   const auto count = at(frames());
   for (const double height : on_ground.of_bodies) fit.depth = std::max(fit.depth, -height);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    for (const retarget::Stay& stay : touches[b].stays) {
+    for (const retarget::Stay& stay : touches[b]) {
       for (int f = stay.first; f <= stay.last; ++f) {
         const double height = over_rest.of_bodies[b * count + at(f)];
         if (std::isfinite(height)) fit.hover = std::max(fit.hover, height);
@@ -122,21 +132,27 @@ void Settler::find_steps() {
   Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
   const auto count = at(frames());
   on_tread_.assign(bodies_.size() * count, 0);
-  for (std::size_t f = 0; f < count; ++f) {
-    const std::vector<Transform> pose = pose_of(source_, static_cast<int>(f));
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      const int joint = bodies_[b].joint, parent = parents_[at(joint)];
-      const Vec3& place = pose[at(joint)].position;
-      low = low.cwiseMin(Vec2(place.x(), place.z()));
-      high = high.cwiseMax(Vec2(place.x(), place.z()));
-      const Role role = roles_.roles[at(joint)];
-      if (parent < 0 || (role != Role::left_foot && role != Role::right_foot)) continue;
-      const Vec3 shank = (pose[at(parent)].position - place).normalized();
-      on_tread_[b * count + f] = upright(pose) * smoother_step((shank.y() - 0.3) / 0.4);
+  each(rooted_, [&](int first, const LocalMotion& block) {
+    for (int i = 0; i < block.frames; ++i) {
+      const std::vector<Transform> pose = pose_of(block, i);
+      for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const int joint = bodies_[b].joint, parent = parents_[at(joint)];
+        const Vec3& place = pose[at(joint)].position;
+        low = low.cwiseMin(Vec2(place.x(), place.z()));
+        high = high.cwiseMax(Vec2(place.x(), place.z()));
+        const Role role = roles_.roles[at(joint)];
+        if (parent < 0 || (role != Role::left_foot && role != Role::right_foot)) continue;
+        const Vec3 shank = (pose[at(parent)].position - place).normalized();
+        on_tread_[b * count + at(first + i)] =
+            upright(pose) * smoother_step((shank.y() - 0.3) / 0.4);
+      }
     }
-  }
+  });
+  if (!status_) return;
   rolled_ = std::make_unique<RolledGround>(ground_, low, high, options_.jobs);
-  if (!rolled_->has_steps()) rolled_.reset();
+  if (rolled_->has_steps()) return;
+  rolled_.reset();
+  on_tread_ = {};
 }
 
 // A foot of an upright body rests on the highest tread that it is over. In the air, and from one
@@ -149,16 +165,22 @@ void Settler::find_treads() {
     return mean_within(mean_within(max_within(values, 2 * reach), reach), reach);
   };
   treads_.assign(on_tread_.size(), -std::numeric_limits<double>::infinity());
+  each(rooted_, [&](int first, const LocalMotion& block) {
+    for (int i = 0; i < block.frames; ++i) {
+      const std::vector<Transform> pose = pose_of(block, i);
+      for (const SupportPoint& point : points_) {
+        const std::size_t b = at(point.body), f = b * count + at(first + i);
+        if (on_tread_[f] == 0) continue;
+        const auto under = surface_at(ground_, pose[at(bodies_[b].joint)] * point.centre);
+        if (under) treads_[f] = std::max(treads_[f], under->height);
+      }
+    }
+  });
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto treads = std::span(treads_).subspan(b * count, count);
     std::vector<double> touched(count, 0), changes(count, 0);
     for (std::size_t f = 0; f < count; ++f) {
       if (on_tread_[b * count + f] == 0) continue;
-      const std::vector<Transform> pose = pose_of(source_, static_cast<int>(f));
-      for (std::size_t p = points_of_[b].first; p < points_of_[b].second; ++p) {
-        const auto under = surface_at(ground_, pose[at(bodies_[b].joint)] * points_[p].centre);
-        if (under) treads[f] = std::max(treads[f], under->height);
-      }
       touched[f] = touches(b, f) ? 1 : 0;
       if (f > 0 && !(std::abs(treads[f] - treads[f - 1]) < kStep)) changes[f - 1] = changes[f] = 1;
     }
@@ -191,24 +213,25 @@ Status Settler::find_ground() {
   const auto over_rest = [&](const SupportPoint& point, const Vec3& place, int frame) {
     return this->over_rest(point, place, frame);
   };
-  Heights on_ground = heights(source_, over_rest);
+  Heights on_ground = heights(rooted_, over_rest);
   const double ground_height = usual(on_ground);
   // What rests on a tread is deep in the ramp over it, and not in the ground.
-  const Heights clear = rolled_ ? over_ground(source_) : on_ground;
+  const Heights over_steps = rolled_ ? over_ground(rooted_) : Heights();
+  const Heights& clear = rolled_ ? over_steps : on_ground;
   const auto over_level = [](const SupportPoint& point, const Vec3& place, int) {
     return place.y() - point.radius;
   };
-  floor_ = options_.floor.value_or(usual(heights(source_, over_level)));
-  Heights over_floor = heights(source_, [&](const SupportPoint& point, const Vec3& place, int) {
+  floor_ = options_.floor ? *options_.floor : usual(heights(rooted_, over_level));
+  Heights over_floor = heights(rooted_, [&](const SupportPoint& point, const Vec3& place, int) {
     return place.y() - point.radius - floor_;
   });
-  fit_ = fit(clear, on_ground, on_ground.touches);
-  const GroundFit on_level = fit(over_floor, over_floor, over_floor.touches);
+  fit_ = fit(clear, on_ground, on_ground.stays);
+  const GroundFit on_level = fit(over_floor, over_floor, over_floor.stays);
   const auto misfit = [](const GroundFit& fit) { return std::max(fit.depth, fit.hover); };
   const auto touching = [](const Heights& over) {  // frames, of all parts
     int sum = 0;
-    for (const retarget::Touch& touch : over.touches) {
-      for (const retarget::Stay& stay : touch.stays) sum += stay.last - stay.first + 1;
+    for (const auto& stays : over.stays) {
+      for (const retarget::Stay& stay : stays) sum += stay.last - stay.first + 1;
     }
     return sum;
   };
@@ -225,19 +248,24 @@ Status Settler::find_ground() {
                      (closely && on_it >= kAlike * on_level_floor));
   follows_ground_ = !options_.floor && (near || kept_out);
   lies_already_ = follows_ground_ && fit_.depth <= kNear * scale_;
-  if (!follows_ground_) fit_ = fit(clear, on_ground, over_floor.touches);
+  if (!follows_ground_) fit_ = fit(clear, on_ground, over_floor.stays);
   set_goals(std::move(follows_ground_ ? on_ground : over_floor));
   if (!follows_ground_) find_treads();
   // What is under the hips, carried over gaps.
   ground_below_.assign(at(frames()), std::numeric_limits<double>::quiet_NaN());
-  for (int f = 0; f < frames(); ++f) {
-    const Vec3 hips = source_.at(0, f).position;
-    const auto found = surface_at(rolled_ ? static_cast<const Terrain&>(*rolled_) : ground_, hips);
-    if (!found) ++without_ground_;
-    if (found) ground_below_[at(f)] = (follows_ground_ ? 0 : found->height - floor_) + lift_[at(f)];
-  }
+  Vec3 hips = Vec3::Zero();  // in the first frame
+  each(rooted_, [&](int first, const LocalMotion& block) {
+    if (first == 0) hips = block.at(0, 0).position;
+    for (int i = 0; i < block.frames; ++i) {
+      const Terrain& under = rolled_ ? static_cast<const Terrain&>(*rolled_) : ground_;
+      const auto found = surface_at(under, block.at(0, i).position);
+      if (!found) ++without_ground_;
+      const std::size_t f = at(first + i);
+      if (found) ground_below_[f] = (follows_ground_ ? 0 : found->height - floor_) + lift_[f];
+    }
+  });
+  if (!status_) return status_;
   if (without_ground_ == frames()) {
-    const Vec3 hips = source_.at(0, 0).position;
     return Error("settle-ground",
                  fmt::format("there is no ground under the motion, which begins at x {:.2f} m, z "
                              "{:.2f} m",
@@ -255,7 +283,7 @@ std::vector<double> Settler::common_lift(const Heights& source) const {
   const auto count = at(frames());
   std::vector<double> lift(count, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    for (const retarget::Stay& stay : source.touches[b].stays) {
+    for (const retarget::Stay& stay : source.stays[b]) {
       for (int f = stay.first; f <= stay.last; ++f) {
         const double own = -source.of_bodies[b * count + at(f)];
         if (!std::isfinite(own)) continue;
@@ -273,16 +301,12 @@ std::vector<double> Settler::common_lift(const Heights& source) const {
   return mean_within(mean_within(lift, reach), reach);
 }
 
-// How high each point should be over the ground: as in the source, but that parts which touch are
+// How high each part should be over the ground: as in the source, but that those which touch are
 // lowered or raised until their lowest point lies on it.
 void Settler::set_goals(Heights source) {
   over_source_ = std::move(source);
-  const std::vector<double>& heights = over_source_.of_points;
-  goals_.resize(heights.size());
-  weights_.resize(heights.size());
   const auto count = at(frames());
   lift_ = common_lift(over_source_);
-  std::vector<double> raised;  // [bodies x frames]
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto lowest = std::span(over_source_.of_bodies).subspan(b * count, count);
     std::vector<double> depth;
@@ -292,7 +316,7 @@ void Settler::set_goals(Heights source) {
     // Of the height in a stay nothing is left; before and after it is taken away, less and less.
     std::vector<double> lowered(count, 0);
     const int fade = std::max(1, static_cast<int>(std::lround(kFade * rooted_.rate)));
-    for (const retarget::Stay& stay : over_source_.touches[b].stays) {
+    for (const retarget::Stay& stay : over_source_.stays[b]) {
       for (int f = std::max(0, stay.first - fade); f <= std::min(frames() - 1, stay.last + fade);
            ++f) {
         const std::size_t in_stay = at(std::clamp(f, stay.first, stay.last));
@@ -302,16 +326,10 @@ void Settler::set_goals(Heights source) {
       }
     }
     for (std::size_t f = 0; f < count; ++f) {
-      raised.push_back(std::max(depth[f], lift_[f]) - std::max(lowered[f], -lift_[f]));
+      raised_.push_back(std::max(depth[f], lift_[f]) - std::max(lowered[f], -lift_[f]));
     }
   }
-  for (std::size_t f = 0; f < count; ++f) {
-    for (std::size_t p = 0; p < points_.size(); ++p) {
-      const std::size_t i = f * points_.size() + p, b = at(points_[p].body);
-      goals_[i] = std::max(0.0, heights[i] + raised[b * count + f]);
-      weights_[i] = 1 - smoother_step(goals_[i] / (kFar * scale_));
-    }
-  }
+  over_source_.of_bodies = {};
 }
 
 }  // namespace krok::settling

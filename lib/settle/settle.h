@@ -8,6 +8,7 @@
 #include "ragdoll/bodies.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "terrain/terrain.h"
 
 // Lays a motion that was made on level ground onto any other: falls, crawls, sitting, kneeling.
@@ -39,8 +40,9 @@ struct GroundFit {
 };
 
 struct Settled {
-  Clip clip;
-  std::vector<SettledTouch> touches;  // by part, then by frame; as measured on `clip`
+  Clip clip;                          // of settle(Clip)
+  FrameSource frames;                 // of settle(FrameSource); reads the source again
+  std::vector<SettledTouch> touches;  // by part, then by frame; as measured on the result
   GroundFit before, after;
   double floor = 0;         // metres, given or found
   double largest_turn = 0;  // radians, of a joint relative to its parent
@@ -77,6 +79,10 @@ struct Settled {
 // settle-hover, for more than 5 mm with the part and frame; settle-partly, frames with no ground
 // under the hips.
 Result<Settled> settle(const Clip& clip, const RoleMap& roles, const Terrain& ground,
+                       const SettleOptions& options = {});
+// The same of frames that are produced on demand, of which about 1 kB each is kept for a body of 16
+// parts. Errors are those of the source as well.
+Result<Settled> settle(const FrameSource& source, const RoleMap& roles, const Terrain& ground,
                        const SettleOptions& options = {});
 
 }  // namespace krok

@@ -13,6 +13,7 @@
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"
 #include "retarget/touches.h"
+#include "scene/frame_source.h"
 #include "settle/rolled_ground_internal.h"
 #include "settle/settle.h"
 #include "settle/smooth_system_internal.h"
@@ -27,11 +28,12 @@ inline constexpr double kTolerated = 0.005;  // metres
 // Of a person of 1.75 m, metres: parts touch below the one, and are free above the other.
 inline constexpr double kNear = 0.01, kFar = 0.3;
 
-// The places of points of each frame over a ground, and which parts touch it.
+using Stays = std::vector<std::vector<retarget::Stay>>;  // [bodies]
+
+// The places of parts in each frame over a ground, and when they touch it.
 struct Heights {
-  std::vector<double> of_points;         // [frames x points]
-  std::vector<double> of_bodies;         // [bodies x frames], of the lowest point
-  std::vector<retarget::Touch> touches;  // [bodies]
+  std::vector<double> of_bodies;  // [bodies x frames], of the lowest point
+  Stays stays;
 };
 
 // What a point is to do in a frame.
@@ -57,14 +59,15 @@ void fill_gaps(std::span<double> values);
 
 class Settler {
  public:
-  Settler(const Clip& clip, const RoleMap& roles, const Terrain& ground,
+  Settler(FrameSource frames, HipsRoot hips_root, const RoleMap& roles, const Terrain& ground,
           const SettleOptions& options, std::vector<ragdoll::Body> bodies, const Skeleton& neutral);
 
   Status find_ground();
   void find_freedoms();
   void solve();
   void keep_source() { values_.clear(); }  // finish() then gives the motion as it was
-  Settled finish();
+  // The frames of the result keep `self`, which is this.
+  Result<Settled> finish(const std::shared_ptr<const Settler>& self);
   bool lies_already() const { return lies_already_; }
 
  private:
@@ -72,15 +75,17 @@ class Settler {
   using Over = std::function<double(const SupportPoint& point, const Vec3& place, int frame)>;
   using Values = std::vector<Eigen::VectorXd>;  // [frames]: shift of the hips, turns of freedoms
 
-  int frames() const { return source_.frames; }
+  int frames() const { return frames_.frame_count; }
   std::size_t size() const { return 3 + 3 * freedoms_.size(); }
 
+  // Passes the frames of a rooted motion in blocks: the number of the first, and their transforms.
+  void each(const FrameSource& rooted,
+            const std::function<void(int first, LocalMotion& block)>& use) const;
   // `over` gives the height of a sphere over what counts as the ground.
-  Heights heights(const LocalMotion& motion, const Over& over) const;
-  Heights over_ground(const LocalMotion& motion) const;
+  Heights heights(const FrameSource& rooted, const Over& over) const;
+  Heights over_ground(const FrameSource& rooted) const;
   double usual(const Heights& heights) const;
-  GroundFit fit(const Heights& on_ground, const Heights& over_rest,
-                std::span<const retarget::Touch> touches) const;
+  GroundFit fit(const Heights& on_ground, const Heights& over_rest, const Stays& touches) const;
   double upright(std::span<const Transform> pose) const;
   // Over what a part rests on: steps are a ramp, but for the feet of who is upright.
   double over_rest(const SupportPoint& point, const Vec3& place, int frame) const;
@@ -90,14 +95,17 @@ class Settler {
   std::vector<double> common_lift(const Heights& source) const;
   void set_goals(Heights source);
   std::vector<Transform> pose_of(const LocalMotion& motion, int frame) const;
-  LocalMotion moved() const;
+  // Frames of the source from `first` on become those of the result.
+  void move(int first, LocalMotion& block) const;
   std::vector<Transform> moved_pose(int frame) const;
   bool touches(std::size_t body, std::size_t frame) const {
-    return std::ranges::any_of(over_source_.touches[body].stays, [&](const retarget::Stay& stay) {
-      return at(stay.first) <= frame && frame <= at(stay.last);
-    });
+    const auto& stays = over_source_.stays[body];
+    const auto after =
+        std::ranges::upper_bound(stays, static_cast<int>(frame), {}, &retarget::Stay::first);
+    return after != stays.begin() && static_cast<int>(frame) <= std::prev(after)->last;
   }
-  void set_targets();
+  // For the frames of a stretch, which become stretch_.
+  void set_targets(int first, int last);
   // Both return half the sum of the squared errors.
   double add_goals(int frame, std::span<const Transform> pose, Eigen::MatrixXd& matrix,
                    Eigen::VectorXd& right) const;
@@ -108,10 +116,11 @@ class Settler {
   // `loose`: how strongly the change may bend at first, of the strongest.
   void solve_stretch(int first, int last, double loose);
   double correct_targets(int first, int last);
-  // The 99th percentile of sums of the parts' places in four frames times `factors`, metres.
-  double differences_of(const LocalMotion& motion, const Eigen::Vector4d& factors) const;
+  // The 99th percentile of sums of the parts' places in four frames times `factors`, metres: of the
+  // source, or as it is moved.
+  double differences(bool moved, const Eigen::Vector4d& factors) const;
 
-  const Clip& clip_;
+  FrameSource frames_;
   const RoleMap& roles_;
   const Terrain& ground_;
   const SettleOptions& options_;
@@ -119,10 +128,10 @@ class Settler {
   std::vector<SupportPoint> points_;
   std::vector<std::pair<std::size_t, std::size_t>> points_of_;  // [bodies], begin and end
   HipsRoot hips_root_;
-  Clip rooted_;
-  LocalMotion source_;
+  FrameSource rooted_;
   std::vector<int> parents_;
-  double scale_ = 1;  // of a person of 1.75 m
+  mutable Status status_;  // the first error of the source
+  double scale_ = 1;       // of a person of 1.75 m
 
   std::unique_ptr<RolledGround> rolled_;  // where there are steps
   std::vector<double> on_tread_;  // [bodies x frames], 1: on a tread, 0: on the ramp over steps
@@ -133,14 +142,17 @@ class Settler {
   std::vector<double> lift_;          // [frames]
   std::vector<double> ground_below_;  // [frames], above the floor, and the lift: of the hips
   Heights over_source_;
-  std::vector<double> goals_, weights_;  // [frames x points]
-  std::vector<Target> targets_;          // [frames x points]
-  GroundFit fit_;                        // of the source on the ground
+  std::vector<double> raised_;  // [bodies x frames], by how much parts should be higher
+  GroundFit fit_;               // of the source on the ground
 
   std::vector<Freedom> freedoms_;
   std::vector<std::vector<std::size_t>> chains_;  // [bodies], of freedoms
   Values values_;
-  Values near_;  // as the pass before has left them; empty before the first
+  // Of the frames that are solved together:
+  int stretch_first_ = 0;
+  LocalMotion stretch_;          // of the source
+  std::vector<Target> targets_;  // [frames x points]
+  Values near_;                  // as the pass before has left them; empty before the first
 };
 
 }  // namespace krok::settling

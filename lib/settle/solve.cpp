@@ -73,6 +73,7 @@ void Settler::find_freedoms() {
        {Role::right_upper_leg, Role::right_lower_leg, Role::right_foot},
        {Role::left_upper_arm, Role::left_lower_arm, Role::left_hand},
        {Role::right_upper_arm, Role::right_lower_arm, Role::right_hand}}};
+  std::vector<std::pair<Freedom*, Vec3>> bending;  // those of knees and elbows, and their axes
   for (const auto& [upper, lower, end] : limbs) {
     const int joint = roles_.joint(lower);
     if (joint < 0 || freedom_of[at(joint)] < 0) continue;
@@ -80,18 +81,24 @@ void Settler::find_freedoms() {
     freedom.bone_from = roles_.joint(upper);
     freedom.bone_to = roles_.joint(end);
     if (freedom.bone_from < 0 || freedom.bone_to < 0) continue;
-    Vec3 sum = Vec3::Zero();
-    for (int f = 0; f < frames(); ++f) {
-      const std::vector<Transform> pose = pose_of(source_, f);
-      const Vec3& middle = pose[at(joint)].position;
-      const Vec3 axis = (middle - pose[at(freedom.bone_from)].position)
-                            .cross(pose[at(freedom.bone_to)].position - middle);
-      sum += pose[at(parents_[at(joint)])].orientation.conjugate() * axis;
+    bending.emplace_back(&freedom, Vec3::Zero());
+  }
+  each(rooted_, [&](int, const LocalMotion& block) {
+    for (int i = 0; i < block.frames; ++i) {
+      const std::vector<Transform> pose = pose_of(block, i);
+      for (auto& [freedom, sum] : bending) {
+        const Vec3& middle = pose[at(freedom->joint)].position;
+        const Vec3 axis = (middle - pose[at(freedom->bone_from)].position)
+                              .cross(pose[at(freedom->bone_to)].position - middle);
+        sum += pose[at(parents_[at(freedom->joint)])].orientation.conjugate() * axis;
+      }
     }
+  });
+  for (const auto& [freedom, sum] : bending) {
     if (!(sum.norm() > 0)) continue;
-    freedom.hinge = sum.normalized();
-    const Mat3 along = *freedom.hinge * freedom.hinge->transpose();
-    freedom.damping = kHinge * (along + kAcross * (Mat3::Identity() - along));
+    freedom->hinge = sum.normalized();
+    const Mat3 along = *freedom->hinge * freedom->hinge->transpose();
+    freedom->damping = kHinge * (along + kAcross * (Mat3::Identity() - along));
   }
   for (const ragdoll::Body& body : bodies_) {
     std::vector<std::size_t>& chain = chains_.emplace_back();
@@ -112,7 +119,7 @@ std::vector<Transform> Settler::moved_pose(int frame) const {
   }
   std::vector<Transform> pose(parents_.size());
   for (std::size_t j = 0; j < pose.size(); ++j) {
-    Transform local = source_.at(static_cast<int>(j), frame);
+    Transform local = stretch_.at(static_cast<int>(j), frame - stretch_first_);
     local.orientation = turns[j] * local.orientation;
     const int parent = parents_[j];
     if (parent < 0) {
@@ -147,7 +154,7 @@ double Settler::bend_of(const Freedom& freedom, std::span<const Transform> pose)
 double Settler::add_damping(int frame, std::span<const Transform> pose, Eigen::MatrixXd& matrix,
                             Eigen::VectorXd& right) const {
   const Eigen::VectorXd& values = values_[at(frame)];
-  const std::vector<Transform> source = pose_of(source_, frame);
+  const std::vector<Transform> source = pose_of(stretch_, frame - stretch_first_);
   Eigen::VectorXd off = values;
   off[1] -= ground_below_[at(frame)];
   const double tilt = kTilt * (1 + kUpright * upright(source));
@@ -157,7 +164,7 @@ double Settler::add_damping(int frame, std::span<const Transform> pose, Eigen::M
   right.head<6>() -= own.cwiseProduct(off.head<6>());
   double errors = 0.5 * off.head<6>().dot(own.cwiseProduct(off.head<6>()));
   if (!near_.empty()) {
-    const Eigen::VectorXd away = values - near_[at(frame)];
+    const Eigen::VectorXd away = values - near_[at(frame - stretch_first_)];
     matrix.diagonal().array() += kNearby;
     right -= kNearby * away;
     errors += 0.5 * kNearby * away.squaredNorm();
@@ -215,7 +222,7 @@ double Settler::add_goals(int frame, std::span<const Transform> pose, Eigen::Mat
     };
     const double kept = near_.empty() ? 1 : std::min(1.0, kKept / static_cast<double>(end - begin));
     for (std::size_t p = begin; p < end; ++p) {
-      const Target& target = targets_[at(frame) * points_.size() + p];
+      const Target& target = targets_[at(frame - stretch_first_) * points_.size() + p];
       const Vec3 place = pose[at(bodies_[b].joint)] * points_[p].centre;
       const Vec3 moved = place - target.place;
       const double weight = target.pressed ? 1 : kept * target.weight;
@@ -296,8 +303,7 @@ void Settler::solve_stretch(int first, int last, double loose) {
     }
     if (add_frames(first, last, bend, system) > least) std::ranges::copy(best, stretch.begin());
     const double off = correct_targets(first, last);
-    near_.resize(values_.size());
-    std::ranges::copy(stretch, near_.begin() + first - before);
+    near_.assign(stretch.begin() + before, stretch.end());
     if (off < closest_off) closest.assign(stretch.begin(), stretch.end());
     closest_off = std::min(off, closest_off);
     if (off < kTolerated / 2) break;
@@ -326,7 +332,7 @@ double Settler::correct_targets(int first, int last) {
         const bool rests = touches(b, f);
         off[f - at(first)] = std::max({off[f - at(first)], -lowest, rests ? lowest : 0});
         for (std::size_t p = from; p < to; ++p) {
-          Target& target = targets_[f * points_.size() + p];
+          Target& target = targets_[(f - at(first)) * points_.size() + p];
           const double height = std::max(heights[p], -kMaxLack), above = std::max(lowest, 0.0);
           const bool lacks = height < 0 || (rests && height <= lowest + kTolerated);
           double& push = target.push;
@@ -350,14 +356,16 @@ double Settler::correct_targets(int first, int last) {
 }
 
 void Settler::solve() {
-  set_targets();
-  const double acceleration = differences_of(source_, {0, 1, -2, 1}) * rooted_.rate * rooted_.rate;
+  const double acceleration = differences(false, {0, 1, -2, 1}) * rooted_.rate * rooted_.rate;
   const double loose = std::clamp(acceleration, kMinMoving, kMoving) / kMoving;
   for (int first = 0; first < frames(); first += kStretch - kOverlap) {
     const int last = std::min(first + kStretch, frames()) - 1;
+    set_targets(first, last);
+    if (!status_) return;
     solve_stretch(first, last, loose);
     if (last + 1 == frames()) break;
   }
+  raised_ = {};
 }
 
 }  // namespace krok::settling

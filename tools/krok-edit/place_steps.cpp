@@ -51,17 +51,19 @@ double height_of(const Skeleton& skeleton) {
 }
 
 // Warns of slopes and stairs that the motion never comes to.
-void warn_of_level_ground(const Edit& edit, ToolContext& context) {
+Status warn_of_level_ground(const FrameSource& frames, const Edit& edit, ToolContext& context) {
   Eigen::AlignedBox3d under;
-  for (int f = 0; f < edit.clip.frame_count(); ++f) {
-    for (const Vec3f& position : edit.clip.frame_positions(f)) {
+  const auto level = [&] { return under.isEmpty() || under.sizes().y() <= 1e-4; };
+  const auto look = [&](int, const Clip& part) {
+    for (const Vec3f& position : part.positions) {
+      if (!level()) break;
       const auto ground = edit.ground->at(position.x(), position.z());
-      if (!ground) continue;
-      under.extend(Vec3(position.x(), ground->height, position.z()));
-      if (under.sizes().y() > 1e-4) return;
+      if (ground) under.extend(Vec3(position.x(), ground->height, position.z()));
     }
-  }
-  if (under.isEmpty()) return;
+    return Status();
+  };
+  if (Status status = for_each_block(frames, 1, look); !status) return status;
+  if (under.isEmpty() || !level()) return {};
   context.warn(
       "settle-level",
       fmt::format("--ground is level where the motion is: x {} to {} m, z {} to {} m",
@@ -69,6 +71,7 @@ void warn_of_level_ground(const Edit& edit, ToolContext& context) {
                   readable(under.min().z(), 3), readable(under.max().z(), 3)),
       "slopes and stairs begin where begin= says, or at z = 1 m: slope:12deg,begin=-2m; or "
       "move the motion with --at-origin, --move");
+  return {};
 }
 
 }  // namespace
@@ -223,12 +226,18 @@ Status settle_on_ground(const Options& options, ToolContext& context, Edit& edit
   how.model = edit.model.get();
   how.jobs = context.jobs;
   if (!options.ground.empty() && !options.ground.text.starts_with("level")) {
-    warn_of_level_ground(edit, context);
+    const FrameSource frames = edit.frames ? *edit.frames : frames_of(edit.clip);
+    if (Status status = warn_of_level_ground(frames, edit, context); !status) return status;
   }
-  auto settled = settle(edit.clip, edit.roles, *edit.ground, how);
+  auto settled = edit.frames ? settle(*edit.frames, edit.roles, *edit.ground, how)
+                             : settle(edit.clip, edit.roles, *edit.ground, how);
   if (!settled) return settled.error();
   context.diagnose(settled->warnings);
-  edit.clip = std::move(settled->clip);
+  if (edit.frames) {
+    if (Status status = edit.take(std::move(settled->frames)); !status) return status;
+  } else {
+    edit.clip = std::move(settled->clip);
+  }
   Json metrics;
   const auto put = [&](const char* name, const GroundFit& fit) {
     metrics[name] = {{"depth", fit.depth}, {"hover", fit.hover}};

@@ -113,6 +113,26 @@ Status find_carrier(const io::FindRoles& find_roles, Edit& edit) {
   return {};
 }
 
+// What a motion is settled on, and the mesh that is.
+Status read_surroundings(const Options& options, ToolContext& context, Edit& edit) {
+  if (options.settle) {
+    auto ground = options.ground.open(context);
+    if (!ground) return ground.error();
+    edit.ground = *std::move(ground);
+  }
+  if (!options.model.empty()) {
+    auto actor =
+        io::open_actor(options.model, context, {.with_materials = false, .with_motions = false});
+    if (!actor) return actor.error();
+    if (!actor->motions.empty()) {
+      return Error("edit-model", "is a motion, not a model", "krok-body makes a model for a motion")
+          .in_file(options.model);
+    }
+    edit.model = std::make_shared<Model>(std::move(actor->model));
+  }
+  return {};
+}
+
 // Reads all inputs, each opened once.
 Result<Edit> read_inputs(const InputFile& input, const Options& options, ToolContext& context) {
   Edit edit;
@@ -145,21 +165,7 @@ Result<Edit> read_inputs(const InputFile& input, const Options& options, ToolCon
     if (!next) return next.error();
     edit.appended.push_back(std::move(*next));
   }
-  if (options.settle) {
-    auto ground = options.ground.open(context);
-    if (!ground) return ground.error();
-    edit.ground = *std::move(ground);
-  }
-  if (!options.model.empty()) {
-    auto actor =
-        io::open_actor(options.model, context, {.with_materials = false, .with_motions = false});
-    if (!actor) return actor.error();
-    if (!actor->motions.empty()) {
-      return Error("edit-model", "is a motion, not a model", "krok-body makes a model for a motion")
-          .in_file(options.model);
-    }
-    edit.model = std::make_shared<Model>(std::move(actor->model));
-  }
+  if (Status status = read_surroundings(options, context, edit); !status) return status.error();
   return edit;
 }
 
@@ -274,6 +280,7 @@ Result<int> edit_stream(const InputFile& input, const Options& options, ToolCont
     edit.clip.provenance = provenance();
     input_summary = summary_of(frames);
     if (Status status = find_carrier(*find_roles, edit); !status) return status;
+    if (Status status = read_surroundings(options, context, edit); !status) return status;
     outputs.emplace(context);
     auto made = edit_one(options, std::move(edit), context.output, context, *outputs, complete);
     if (!made) return made.error();
@@ -309,7 +316,7 @@ bool is_streamed(const Options& o) {
   const bool cleans = o.plant || o.game_loop;
   const bool cuts = o.from || o.to || o.cycle != CycleFoot::none || !o.sequences.empty();
   const bool joins = o.speed != 1 || o.resample || !o.append.empty() || o.loop || o.rounds;
-  return !cleans && !cuts && !joins && !o.in_place && !o.treadmill && !o.settle;
+  return !cleans && !cuts && !joins && !o.in_place && !o.treadmill;
 }
 
 void Edit::note(const char* step, Json metrics, std::string line) {

@@ -4,13 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/fixture.h"
+#include "cli/motion_fixture.h"
 #include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
-class LongTake : public CliTest {
+class LongTake : public MotionTest {
  protected:
   // The peak of memory, in MiB, of a tool with the input `name`.
   double peak(const std::string& tool, const std::string& name, std::vector<std::string> options) {
@@ -52,6 +52,16 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
       EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], 700000);
     }
   }
+}
+
+// Would fail if the ground's targets of all points were kept for all frames: 35 kB each.
+TEST_F(LongTake, SettlingKeepsAStretchAtATime) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  const std::vector<std::string> options = {"--settle", "--ground", "slope:5deg", "-o", "out.anim"};
+  write_walk(16);  // more than a stretch
+  const double few = peak("krok-edit", "walk.anim", options);
+  write_walk(60);
+  EXPECT_LT(peak("krok-edit", "walk.anim", options), few + 32);
 }
 
 }  // namespace
