@@ -2,6 +2,7 @@
 
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 namespace krok {
 
@@ -16,5 +17,7 @@ enum class LastFrame {
 // original at time i * speed / rate, as by sample(). Codes: motion-speed unless the speed is
 // positive and finite, and those of resample().
 Result<Clip> retime(const Clip& clip, double rate, double speed, LastFrame last);
+// The same of frames that are produced on demand; reads the source when it is read.
+Result<FrameSource> retime(const FrameSource& source, double rate, double speed, LastFrame last);
 
 }  // namespace krok

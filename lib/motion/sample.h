@@ -2,7 +2,9 @@
 
 #include <span>
 
+#include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 namespace krok {
 
@@ -19,5 +21,7 @@ void sample(const Clip& clip, double time, std::span<Transform> joint_to_world,
 // remainder below 0.001 frames counts as within). Codes: clip-rate unless the rate is positive and
 // finite, clip-too-long if the result would exceed 100 million joint transforms.
 Result<Clip> resample(const Clip& clip, double rate);
+// The same of frames that are produced on demand; reads the source when it is read.
+Result<FrameSource> resample(const FrameSource& source, double rate);
 
 }  // namespace krok

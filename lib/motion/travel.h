@@ -2,7 +2,9 @@
 
 #include <optional>
 
+#include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 namespace krok {
 
@@ -16,6 +18,9 @@ enum class Travel {
 // are unchanged. Ancestors of the carrier that do not travel, such as a root that only places the
 // character, are unchanged. So are clips of fewer than two frames.
 Clip in_place(const Clip& clip, int carrier, Travel removed);
+// The same of frames that are produced on demand, read once beforehand if there are joints above
+// the carrier.
+Result<FrameSource> in_place(const FrameSource& source, int carrier, Travel removed, int jobs);
 
 // The opposite: the motion with `added` from its first frame on, whole poses moved and turned about
 // the carrier's place in the first frame. Where in_place() removed the trend of a straight path, at

@@ -88,22 +88,26 @@ void complete_game_loop(Options& options) {
   options.at_origin = true;
 }
 
-Status take_out_travel(const Options& options, ToolContext&, Edit& edit) {
+Status take_out_travel(const Options& options, ToolContext& context, Edit& edit) {
   if (!options.in_place && !options.treadmill) return {};
   const Travel removed = options.in_place ? Travel::all : Travel::trend;
-  const int last = edit.clip.frame_count() - 1;
+  const FrameSource source = edit.source();
+  const int last = source.frame_count - 1;
   Vec3 way = Vec3::Zero();
   auto& root_motion = edit.clip.provenance.removed_root_motion;
   if (last > 0) {
     const GroundFrame from = ground_frame(edit.clip, edit.carrier, 0);
-    const GroundFrame to = ground_frame(edit.clip, edit.carrier, last);
+    const auto end = load(part_of(source, last, 1), 1);
+    if (!end) return end.error();
+    const GroundFrame to = ground_frame(*end, edit.carrier, 0);
     way = Vec3(to.x - from.x, 0, to.z - from.z);
     // What was removed before is still missing.
     if (!root_motion) root_motion.emplace();
-    root_motion->velocity += way / edit.clip.duration();
+    root_motion->velocity += way / source.duration();
     root_motion->turn_rate += edit.turn_rate;
   }
-  edit.clip = in_place(edit.clip, edit.carrier, removed);
+  Status status = edit.take(in_place(source, edit.carrier, removed, thread_count(context.jobs)));
+  if (!status) return status;
   const bool all = removed == Travel::all;
   Json metrics;
   metrics["removed"] = all ? "all" : "trend";
@@ -226,18 +230,12 @@ Status settle_on_ground(const Options& options, ToolContext& context, Edit& edit
   how.model = edit.model.get();
   how.jobs = context.jobs;
   if (!options.ground.empty() && !options.ground.text.starts_with("level")) {
-    const FrameSource frames = edit.frames ? *edit.frames : frames_of(edit.clip);
-    if (Status status = warn_of_level_ground(frames, edit, context); !status) return status;
+    if (Status status = warn_of_level_ground(edit.source(), edit, context); !status) return status;
   }
-  auto settled = edit.frames ? settle(*edit.frames, edit.roles, *edit.ground, how)
-                             : settle(edit.clip, edit.roles, *edit.ground, how);
+  auto settled = settle(edit.source(), edit.roles, *edit.ground, how);
   if (!settled) return settled.error();
   context.diagnose(settled->warnings);
-  if (edit.frames) {
-    if (Status status = edit.take(std::move(settled->frames)); !status) return status;
-  } else {
-    edit.clip = std::move(settled->clip);
-  }
+  if (Status status = edit.take(std::move(settled->frames)); !status) return status;
   Json metrics;
   const auto put = [&](const char* name, const GroundFit& fit) {
     metrics[name] = {{"depth", fit.depth}, {"hover", fit.hover}};

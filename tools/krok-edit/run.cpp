@@ -32,10 +32,6 @@ namespace {
 
 constexpr std::string_view kSequencePlace = "{sequence}";
 
-FrameSource frames_of(const Edit& edit) {
-  return edit.frames ? *edit.frames : krok::frames_of(edit.clip);
-}
-
 Json summary_of(const FrameSource& motion) {
   Json json;
   json["joints"] = motion.joint_count();
@@ -180,7 +176,7 @@ struct Edited {
 Result<Edited> edit_one(const Options& options, Edit edit, const std::string& output,
                         ToolContext& context, OutputSet& outputs,
                         const std::function<Provenance()>& source_provenance = {}) {
-  const std::string before = summary_text(frames_of(edit));
+  const std::string before = summary_text(edit.source());
   // The order given in the help.
   for (const auto step : {clean, cut_out, mirror_sides, change_timing, append_motions, make_loop,
                           take_out_travel, change_size, change_place, settle_on_ground}) {
@@ -206,9 +202,9 @@ Result<Edited> edit_one(const Options& options, Edit edit, const std::string& ou
   if (!status) return status.error();
   Edited edited;
   edited.lines.push_back(fmt::format("{}: {} -> {}: {}", name_of_input(options.input), before,
-                                     output, summary_text(frames_of(edit))));
+                                     output, summary_text(edit.source())));
   for (const std::string& line : edit.lines) edited.lines.push_back("  " + line);
-  edited.result = summary_of(frames_of(edit));
+  edited.result = summary_of(edit.source());
   edited.result["steps"] = std::move(edit.steps);
   return edited;
 }
@@ -276,6 +272,7 @@ Result<int> edit_stream(const InputFile& input, const Options& options, ToolCont
   };
   const auto use = [&](const FrameSource& frames) -> Status {
     Edit edit;
+    edit.frames = frames;
     if (Status status = edit.take(frames); !status) return status;
     edit.clip.provenance = provenance();
     input_summary = summary_of(frames);
@@ -304,19 +301,21 @@ bool has_step(const ToolContext& context) {
 Status Edit::take(Result<FrameSource> made) {
   if (!made) return made.error();
   Provenance kept = std::move(clip.provenance);
-  auto first = load(part_of(*made, 0, std::min(made->frame_count, 1)), 1);
-  if (!first) return first.error();
-  clip = *std::move(first);
+  auto made_clip = load(frames ? part_of(*made, 0, std::min(made->frame_count, 1)) : *made, 1);
+  if (!made_clip) return made_clip.error();
+  clip = *std::move(made_clip);
   clip.provenance = std::move(kept);
-  frames = *std::move(made);
+  if (frames) frames = *std::move(made);
   return {};
 }
 
 bool is_streamed(const Options& o) {
   const bool cleans = o.plant || o.game_loop;
-  const bool cuts = o.from || o.to || o.cycle != CycleFoot::none || !o.sequences.empty();
-  const bool joins = o.speed != 1 || o.resample || !o.append.empty() || o.loop || o.rounds;
-  return !cleans && !cuts && !joins && !o.in_place && !o.treadmill;
+  const auto is_event = [](const std::optional<CutTime>& time) { return time && time->event; };
+  const bool cuts =
+      is_event(o.from) || is_event(o.to) || o.cycle != CycleFoot::none || !o.sequences.empty();
+  const bool joins = o.interpolation.hermite || !o.append.empty() || o.loop || o.rounds;
+  return !cleans && !cuts && !joins;
 }
 
 void Edit::note(const char* step, Json metrics, std::string line) {
@@ -355,7 +354,7 @@ Result<int> run(const Options& given, ToolContext& context) {
   context.note_checksum(*input);
   auto source = read_inputs(*input, options, context);
   if (!source) return source.error();
-  Json input_summary = summary_of(krok::frames_of(source->clip));
+  Json input_summary = summary_of(frames_of(source->clip));
   const bool all_sequences = source->sequences && source->sequence.empty();
   OutputSet outputs(context);
   auto edited = all_sequences

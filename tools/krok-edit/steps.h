@@ -46,7 +46,9 @@ struct Edit {
   std::vector<std::string> lines;  // what was done, for display and provenance
 
   int frame_count() const { return frames ? frames->frame_count : clip.frame_count(); }
-  // Takes the frames that a step makes of a long take.
+  // The motion so far.
+  FrameSource source() const { return frames ? *frames : frames_of(clip); }
+  // Takes the motion that a step makes of source().
   Status take(Result<FrameSource> made);
 
   // Adds `metrics` to the report under the step's name.

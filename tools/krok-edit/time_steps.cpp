@@ -10,6 +10,7 @@
 #include "motion/join.h"
 #include "motion/mirror.h"
 #include "motion/retime.h"
+#include "scene/frame_blocks.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
@@ -28,9 +29,9 @@ const std::string& joint_name(const Edit& edit, int joint) {
   return edit.clip.skeleton.names[static_cast<std::size_t>(joint)];
 }
 
-std::string extent_of(const Clip& clip) {
-  return fmt::format("the motion has {}, 0 to {}, {}", counted(clip.frame_count(), "frame"),
-                     clip.frame_count() - 1, seconds(clip.duration()));
+std::string extent_of(const Edit& edit) {
+  return fmt::format("the motion has {}, 0 to {}, {}", counted(edit.frame_count(), "frame"),
+                     edit.frame_count() - 1, seconds(edit.source().duration()));
 }
 
 struct Range {
@@ -47,7 +48,7 @@ Result<Range> range_of(const sequences::Sequence& sequence, const Options& optio
     return Error("edit-sequence",
                  fmt::format("'{}' ends at frame {}{}, but {}", sequence.name, sequence.last,
                              file_rate > 0 ? fmt::format(" at {} fps", readable(file_rate)) : "",
-                             extent_of(edit.clip)))
+                             extent_of(edit)))
         .in_file(options.sequences);
   }
   return range;
@@ -66,7 +67,7 @@ Result<Range> named_range(const Options& options, Edit& edit) {
 }
 
 Result<Range> typed_range(const Options& options, const Edit& edit) {
-  const double end = edit.clip.frame_count() - 1;
+  const double end = edit.frame_count() - 1;
   // Keytimes are between frames: the nearest frame.
   const auto frame_of = [&](const std::optional<CutTime>& time,
                             double otherwise) -> Result<double> {
@@ -85,14 +86,14 @@ Result<Range> typed_range(const Options& options, const Edit& edit) {
     return Error("edit-range",
                  fmt::format("--from ({}) is after {} ({})", seconds(range.first / edit.clip.rate),
                              options.to ? "--to" : "the end", seconds(range.last / edit.clip.rate)),
-                 extent_of(edit.clip));
+                 extent_of(edit));
   }
   // A printed duration may be rounded up.
   if (range.last >= end + 1) {
-    const std::string frames = frame_hint(options.to->time, edit.clip.frame_count());
+    const std::string frames = frame_hint(options.to->time, edit.frame_count());
     return Error("edit-range",
                  fmt::format("--to {} is after the end", seconds(range.last / edit.clip.rate)),
-                 frames.empty() ? extent_of(edit.clip) : extent_of(edit.clip) + "; " + frames);
+                 frames.empty() ? extent_of(edit) : extent_of(edit) + "; " + frames);
   }
   return range;
 }
@@ -171,20 +172,20 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
   const bool named = !edit.sequence.empty();
   const bool cycle = options.cycle != CycleFoot::none;
   if (!named && !cycle && !options.from && !options.to) return {};
-  if (edit.clip.frame_count() == 0) {
+  if (edit.frame_count() == 0) {
     return Error("edit-range", "the motion has no frames to cut from").in_file(options.input);
   }
   const auto range = named ? named_range(options, edit) : typed_range(options, edit);
   if (!range) return range.error();
   constexpr double kSameFrame = 1e-3;
-  const int end = edit.clip.frame_count() - 1;
+  const int end = edit.frame_count() - 1;
   int first = static_cast<int>(std::ceil(range->first - kSameFrame));
   int last = std::min(end, static_cast<int>(std::floor(range->last + kSameFrame)));
   if (first > last) {
     return Error("edit-range",
                  fmt::format("no frame between {} and {}", seconds(range->first / edit.clip.rate),
                              seconds(range->last / edit.clip.rate)),
-                 extent_of(edit.clip))
+                 extent_of(edit))
         .in_file(options.input);
   }
   Json metrics;
@@ -208,13 +209,18 @@ Status cut_out(const Options& options, ToolContext&, Edit& edit) {
     chosen = fmt::format("cycle {}[{}] to [{}], of {} the one that matches best, ", best->name,
                          best->number, best->number + 1, among);
   }
-  edit.clip = cut(edit.clip, first, last);
+  const FrameSource source = edit.source();
+  FrameSource kept = part_of(source, first, last + 1 - first);
+  if (source.release) {
+    kept.release = [first, release = source.release](int frame) { release(first + frame); };
+  }
+  if (Status status = edit.take(std::move(kept)); !status) return status;
   metrics["first_frame"] = first;
   metrics["last_frame"] = last;
-  metrics["frames_cut"] = end + 1 - edit.clip.frame_count();
+  metrics["frames_cut"] = end + 1 - edit.frame_count();
   edit.note("cut", std::move(metrics),
             fmt::format("cut: {}frames {} to {}, {} removed", chosen, first, last,
-                        end + 1 - edit.clip.frame_count()));
+                        end + 1 - edit.frame_count()));
   return {};
 }
 
@@ -242,12 +248,8 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
     warning.joint = name;
     context.diagnose_in(options.input, {warning});
   }
-  if (edit.frames) {
-    Status status = edit.take(mirror(*edit.frames, pairs, thread_count(context.jobs)));
-    if (!status) return status;
-  } else {
-    edit.clip = mirror(edit.clip, pairs);
-  }
+  Status status = edit.take(mirror(edit.source(), pairs, thread_count(context.jobs)));
+  if (!status) return status;
   if (auto& removed = edit.clip.provenance.removed_root_motion) {
     removed->velocity.x() *= -1;
     removed->turn_rate *= -1;
@@ -266,32 +268,35 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
 Status change_timing(const Options& options, ToolContext&, Edit& edit) {
   const double rate = options.resample.value_or(edit.clip.rate);
   if (!options.resample && edit.speed == 1) return {};
-  const int frames = edit.clip.frame_count();
-  const double old_rate = edit.clip.rate, old_duration = edit.clip.duration();
+  const FrameSource before = edit.source();
   const Interpolation& how = options.interpolation;
-  auto retimed = how.hermite ? retime_on_curves(edit.clip, rate, edit.speed, how.tension, edit.loop)
-                             : retime(edit.clip, rate, edit.speed,
-                                      edit.loop ? LastFrame::kept : LastFrame::within);
-  if (!retimed) return retimed.error();
-  edit.clip = std::move(*retimed);
+  if (how.hermite) {
+    auto retimed = retime_on_curves(edit.clip, rate, edit.speed, how.tension, edit.loop);
+    if (!retimed) return retimed.error();
+    edit.clip = std::move(*retimed);
+  } else {
+    const LastFrame last = edit.loop ? LastFrame::kept : LastFrame::within;
+    Status status = edit.take(retime(before, rate, edit.speed, last));
+    if (!status) return status;
+  }
   if (auto& removed = edit.clip.provenance.removed_root_motion) {
     removed->velocity *= edit.speed;
     removed->turn_rate *= edit.speed;
   }
   Json metrics;
   metrics["speed"] = edit.speed;
-  metrics["rate_before"] = old_rate;
+  metrics["rate_before"] = before.rate;
   metrics["rate"] = rate;
-  metrics["frames_before"] = frames;
-  metrics["frames"] = edit.clip.frame_count();
+  metrics["frames_before"] = before.frame_count;
+  metrics["frames"] = edit.frame_count();
   std::string line;
   if (edit.speed != 1) {
-    line = fmt::format("speed {}: {} become {}", readable(edit.speed), seconds(old_duration),
-                       seconds(edit.clip.duration()));
+    line = fmt::format("speed {}: {} become {}", readable(edit.speed), seconds(before.duration()),
+                       seconds(edit.source().duration()));
   }
   if (options.resample) {
     line += fmt::format("{}resampled from {} to {} fps", line.empty() ? "" : ", ",
-                        readable(old_rate), readable(rate));
+                        readable(before.rate), readable(rate));
   }
   if (how.hermite) {
     metrics["tension"] = how.tension;
