@@ -349,6 +349,12 @@ Array array_of(std::span<const std::int32_t> values, std::vector<std::size_t> sh
   return make_array(Element::integer, values, std::move(shape));
 }
 
+Array array_over(std::span<const float> values, std::vector<std::size_t> shape) {
+  Array array = array_of(std::span<const float>(), std::move(shape));
+  array.elsewhere = std::as_bytes(values);
+  return array;
+}
+
 Array array_of_flags(std::span<const std::uint8_t> values, std::vector<std::size_t> shape) {
   return make_array(Element::boolean, values, std::move(shape));
 }
@@ -370,7 +376,9 @@ Array array_of_texts(std::span<const std::string> texts) {
   return array;
 }
 
-std::vector<std::byte> write(const Array& array) {
+namespace {
+
+std::string start_of(const Array& array) {
   std::string header =
       fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': {}, }}", type_of(array),
                   array.column_major ? "True" : "False", shape_text(array.shape));
@@ -379,10 +387,20 @@ std::vector<std::byte> write(const Array& array) {
   header += '\n';
   std::string start(kMagic);
   start += {1, 0, static_cast<char>(header.size() & 255), static_cast<char>(header.size() >> 8)};
-  start += header;
-  const auto bytes = std::as_bytes(std::span(start));
-  std::vector<std::byte> file(bytes.begin(), bytes.end());
-  file.insert(file.end(), array.data.begin(), array.data.end());
+  return start + header;
+}
+
+std::span<const std::byte> bytes_of(const Array& array) {
+  return array.elsewhere.empty() ? array.data : array.elsewhere;
+}
+
+}  // namespace
+
+std::vector<std::byte> write(const Array& array) {
+  const std::string start = start_of(array);
+  const auto header = std::as_bytes(std::span(start)), bytes = bytes_of(array);
+  std::vector<std::byte> file(header.begin(), header.end());
+  file.insert(file.end(), bytes.begin(), bytes.end());
   return file;
 }
 
@@ -392,6 +410,17 @@ Result<std::vector<std::byte>> write(
   for (const auto& [name, array] : names_and_arrays)
     files.emplace_back(name + ".npy", write(array));
   return zip::pack(files);
+}
+
+Status write(std::span<const std::pair<std::string, Array>> names_and_arrays, OutputFile& file) {
+  std::vector<std::string> starts;
+  for (const auto& [name, array] : names_and_arrays) starts.push_back(start_of(array));
+  std::vector<zip::FileInParts> files;
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    const auto& [name, array] = names_and_arrays[i];
+    files.push_back({name + ".npy", {std::as_bytes(std::span(starts[i])), bytes_of(array)}});
+  }
+  return zip::pack(files, file);
 }
 
 }  // namespace krok::npy

@@ -28,6 +28,8 @@ struct Array {
   bool column_major = false;       // "fortran_order"
   std::vector<std::size_t> shape;  // empty for a single value
   std::vector<std::byte> data;     // item_size * count() bytes
+  // Of an array to be written, in place of `data`: bytes that are kept elsewhere.
+  std::span<const std::byte> elsewhere;
 
   std::size_t count() const;
   bool is_number() const { return element != Element::text && element != Element::bytes; }
@@ -70,6 +72,8 @@ class Arrays {
 Array array_of(std::span<const float> values, std::vector<std::size_t> shape);
 Array array_of(std::span<const double> values, std::vector<std::size_t> shape);
 Array array_of(std::span<const std::int32_t> values, std::vector<std::size_t> shape);
+// The same without a copy of `values`.
+Array array_over(std::span<const float> values, std::vector<std::size_t> shape);
 Array array_of_flags(std::span<const std::uint8_t> values, std::vector<std::size_t> shape);
 Array array_of_texts(std::span<const std::string> texts);
 
@@ -79,5 +83,6 @@ std::vector<std::byte> write(const Array& array);
 // The bytes of a .npz file, compressed: the same for the same arrays.
 Result<std::vector<std::byte>> write(
     std::span<const std::pair<std::string, Array>> names_and_arrays);
+Status write(std::span<const std::pair<std::string, Array>> names_and_arrays, OutputFile& file);
 
 }  // namespace krok::npy

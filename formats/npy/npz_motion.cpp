@@ -141,23 +141,23 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
   return motion;
 }
 
-Result<std::vector<std::byte>> write_motion(const Clip& clip, std::span<const Contact> contacts) {
+namespace {
+
+// Those of positions and quaternions are over the clip, whose quaternions are turned to one
+// hemisphere.
+std::vector<std::pair<std::string, Array>> arrays_of(Clip& clip,
+                                                     std::span<const Contact> contacts) {
   const std::size_t joints = clip.skeleton.names.size();
   const auto frames = at(clip.frame_count());
-  std::vector<float> places, turns;
-  places.reserve(3 * frames * joints);
-  turns.reserve(4 * frames * joints);
-  for (const Vec3f& place : clip.positions) {
-    places.insert(places.end(), place.data(), place.data() + 3);
-  }
   for (std::size_t i = 0; i < clip.orientations.size(); ++i) {
-    Quatf turn = clip.orientations[i];
-    const float* const before = i < joints ? nullptr : &turns[4 * (i - joints)];
-    const float sign =
-        before == nullptr ? turn.w() : turn.coeffs().dot(Eigen::Map<const Vec4f>(before));
-    if (sign < 0) turn.coeffs() *= -1;
-    turns.insert(turns.end(), turn.coeffs().data(), turn.coeffs().data() + 4);
+    Quatf& turn = clip.orientations[i];
+    if ((i < joints ? turn.w() : turn.dot(clip.orientations[i - joints])) < 0) turn.coeffs() *= -1;
   }
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Quatf) == 4 * sizeof(float));
+  const std::span places(reinterpret_cast<const float*>(clip.positions.data()),
+                         3 * clip.positions.size());
+  const std::span turns(reinterpret_cast<const float*>(clip.orientations.data()),
+                        4 * clip.orientations.size());
   std::vector<double> rest_places, rest_turns;
   for (const Transform& joint : clip.skeleton.reference) {
     rest_places.insert(rest_places.end(), joint.position.data(), joint.position.data() + 3);
@@ -180,18 +180,26 @@ Result<std::vector<std::byte>> write_motion(const Clip& clip, std::span<const Co
   }
   const std::vector<std::int32_t> parents(clip.skeleton.parents.begin(),
                                           clip.skeleton.parents.end());
-  const std::vector<std::pair<std::string, Array>> arrays = {
-      {"positions", array_of(places, {frames, joints, 3})},
-      {"quaternions", array_of(turns, {frames, joints, 4})},
-      {"names", array_of_texts(clip.skeleton.names)},
-      {"parents", array_of(parents, {joints})},
-      {"end_sites", array_of_flags(clip.skeleton.end_sites, {joints})},
-      {"reference_positions", array_of(rest_places, {joints, 3})},
-      {"reference_quaternions", array_of(rest_turns, {joints, 4})},
-      {"rate", array_of(std::span(&clip.rate, 1), {})},
-      {"contacts", array_of_flags(down, {frames, touching_joints.size()})},
-      {"contact_joints", array_of(touching_joints, {touching_joints.size()})}};
-  return write(arrays);
+  return {{"positions", array_over(places, {frames, joints, 3})},
+          {"quaternions", array_over(turns, {frames, joints, 4})},
+          {"names", array_of_texts(clip.skeleton.names)},
+          {"parents", array_of(parents, {joints})},
+          {"end_sites", array_of_flags(clip.skeleton.end_sites, {joints})},
+          {"reference_positions", array_of(rest_places, {joints, 3})},
+          {"reference_quaternions", array_of(rest_turns, {joints, 4})},
+          {"rate", array_of(std::span(&clip.rate, 1), {})},
+          {"contacts", array_of_flags(down, {frames, touching_joints.size()})},
+          {"contact_joints", array_of(touching_joints, {touching_joints.size()})}};
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> write_motion(Clip clip, std::span<const Contact> contacts) {
+  return write(arrays_of(clip, contacts));
+}
+
+Status write_motion(Clip clip, std::span<const Contact> contacts, OutputFile& file) {
+  return write(arrays_of(clip, contacts), file);
 }
 
 }  // namespace krok::npy

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/file.h"
 #include "core/result.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
@@ -16,6 +17,8 @@ namespace krok::npy {
 
 // `contacts`: empty for none. Quaternions of a joint stay in one hemisphere from frame to frame.
 // Code: zip-damaged.
-Result<std::vector<std::byte>> write_motion(const Clip& clip, std::span<const Contact> contacts);
+Result<std::vector<std::byte>> write_motion(Clip clip, std::span<const Contact> contacts);
+// The same, written as it is packed. Errors are those of `file` as well.
+Status write_motion(Clip clip, std::span<const Contact> contacts, OutputFile& file);
 
 }  // namespace krok::npy

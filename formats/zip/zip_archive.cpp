@@ -4,6 +4,7 @@
 #include <zip.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "core/text.h"
 
@@ -94,21 +95,71 @@ Result<std::vector<std::byte>> Archive::read(const std::string& name,
   return bytes;
 }
 
-Result<std::vector<std::byte>> pack(
-    std::span<const std::pair<std::string, std::vector<std::byte>>> files) {
+namespace {
+
+using WriteAt = std::function<Status(std::uint64_t offset, std::span<const std::byte> bytes)>;
+
+// What libzip writes an archive to.
+struct Target {
+  const WriteAt& write_at;
+  std::uint64_t offset = 0, size = 0;
+  Status status = {};
+  zip_error_t error{};
+};
+
+zip_int64_t run_command(void* state, void* data, zip_uint64_t length, zip_source_cmd_t command) {
+  Target& target = *static_cast<Target*>(state);
+  switch (command) {
+    case ZIP_SOURCE_SUPPORTS:
+      return ZIP_SOURCE_SUPPORTS_WRITABLE;
+    case ZIP_SOURCE_STAT:
+      zip_stat_init(static_cast<zip_stat_t*>(data));
+      return sizeof(zip_stat_t);
+    case ZIP_SOURCE_ERROR:
+      return zip_error_to_data(&target.error, data, length);
+    case ZIP_SOURCE_TELL_WRITE:
+      return static_cast<zip_int64_t>(target.offset);
+    case ZIP_SOURCE_SEEK_WRITE: {
+      const zip_int64_t to =
+          zip_source_seek_compute_offset(target.offset, target.size, data, length, &target.error);
+      if (to >= 0) target.offset = static_cast<std::uint64_t>(to);
+      return to < 0 ? -1 : 0;
+    }
+    case ZIP_SOURCE_WRITE:
+      target.status = target.write_at(target.offset, {static_cast<const std::byte*>(data), length});
+      if (!target.status) {
+        zip_error_set(&target.error, ZIP_ER_WRITE, 0);
+        return -1;
+      }
+      target.offset += length;
+      target.size = std::max(target.size, target.offset);
+      return static_cast<zip_int64_t>(length);
+    default:
+      return 0;
+  }
+}
+
+Status pack(std::span<const FileInParts> files, const WriteAt& write_at) {
   constexpr zip_uint16_t kFirstDate = 1 << 5 | 1;  // 1980-01-01
   zip_error_t error;
   zip_error_init(&error);
-  zip_source_t* target = zip_source_buffer_create(nullptr, 0, 0, &error);
+  Target state{write_at};
+  zip_source_t* target = zip_source_function_create(run_command, &state, &error);
   zip_t* archive = target == nullptr ? nullptr : zip_open_from_source(target, ZIP_TRUNCATE, &error);
   if (archive == nullptr) {
     if (target != nullptr) zip_source_free(target);
     return damaged("the ZIP archive cannot be written");
   }
-  zip_source_keep(target);
   bool good = true;
-  for (const auto& [name, bytes] : files) {
-    zip_source_t* source = zip_source_buffer(archive, bytes.data(), bytes.size(), 0);
+  for (const auto& [name, parts] : files) {
+    std::vector<zip_buffer_fragment_t> fragments;
+    for (const auto part : parts) {
+      // libzip only reads them.
+      auto* const bytes = const_cast<std::byte*>(part.data());
+      fragments.push_back({reinterpret_cast<zip_uint8_t*>(bytes), part.size()});
+    }
+    zip_source_t* source =
+        zip_source_buffer_fragment(archive, fragments.data(), fragments.size(), 0);
     const zip_int64_t place =
         source == nullptr ? -1 : zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
     good = good && place >= 0 &&
@@ -116,18 +167,37 @@ Result<std::vector<std::byte>> pack(
   }
   good = good && zip_close(archive) == 0;
   if (!good) zip_discard(archive);
+  if (!state.status) return state.status;
+  return good ? Status() : damaged("the ZIP archive cannot be written");
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> pack(
+    std::span<const std::pair<std::string, std::vector<std::byte>>> files) {
+  std::vector<FileInParts> parts;
+  for (const auto& [name, bytes] : files) parts.push_back({name, {bytes}});
   std::vector<std::byte> packed;
-  zip_stat_t facts;
-  zip_stat_init(&facts);
-  if (good && zip_source_stat(target, &facts) == 0 && zip_source_open(target) == 0) {
-    packed.resize(facts.size);
-    good = zip_source_read(target, packed.data(), packed.size()) ==
-           static_cast<zip_int64_t>(packed.size());
-    zip_source_close(target);
-  }
-  zip_source_free(target);
-  if (!good || packed.empty()) return damaged("the ZIP archive cannot be written");
+  const Status status = pack(parts, [&](std::uint64_t offset, std::span<const std::byte> bytes) {
+    packed.resize(std::max(packed.size(), offset + bytes.size()));
+    std::ranges::copy(bytes, packed.begin() + static_cast<std::ptrdiff_t>(offset));
+    return Status();
+  });
+  if (!status) return status.error();
   return packed;
+}
+
+Status pack(std::span<const FileInParts> files, OutputFile& file) {
+  std::vector<std::byte> kept;  // of a stream, which cannot be written but in order
+  const Status status = pack(files, [&](std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (!file.can_overwrite()) {
+      kept.resize(std::max(kept.size(), offset + bytes.size()));
+      std::ranges::copy(bytes, kept.begin() + static_cast<std::ptrdiff_t>(offset));
+      return Status();
+    }
+    return offset < file.size() ? file.overwrite(offset, bytes) : file.write(bytes);
+  });
+  return status ? file.write(kept) : status;
 }
 
 }  // namespace krok::zip

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/file.h"
 #include "core/result.h"
 
 // ZIP archives in memory, with libzip: scenes with their textures, as shops hand them out, and
@@ -42,5 +43,13 @@ class Archive {
 // the date of 1980-01-01. Code: zip-damaged if libzip fails.
 Result<std::vector<std::byte>> pack(
     std::span<const std::pair<std::string, std::vector<std::byte>>> files);
+
+// A file whose bytes are elsewhere, in parts that follow each other.
+struct FileInParts {
+  std::string name;
+  std::vector<std::span<const std::byte>> parts;
+};
+// The same, written as it is packed. Errors are those of `file` as well.
+Status pack(std::span<const FileInParts> files, OutputFile& file);
 
 }  // namespace krok::zip

@@ -325,12 +325,13 @@ Status write_table(ExportFormat format, const Clip& clip, const Options& options
 }
 
 // With the contacts of the sidecar or those detected; none for a skeleton without legs.
-Status write_arrays(const Clip& clip, const Options& options, ToolContext& context) {
+Status write_arrays(Clip clip, const Options& options, ToolContext& context) {
   auto contacts = contacts_of(options, clip, context);
   if (!contacts && contacts.error().code != "contacts-feet") return contacts.error();
-  const auto bytes = npy::write_motion(clip, contacts ? *contacts : std::vector<Contact>());
-  if (!bytes) return bytes.error();
-  return write_output(context, context.output, *bytes);
+  const auto found = contacts ? *std::move(contacts) : std::vector<Contact>();
+  return write_output(context, context.output, [&](OutputFile& file) {
+    return npy::write_motion(std::move(clip), found, file);
+  });
 }
 
 // The place of the root at rest moves nothing, so it is left out, but another reference pose comes
@@ -367,13 +368,15 @@ Result<io::MotionSummary> export_bvh(const Options& options, ToolContext& contex
 
 Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
                                         ToolContext& context) {
-  const auto clip = io::open_motion(options.input, context);
+  auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
-  const Status status = format == ExportFormat::npz ? write_arrays(*clip, options, context)
-                                                    : write_table(format, *clip, options, context);
+  io::MotionSummary facts = facts_of(*clip);
+  const Status status = format == ExportFormat::npz
+                            ? write_arrays(*std::move(clip), options, context)
+                            : write_table(format, *clip, options, context);
   if (!status) return status.error();
-  return facts_of(*clip);
+  return facts;
 }
 
 Json result_of(const io::MotionSummary& motion, const std::optional<Reduction>& reduction) {
