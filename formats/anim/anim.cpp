@@ -260,6 +260,9 @@ Result<Opened> open(std::span<const std::byte> file, std::function<void(std::siz
     opened.frames.release = [=, release = std::move(release)](int frame) {
       release(begin + static_cast<std::size_t>(frame) * of_frame);
     };
+    // All was read for the checksum; from the start, as it may have been released before.
+    opened.frames.release(0);
+    opened.frames.release(opened.frames.frame_count);
   }
   opened.frames.read = [parts = *std::move(parts)](int first, int, std::span<Vec3f> positions,
                                                    std::span<Quatf> orientations) {

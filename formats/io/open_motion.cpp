@@ -57,6 +57,14 @@ Result<Clip> read_scene_motion(const Format& format, const InputFile& file, Inpu
 }  // namespace
 
 Result<Clip> read_anim(const InputFile& file, Inputs& inputs, const MotionOptions& options) {
+  const auto release = [&file](std::size_t offset) { file.release_before(offset); };
+  if (auto opened = anim::open(file.bytes(), release); opened && !opened->stretched) {
+    auto clip = load(opened->frames, inputs.jobs);
+    if (!clip) return std::move(clip.error()).in_file(file.path());
+    clip->provenance = std::move(opened->provenance);
+    if (options.stretches != nullptr) options.stretches->clear();
+    return clip;
+  }
   Stretches stretches;
   auto clip = anim::read(file.bytes(), &stretches);
   if (!clip) return std::move(clip.error()).in_file(file.path());

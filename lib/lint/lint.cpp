@@ -36,6 +36,11 @@ Vec3f turn_between(const Quatf& before, const Quatf& after) {
   return (turn.w() < 0 ? -2.0F : 2.0F) * turn.vec();
 }
 
+Quatf in_parent(const Clip& clip, int joint, int parent, int frame) {
+  const Quatf* pose = &clip.orientations[at(frame) * clip.skeleton.names.size()];
+  return parent < 0 ? pose[joint] : pose[parent].conjugate() * pose[joint];
+}
+
 }  // namespace
 
 double Finding::excess() const {
@@ -53,7 +58,6 @@ Series::Series(const Clip& motion, const RoleMap& role_map, const MotionOptions&
   const double legs = legs_of(clip.skeleton, roles);
   scale = legs > 0 ? legs / kUsualLeg : 1;
   carrier = std::max(0, carrying_joint(roles));
-  turns.assign(at(joints) * at(frames), Vec3f::Zero());
   largest.assign(at(joints), 0.0F);
   steps.assign(at(frames), Vec3f::Zero());
   moved.assign(at(frames), 0.0F);
@@ -66,11 +70,9 @@ Series::Series(const Clip& motion, const RoleMap& role_map, const MotionOptions&
       Quatf last = before[at(j)];
       float most = largest[at(j)];
       for (int f = begin; f < end; ++f) {
-        const Quatf* pose = &clip.orientations[at(f) * at(joints)];
-        const Quatf now = parent < 0 ? pose[j] : pose[parent].conjugate() * pose[j];
+        const Quatf now = in_parent(clip, j, parent, f);
         if (f > 0) {
           const Vec3f turn = turn_between(last, now);
-          turns[at(j) * at(frames) + at(f)] = turn;
           most = std::max(most, turn.squaredNorm());
           moved[at(f)] = std::max(moved[at(f)], turn.squaredNorm());
         }
@@ -85,8 +87,16 @@ Series::Series(const Clip& motion, const RoleMap& role_map, const MotionOptions&
   }
 }
 
-std::span<const Vec3f> Series::turns_of(int joint) const {
-  return std::span(turns).subspan(at(joint) * at(frames), at(frames));
+std::vector<Vec3f> Series::turns_of(int joint) const {
+  std::vector<Vec3f> turns(at(frames), Vec3f::Zero());
+  const int parent = clip.skeleton.parents[at(joint)];
+  Quatf last = Quatf::Identity();
+  for (int f = 0; f < frames; ++f) {
+    const Quatf now = in_parent(clip, joint, parent, f);
+    if (f > 0) turns[at(f)] = turn_between(last, now);
+    last = now;
+  }
+  return turns;
 }
 
 int Series::frames_in(double seconds, int at_least) const {

@@ -18,16 +18,14 @@ struct Series {
   double scale = 1;  // legs as a multiple of 0.86 m; 1 if they are not known
   int carrier = 0;   // carrying_joint()
 
-  // Rotation of each joint in its parent (the root's in the world) from the frame before, radians:
-  // twice the vector part of its quaternion, shape [joints x frames], joint by joint; the first of
-  // each is zero.
-  std::vector<Vec3f> turns;
   std::vector<float> largest;  // [joints], squares of the largest turns
   std::vector<Vec3f> steps;    // [frames] of the carrier, metres; the first is zero
   std::vector<float> moved;    // [frames], the largest turn (rad) or step (m) of all joints
 
   Series(const Clip& clip, const RoleMap& roles, const MotionOptions& options);
-  std::span<const Vec3f> turns_of(int joint) const;
+  // Rotation of a joint in its parent (the root's in the world) from the frame before, radians:
+  // twice the vector part of its quaternion, [frames]; the first is zero.
+  std::vector<Vec3f> turns_of(int joint) const;
   int frames_in(double seconds, int at_least) const;
 
   bool has(Rule rule) const { return options.settings.has(rule); }

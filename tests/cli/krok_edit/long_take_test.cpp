@@ -62,6 +62,24 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
   }
 }
 
+// Tools that need all frames at once: would fail if arrays or turns of all joints were kept beside
+// the clip, or the pages of the file.
+TEST_F(LongTake, AClipIsHeldOnce) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  for (const auto& [name, frames] : {std::pair("long", 700000), std::pair("short", 20000)}) {
+    put(std::string(name) + ".bvh", capture(frames));
+    const std::vector<std::string> import = {std::string(name) + ".bvh", "-o",
+                                             std::string(name) + ".anim"};
+    ASSERT_EQ(run_here("krok-import", import).exit_code, 0);
+  }
+  const std::vector<std::pair<std::string, std::vector<std::string>>> rows = {
+      {"krok-export", {"-o", "out.npz"}}, {"krok-lint", {"--only", "frozen"}}};
+  for (const auto& [tool, options] : rows) {
+    const double few = peak(tool, "short.anim", options), many = peak(tool, "long.anim", options);
+    EXPECT_LT(many, few + 75 + 40) << tool;
+  }
+}
+
 // Would fail if the ground's targets of all points were kept for all frames: 35 kB each.
 TEST_F(LongTake, SettlingKeepsAStretchAtATime) {
   if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
