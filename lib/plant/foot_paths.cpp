@@ -348,6 +348,7 @@ constexpr double kMargin = 0.008;  // of the leg
 constexpr double kReached = 1e-5;  // metres
 
 constexpr double kBentBack = kPi / 2;  // about the leg's line, from the usual axis
+constexpr double kBehind = kPi / 6;
 constexpr double kGivesWay = 0.25;     // of the captured flexion
 constexpr double kTurnsWithin = 0.05;  // seconds
 
@@ -434,10 +435,15 @@ std::vector<double> knee_angles(const Clip& clip, const Leg& leg, const FootPath
   for (int f = 0; f < clip.frame_count(); ++f) {
     const Knee knee = knee_of(leg, {clip, f, leg, path, lowered[static_cast<std::size_t>(f)]});
     parts.push_back(part_given_way(knee));
-    // Round the same side as before.
+    // Round the same side as before, first the outer one where it is straight behind: of knees that
+    // are hinges rounding would decide.
     const double before = angles.empty() ? 0 : angles.back();
     const bool stays = std::min(std::abs(before), std::abs(knee.angle)) > kBentBack;
-    angles.push_back(stays ? before + std::remainder(knee.angle - before, 2 * kPi) : knee.angle);
+    const double outer = leg.side == FootSide::left ? -kPi : kPi;
+    const bool behind = std::abs(std::remainder(knee.angle - outer, 2 * kPi)) < kBehind;
+    const double from = stays ? before : outer;
+    angles.push_back(stays || behind ? from + std::remainder(knee.angle - from, 2 * kPi)
+                                     : knee.angle);
   }
   const int reach = static_cast<int>(std::lround(kTurnsWithin * clip.rate));
   parts = mean_within(mean_within(parts, reach), reach);
