@@ -57,6 +57,7 @@ class Track {
   NoiseLevel& level() { return level_; }
   bool of_position() const { return of_position_; }
   const MatrixXd& vectors() const { return vectors_; }
+  void unroll();
   void set(const MatrixXd& vectors);
   const std::vector<Spike>& spikes() const { return spikes_; }
 
@@ -64,7 +65,6 @@ class Track {
   int size() const {
     return static_cast<int>(of_position_ ? positions_.size() : rotations_.size());
   }
-  void unroll();
   bool replace_outliers(const WhittakerLadder& ladder);
   void replace(int frame, const Vec3& vector);
 
@@ -190,6 +190,21 @@ void sort_spikes(std::vector<Spike>& spikes) {
   });
 }
 
+// Spikes in frames side by side as one.
+std::vector<Spike> in_runs(std::vector<Spike> spikes) {
+  std::ranges::sort(spikes, {}, &Spike::first_frame);
+  std::vector<Spike> runs;
+  for (const Spike& spike : spikes) {
+    if (runs.empty() || spike.first_frame > runs.back().last_frame + 1) {
+      runs.push_back(spike);
+      continue;
+    }
+    runs.back().last_frame = std::max(runs.back().last_frame, spike.last_frame);
+    runs.back().size = std::max(runs.back().size, spike.size);
+  }
+  return runs;
+}
+
 // Of noisy tracks the median of rotations, and the first position, which is the root's.
 void set_noise(std::span<const NoiseLevel> levels, std::span<const std::uint8_t> of_position,
                double& angle, double& distance) {
@@ -236,8 +251,15 @@ Denoised denoise(Clip clip, std::span<const std::uint8_t> joints,
   });
   std::vector<Track*> noisy;
   for (Track& track : tracks) {
-    made.spikes.insert(made.spikes.end(), track.spikes().begin(), track.spikes().end());
+    const std::vector<Spike> spikes = in_runs(track.spikes());
+    made.spikes.insert(made.spikes.end(), spikes.begin(), spikes.end());
     if (track.is_noisy()) noisy.push_back(&track);
+  }
+  if (!made.spikes.empty()) {
+    const double most = 0.5 * SpikeOptions().least_distance;
+    SpikeRemoval repaired = without_throws(made.clip, most, joints, motion, std::move(made.spikes));
+    made.spikes = std::move(repaired.spikes);
+    for (Track* track : noisy) track->unroll();
   }
   if (!noisy.empty()) {
     MatrixXd series(motion.frames, 3 * static_cast<Eigen::Index>(noisy.size()));

@@ -27,7 +27,8 @@ struct NoiseRemoval {
 // 3. What is hidden in the noise from (1) is a spike, too: a frame that is further from the smooth
 //    course of the others than 3 degrees or 10 mm, than 5 deviations of the noise, than 3.5 times
 //    the usual distance (median over 1 s around), and than twice that of all but two of the ten
-//    frames next to it. It is replaced by that course.
+//    frames next to it. It is replaced by that course. What that throws aside is made good
+//    (without_throws()).
 // 4. without_noise() of all joints together, each in units of its noise.
 //
 // Preserves bone lengths, timing, frame rate and frame count. Joints with 0 in `joints` are

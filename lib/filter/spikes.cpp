@@ -400,6 +400,15 @@ class ThrowRepair {
   std::vector<Replaced> replaced_;
 };
 
+}  // namespace
+
+SpikeRemoval without_throws(const Clip& before, double most, std::span<const std::uint8_t> joints,
+                            LocalMotion& motion, std::vector<Spike> spikes) {
+  return ThrowRepair(before, most, joints, motion, std::move(spikes)).repair();
+}
+
+namespace {
+
 // `moving`: as of moving_joints(), of the whole motion; empty: of this clip.
 SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
                             std::span<const std::uint8_t> joints, std::vector<std::uint8_t> moving,
@@ -433,8 +442,7 @@ SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
   std::vector<Spike> spikes;
   for (const auto& of_joint : found) spikes.insert(spikes.end(), of_joint.begin(), of_joint.end());
   if (spikes.empty()) return {clip, {}};
-  return ThrowRepair(clip, 0.5 * options.least_distance, joints, motion, std::move(spikes))
-      .repair();
+  return without_throws(clip, 0.5 * options.least_distance, joints, motion, std::move(spikes));
 }
 
 }  // namespace

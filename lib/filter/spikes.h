@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "motion/local_motion.h"
 #include "scene/clip.h"
 #include "scene/frame_blocks.h"
 
@@ -65,5 +66,10 @@ Result<FrameSource> remove_spikes(
     int jobs,
     const std::function<void(const FrameRun& before, const SpikeRemoval& after)>& watch = {},
     int block_frames = BlockSize().frames / 2);
+
+// Makes good what replaced spikes throw aside by over `most` metres, as remove_spikes() does:
+// `motion` is that of the clip `before`, with its spikes replaced.
+SpikeRemoval without_throws(const Clip& before, double most, std::span<const std::uint8_t> joints,
+                            LocalMotion& motion, std::vector<Spike> spikes);
 
 }  // namespace krok::filter

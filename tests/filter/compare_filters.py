@@ -47,7 +47,8 @@ TARGET = 0.8
 class Take:
     def __init__(self, path, frames):
         self.bvh = Bvh(path)
-        self.bvh.keep(slice(1, frames + 1))
+        kept = slice(1, frames + 1)
+        self.bvh.rotations, self.bvh.places = self.bvh.rotations[kept].copy(), self.bvh.places[kept].copy()
         self.rate = 1 / self.bvh.frame_time
         self.root = self.bvh.carrier()
         scale = 1.7 / np.percentile(np.ptp(self.bvh.world()[..., 1], axis=1), 90)
