@@ -42,17 +42,28 @@ std::string nearest_name(std::string_view word, std::span<const std::string> nam
   // is no head.
   constexpr std::size_t kWord = 4, kBeginning = 3;
   for (const std::string& name : names) {
+    // "--max-influences" has more words than --influences.
+    if (dashes > 0 && name.size() > dashes + kWord && wanted.ends_with(name.substr(1))) return name;
     const std::size_t found = ascii_lower(name).find(wanted);
     const std::size_t letters = found == 0 ? kBeginning : kWord;
     if (found == std::string::npos || wanted.size() < letters + dashes) continue;
     if (best.empty() || name.size() < best.size()) best = name;
   }
   if (!best.empty()) return best;
+  // The same words in another order: "hand_left".
+  const std::size_t under = wanted.rfind('_');
+  for (const std::string& name : names) {
+    if (under == std::string::npos || under == 0) break;
+    if (name == wanted.substr(under + 1) + "_" + wanted.substr(0, under)) return name;
+  }
   for (const std::string& name : names) {
     const std::string other = ascii_lower(std::string_view(name).substr(0, kMaxLetters));
     const std::size_t found = distance(wanted, other);
     const std::size_t longer = std::max(wanted.size(), other.size());
-    const std::size_t near = std::max<std::size_t>(2, longer / 3);
+    // A third of the letters; of options, whose short words share many, without their dashes and
+    // from the same first letter if more than one differs.
+    const std::size_t near = std::max<std::size_t>(dashes > 0 ? 1 : 2, (longer - dashes) / 3);
+    if (dashes > 0 && found > 1 && wanted[dashes] != other[dashes]) continue;
     const bool half = 2 * found + (found > 1 ? 1 : 0) > longer - dashes;
     if (found > near || half || (!best.empty() && found >= least)) continue;
     best = name;

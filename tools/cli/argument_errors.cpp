@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <string_view>
 
 #include "core/file.h"
+#include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/renamed_options.h"
@@ -46,14 +48,14 @@ std::optional<Error> CommandLine::option_without_value(
   return std::nullopt;
 }
 
-// "-json" would be -j with the value "son".
+// "-json" would be -j with the value "son"; "-x" is none where there is --x.
 std::optional<Error> CommandLine::option_with_one_dash(
     const std::vector<std::string>& arguments) const {
   for (const std::string& argument : arguments) {
     if (argument == "--") break;
-    if (argument.size() < 3 || argument[0] != '-' || argument[1] == '-') continue;
+    if (argument.size() < 2 || argument[0] != '-' || argument[1] == '-') continue;
     const std::string name = "-" + argument.substr(0, argument.find('='));
-    if (app_.get_option_no_throw(name) == nullptr) continue;
+    if (app_.get_option_no_throw(name) == nullptr || app_.get_option_no_throw(argument)) continue;
     return usage(fmt::format("unknown option '{}'", name.substr(1)),
                  fmt::format("did you mean '{}'?", name));
   }
@@ -74,20 +76,16 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     if (!is_long && !letter) continue;
     const std::string name = argument.substr(0, argument.find('='));
     if (app_.get_option_no_throw(is_long ? name : name.substr(0, 2)) != nullptr) continue;
-    const auto is_now = [&](const RenamedOption& option) {
-      if (option.before != name || (!option.tool.empty() && option.tool != spec_.name))
-        return false;
-      const std::string now(option.now.substr(0, option.now.find(' ')));
-      return !option.tool.empty() || !now.starts_with('-') ||
-             app_.get_option_no_throw(now) != nullptr;
+    std::string dashed = name;  // as options are written here: --frame-rate for --frame_rate
+    std::ranges::replace(dashed, '_', '-');
+    const auto has = [&](const std::string& option) {
+      return app_.get_option_no_throw(option) != nullptr;
     };
-    // A tool's own rows come after those of any.
-    const auto none = std::rend(kRenamedOptions);
-    if (const auto row = std::find_if(std::rbegin(kRenamedOptions), none, is_now); row != none) {
+    if (const RenamedOption* row = renamed_option(spec_.name, dashed, has)) {
       return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
     }
     const std::string near =
-        name.size() > 2 ? nearest_name(is_long ? name : "-" + name, names) : std::string();
+        name.size() > 2 ? nearest_name(is_long ? dashed : "-" + dashed, names) : std::string();
     return Error("usage", fmt::format("unknown option '{}'", shown(name)),
                  near.empty() ? fmt::format("see {} --help", spec_.name)
                               : fmt::format("did you mean '{}'?", near));
@@ -104,8 +102,26 @@ std::optional<Error> CommandLine::value_of_flag(const std::vector<std::string>& 
   if (!before.starts_with('-')) return {};
   const CLI::Option* option = app_.get_option_no_throw(before);
   if (option == nullptr || option->get_items_expected_max() > 0) return {};
+  const RenamedOption* meant =
+      renamed_option(spec_.name, before, [](const std::string&) { return true; });
   return usage(fmt::format("{} takes no value, and '{}' is one", before, shown(word)),
-               option->get_description());
+               meant != nullptr ? fmt::format("use {}", meant->now) : option->get_description());
+}
+
+// "--move 1 0 0": numbers that belong together, as words of their own.
+std::optional<Error> CommandLine::value_in_pieces(const std::vector<std::string>& arguments) const {
+  const auto is_number = [](const std::string& word) {
+    return parse_finite(word.substr(0, word.find_first_not_of("+-.0123456789"))).has_value();
+  };
+  for (auto at = arguments.begin(); at != arguments.end() && *at != "--"; ++at) {
+    const CLI::Option* option = at->starts_with("--") ? app_.get_option_no_throw(*at) : nullptr;
+    if (option == nullptr || option->get_type_name().find(',') == std::string::npos) continue;
+    const auto end = std::find_if_not(std::next(at), arguments.end(), is_number);
+    if (end - at < 3) continue;
+    return usage(fmt::format("{} takes one word, not {}", *at, end - at - 1),
+                 fmt::format("write {} {}", *at, fmt::join(std::next(at), end, ",")));
+  }
+  return std::nullopt;
 }
 
 Error CommandLine::parse_error(const std::vector<std::string>& arguments,
@@ -122,6 +138,7 @@ Error CommandLine::parse_error(const std::vector<std::string>& arguments,
                                shown_list(left), option->get_name()));
     }
     if (auto value = value_of_flag(arguments, left.front())) return *std::move(value);
+    if (auto pieces = value_in_pieces(arguments)) return *std::move(pieces);
     constexpr std::string_view kUnits = " m cm mm in ft s ms f deg rad fps Hz ";
     if (kUnits.find(" " + left.front() + " ") != std::string_view::npos) {
       return usage(fmt::format("unexpected argument {}", shown_list(left)),
@@ -130,7 +147,7 @@ Error CommandLine::parse_error(const std::vector<std::string>& arguments,
     return Error(
         "usage",
         fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),
-        !too_many_hint(spec_.name).empty() ? too_many_hint(spec_.name)
+        !too_many_hint(spec_.name, arguments).empty() ? too_many_hint(spec_.name, arguments)
         : file ? fmt::format("a file to be written is given with -o; for several inputs, use "
                              "--out-dir DIR; see {} --help",
                              spec_.name)

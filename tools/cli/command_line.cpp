@@ -260,6 +260,13 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
                    "-o OUTPUT names another, or replaces it");
     }
   }
+  if (form_ == Form::single && spec_.name != "krok-import" &&
+      output.find("{clip}") != std::string::npos) {
+    return usage(
+        fmt::format("-o {}: there is one output, and no clip to name it by", shown(output)),
+        spec_.batch ? "--out-dir DIR writes a file for each motion, of its name"
+                    : "write the name of the file");
+  }
   if (form_ == Form::single && spec_.has_output && spec_.needs_output && output.empty()) {
     for (const CLI::Option* option : app_.get_options()) {
       if (!spec_.batch || !option->get_positional() || option->empty()) continue;

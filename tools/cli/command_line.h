@@ -108,6 +108,7 @@ class CommandLine {
   std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
   std::optional<Error> value_of_flag(const std::vector<std::string>& arguments,
                                      const std::string& word) const;
+  std::optional<Error> value_in_pieces(const std::vector<std::string>& arguments) const;
   Error parse_error(const std::vector<std::string>& arguments, const CLI::ParseError& error) const;
 
   Form form_;

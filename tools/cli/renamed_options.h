@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <functional>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <vector>
 
 // Options by the names that they had before version 0.2, or that one expects from other tools. They
 // are refused with the name as hint; in a script, one idea then has one name in all tools.
@@ -19,6 +23,18 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"", "--framerate", "--rate"},
     {"", "--format", "-o with that ending"},
     {"", "--input", "inputs without an option"},
+    {"", "-i", "inputs without an option"},
+    {"", "--animation", "--clip"},
+    {"", "--config", "--profile"},
+    {"", "--from", "krok-edit --from TIME --to TIME on the motion"},
+    {"", "--start", "krok-edit --from TIME --to TIME on the motion"},
+    {"", "--end", "krok-edit --from TIME --to TIME on the motion"},
+    {"", "--footprints", "--prints"},
+    {"", "--mapping", "--map"},
+    {"", "--mirror", "krok-edit --mirror on the motion"},
+    {"", "--precision", "--digits"},
+    {"", "--terrain", "--ground"},
+    {"", "-r", "--rate"},
     {"", "--start", "--from"},
     {"", "-ss", "--from"},
     {"", "-to", "--to"},
@@ -48,10 +64,16 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"", "--in-place", "krok-edit IN --in-place -o IN.anim"},
     {"krok-blend", "--align", "--match-root"},
     {"krok-blend", "--keys", "--contacts"},
+    {"krok-blend", "--at", "krok-edit A --append B --blend TIME for one motion after the other"},
+    {"krok-blend", "--duration", "krok-edit A --append B --blend TIME for one after the other"},
     {"krok-blend", "--alpha", "IN:WEIGHT, such as walk.anim:0.7 run.anim:0.3"},
     {"krok-blend", "--weight", "IN:WEIGHT, such as walk.anim:0.7 run.anim:0.3"},
     {"krok-blend", "--weights", "IN:WEIGHT, such as walk.anim:0.7 run.anim:0.3"},
     {"krok-body", "--height", "krok-edit --height before"},
+    {"krok-body", "--gender", "joints of that build: the body follows the skeleton"},
+    {"krok-body", "--resolution", "--detail"},
+    {"krok-cam", "--focal-length", "--lens"},
+    {"krok-cam", "--height", "--elevation, the angle from which it looks down"},
     {"krok-cam", "--joint", "--follow"},
     {"krok-cam", "--look-at", "--follow"},
     {"krok-cam", "--target", "--follow"},
@@ -59,6 +81,7 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-diff", "-o", "--summary OUT.html, OUT.xml (JUnit) or OUT.md"},
     {"krok-diff", "--epsilon", "--tolerance"},
     {"krok-diff", "--ignore", "--exclude"},
+    {"krok-diff", "--ignore-root", "krok-edit --in-place on both before"},
     {"krok-diff", "--html", "--summary OUT.html"},
     {"krok-diff", "--joints", "--joint-tolerance"},
     {"krok-diff", "--junit", "--summary OUT.xml"},
@@ -75,6 +98,10 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-edit", "--flip", "--mirror"},
     {"krok-edit", "--fps", "--rate"},
     {"krok-edit", "--lowpass", "--filter butterworth --cutoff 6Hz"},
+    {"krok-edit", "--foot-lock", "--plant"},
+    {"krok-edit", "--offset", "--move"},
+    {"krok-edit", "--remove-root-motion", "--in-place, or --treadmill"},
+    {"krok-edit", "--reverse", "a timeline of krok-mix: {\"source\": \"walk\", \"speed\": -1}"},
     {"krok-edit", "--order", "--filter-order"},
     {"krok-edit", "--resample", "--rate"},
     {"krok-edit", "--rotate", "--turn"},
@@ -99,10 +126,13 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-export", "--frames", "krok-edit --from TIME --to TIME before; 120f is frame 120"},
     {"krok-export", "--from", "krok-edit --from TIME --to TIME before"},
     {"krok-export", "--rate", "krok-edit --rate before"},
+    {"krok-export", "--rotate-mode", "--order"},
+    {"krok-export", "--rotation-order", "--order"},
     {"krok-export", "--scale", "--unit, or krok-edit --scale before"},
     {"krok-export", "--start", "krok-edit --from TIME --to TIME before"},
     {"krok-export", "--to", "--format"},
     {"krok-export", "--up", "the importer's axes: what is written has y up"},
+    {"krok-fit", "--parameters", "\"parameters\" of a description (formats/library/SPEC.md)"},
     {"krok-fit", "--plots", "--plot"},
     {"krok-fit", "--smooth", "--smoothing"},
     {"krok-fit", "--until", "--max-error"},
@@ -127,6 +157,8 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-import", "--up-axis", "--up"},
     {"krok-import", "--frames", "krok-edit --from TIME --to TIME; 120f is frame 120"},
     {"krok-import", "--format", "krok-export --format; krok-import writes .anim"},
+    {"krok-import", "--list-clips", "krok-info, which lists them"},
+    {"krok-info", "--frames", "krok-export -o OUT.csv, which writes the values of each frame"},
     {"krok-info", "--joints", "-v, which lists the joints with their roles"},
     {"krok-keys", "--csv", "--table"},
     {"krok-keys", "--fps", "krok-import --fps before"},
@@ -136,6 +168,9 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-keys", "--threshold", "--contacts or --keytime"},
     {"krok-lint", "-o", "--html OUT.html, --table OUT.csv or --junit OUT.xml"},
     {"krok-lint", "--csv", "--table"},
+    {"krok-lint", "--disable", "--ignore"},
+    {"krok-lint", "--exclude", "--ignore"},
+    {"krok-lint", "--severity", "--quiet, which prints only errors, or --ignore RULE"},
     {"krok-lint", "--report", "--html"},
     {"krok-lint", "--format", "--sarif, --junit, --html or --table, each with a file"},
     {"krok-lint", "--max-slide", "--profile IN.json, with the limits of the rules"},
@@ -143,6 +178,8 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-lint", "--threshold", "--profile IN.json, with the limits of the rules"},
     {"krok-lint", "--tolerance", "--profile IN.json, with the limits of the rules"},
     {"krok-mix", "--keys", "--contacts"},
+    {"krok-mix", "--fps", "\"rate\" of the timeline"},
+    {"krok-mix", "--rate", "\"rate\" of the timeline"},
     {"krok-morph", "--by-order", "--match order"},
     {"krok-plot", "--angles", "--show angles"},
     {"krok-plot", "--contact-sheet", "--sheet"},
@@ -152,12 +189,18 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-plot", "--mean", "--show cycles"},
     {"krok-plot", "--per-cycle", "--show cycles"},
     {"krok-plot", "--sides", "--view"},
+    {"krok-plot", "--save", "-o OUT.svg"},
     {"krok-plot", "--size", "--actor-size"},
     {"krok-plot", "--style", "--draw"},
     {"krok-plot", "--table", "--as-table"},
     {"krok-plot", "--what", "--show"},
     {"krok-plot", "--mean-only", "--show cycles, which draws mean and deviation"},
+    {"krok-ragdoll", "--force", "the impulse --push Spine2=100Ns,0,0"},
     {"krok-ragdoll", "--from", "--at"},
+    {"krok-ragdoll", "--gravity", "another --mass or --friction; gravity is 9.81 m/s2"},
+    {"krok-ragdoll", "--impulse", "--push"},
+    {"krok-render", "--background",
+     "krok-skin -o OUT.glb and another renderer: this background is always the same"},
     {"krok-render", "--codec", "-o NAME.mp4 (H.264), .webp or .gif; ffmpeg recodes films"},
     {"krok-render", "--crf", "-o NAME.mp4 (H.264), .webp or .gif; ffmpeg recodes films"},
     {"krok-render", "--duration", "--from TIME --to TIME"},
@@ -169,6 +212,9 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-retarget", "--character", "--onto"},
     {"krok-retarget", "--model", "--onto"},
     {"krok-retarget", "--target", "--onto"},
+    {"krok-retarget", "--dst", "--onto"},
+    {"krok-retarget", "--source", "the motion without an option: krok-retarget IN --onto TARGET"},
+    {"krok-retarget", "--src", "the motion without an option: krok-retarget IN --onto TARGET"},
     {"krok-retarget", "--to", "--onto"},
     {"krok-retarget", "--fps", "krok-edit --rate after it"},
     {"krok-skin", "--onto", "--retarget: the mesh's skeleton is the target"},
@@ -182,6 +228,8 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-skin", "--rate", "--every N, or krok-edit --rate before"},
     {"krok-skin", "--draco", "--compress"},
     {"krok-skin", "--tolerance", "--reduce"},
+    {"krok-skin", "--simplify", "a simpler mesh; --quantize and --compress make the file smaller"},
+    {"krok-skin", "--clip-name", "NAME=FILE, such as walk=take_7.anim"},
     {"krok-skin", "--clip-names", "NAME=FILE, such as walk=take_7.anim"},
     {"krok-synth", "--duration", "--set duration=VALUE"},
     {"krok-synth", "--length", "--set length=VALUE"},
@@ -190,18 +238,44 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-view", "--output-dir", "-o OUT.html: one page with all inputs"},
     {"krok-view", "--out-dir", "-o OUT.html: one page with all inputs"},
     {"krok-view", "--keys", "--contacts"},
+    {"krok-view", "--open", "-o OUT.html, and open that in a browser"},
     {"krok-view", "--camera", "the .cam file as another input"},
     {"krok-view", "--port", "-o OUT.html: the page is a file"},
     {"krok-walk", "--from", "--start"},
     {"krok-walk", "--style-of", "--style"},
+    {"krok-walk", "--target", "--goal"},
     {"krok-walk", "--to", "--goal"},
     {"krok-walk", "--view", "--save-page"},
     {"krok-walk", "--way", "--path"},
     {"krok-walk", "--distance", "--goal 0m,LENGTH"},
 };
 
+// The row of an option that a tool refuses; its own rows, which come after those of any tool, win.
+// `has` is whether the tool has an option. nullptr for none.
+inline const RenamedOption* renamed_option(
+    std::string_view tool, std::string_view before,
+    const std::function<bool(const std::string& option)>& has) {
+  const auto fits = [&](const RenamedOption& option) {
+    if (option.before != before || (!option.tool.empty() && option.tool != tool)) return false;
+    const std::string now(option.now.substr(0, option.now.find(' ')));
+    return !option.tool.empty() || !now.starts_with('-') || has(now);
+  };
+  const auto none = std::rend(kRenamedOptions);
+  const auto row = std::find_if(std::rbegin(kRenamedOptions), none, fits);
+  return row == none ? nullptr : &*row;
+}
+
 // What helps who gives a tool more inputs than it takes, or others; empty for most tools.
-inline std::string too_many_hint(std::string_view tool) {
+inline std::string too_many_hint(std::string_view tool, const std::vector<std::string>& arguments) {
+  const auto named = [&](std::string_view ending) {
+    const auto found = std::ranges::find_if(
+        arguments, [&](const std::string& word) { return word.ends_with(ending); });
+    return found == arguments.end() ? std::string() : *found;
+  };
+  if (tool == "krok-import" && !named(".asf").empty() && !named(".amc").empty()) {
+    return "an .asf is the skeleton of the .amc: write " + named(".amc") + " --skeleton " +
+           named(".asf");
+  }
   if (tool == "krok-fit") {
     return "the clips are named in a description (.json, formats/library/SPEC.md): {\"schema\": "
            "\"krok.library/1\", \"steps\": \"auto\", \"parameters\": [...], \"examples\": "

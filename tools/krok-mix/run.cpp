@@ -109,7 +109,7 @@ Result<timeline_file::Document> read_timeline(const Options& options, ToolContex
   if (io::format_of(*file).reads_motion()) {
     return Error("mix-input",
                  fmt::format("is {}, not a timeline", registry::describe_content(file->bytes())),
-                 too_many_hint("krok-mix"))
+                 too_many_hint("krok-mix", {}))
         .in_file(file->path());
   }
   return timeline_file::read(file->text(), file->path());
