@@ -54,6 +54,50 @@ Result<std::vector<double>> unit(const Given& given, std::size_t count, double t
                      hint);
 }
 
+// A value that a JSON Schema allows, with what it needs alone and "..." for words.
+std::string example_of(const Value& schema, int levels = 5) {
+  if (const Value* only = schema.find("const")) return in_quotes(only->text);
+  if (const Value* words = schema.find("enum")) return in_quotes(words->items.front().text);
+  const Value* type = schema.find("type");
+  const Value* either = schema.find("oneOf");
+  if (type == nullptr && either != nullptr) return example_of(either->items.front(), levels);
+  if (type != nullptr && !type->items.empty()) type = &type->items.front();
+  const std::string word = type == nullptr ? "" : type->text;
+  std::vector<std::string> parts;
+  if (const Value* each = schema.find("items"); each != nullptr && levels > 0) {
+    const Value* min = schema.find("minItems");
+    const double count = min == nullptr ? 1 : std::clamp(min->number, 1.0, 4.0);
+    parts.assign(static_cast<std::size_t>(count), example_of(*each, levels - 1));
+  }
+  if (const Value* each = schema.find("prefixItems"); each != nullptr && levels > 0) {
+    for (const Value& item : each->items) parts.push_back(example_of(item, levels - 1));
+  }
+  const Value* required = schema.find("required");
+  if (const Value* fields = schema.find("properties"); fields != nullptr && levels > 0) {
+    for (const Value::Member& field : fields->members) {
+      const auto is_it = [&](const Value& one) { return one.text == field.key; };
+      const bool needed = required == nullptr ? parts.empty() && field.key != "name"
+                                              : std::ranges::any_of(required->items, is_it);
+      if (needed)
+        parts.push_back(in_quotes(field.key) + ": " + example_of(field.value, levels - 1));
+    }
+    if (required == nullptr && !parts.empty()) parts.emplace_back("...");
+  }
+  const std::string inside = parts.empty() ? "..." : fmt::format("{}", fmt::join(parts, ", "));
+  if (word == "array") return "[" + inside + "]";
+  if (word == "object") return "{" + inside + "}";
+  return word == "number" || word == "integer" ? "1" : word == "boolean" ? "true" : "\"...\"";
+}
+
+// The hint of a value of another shape than a schema says, beside its key.
+Error with_example(Error error, const Given& given, const std::string& schema) {
+  const auto parsed = parse(schema);
+  if (!parsed) return error;
+  error.hint = fmt::format("write {}{}", given.key.empty() ? "" : in_quotes(given.key) + ": ",
+                           example_of(*parsed));
+  return error;
+}
+
 }  // namespace
 
 std::string Given::name() const {
@@ -263,7 +307,9 @@ Result<double> parse_seconds(std::string_view text) {
 }
 
 Result<std::vector<double>> numbers(const Given& given, std::size_t count, double most) {
-  if (Status status = given.is(Value::Kind::array); !status) return status.error();
+  if (Status status = given.is(Value::Kind::array); !status) {
+    return with_example(std::move(status).error(), given, schema_of_numbers(count));
+  }
   std::vector<double> found;
   for (const Value& item : given.value.items) {
     if (item.kind != Value::Kind::number || !std::isfinite(item.number)) break;
@@ -410,7 +456,10 @@ Kind<std::size_t> word(std::vector<std::string> words, bool nearest) {
 Status read_list(const Given& given, const ListOf& list, const AnyKind& item,
                  const std::function<void*()>& add,
                  const std::function<Status(const Given& item)>& added) {
-  if (Status status = given.is(Value::Kind::array); !status) return status;
+  if (Status status = given.is(Value::Kind::array); !status) {
+    return with_example(std::move(status).error(), given,
+                        schema_of_list(item.schema ? item.schema() : "{}", list.least, list.most));
+  }
   const std::size_t count = given.value.items.size();
   if (count < list.least || count > list.most) {
     return given.wrong(filled(list.wrong, count, given.key, list.least, list.most, given.name()));
@@ -455,6 +504,9 @@ std::string home_of(std::string_view schema) {
       {"krok.keys/1", "--contacts of tools, or beside its motion as NAME.keys.json"},
       {"krok.library/1", "krok-fit"},
       {"krok.limits/1", "krok-ik --limits"},
+      {"krok.lint-baseline/1", "krok-lint --baseline"},
+      {"krok.lint-profile/1", "krok-lint --profile"},
+      {"krok.lint-suppressions/1", "krok-lint, beside a motion as NAME.lint.json"},
       {"krok.path/1", "krok-walk --path"},
       {"krok.prints/1", "krok-walk, and --prints"},
       {"krok.role-map/1", "--map"},
@@ -492,8 +544,9 @@ Table::Step& Table::add(std::string_view key, AnyKind kind, std::string_view say
 
 Status Table::check_keys(const Given& object) const {
   if (object.value.kind != Value::Kind::object) {
-    return object.structure(
-        fmt::format("{} is {}, expected an object", object.what, kind_name(object.value.kind)));
+    return with_example(object.structure(fmt::format("{} is {}, expected an object", object.what,
+                                                     kind_name(object.value.kind))),
+                        object, schema());
   }
   for (const Value::Member& member : object.value.members) {
     if (std::ranges::find(steps_, member.key, &Step::key) != steps_.end() && !member.key.empty()) {

@@ -126,7 +126,7 @@ Points read(std::string_view text, const std::string& path, const ReadOptions& o
     error.where = locate(text, fault->offset + skipped, path);
     return error;
   }
-  if (first == '{') {
+  if (first == '{' || first == '[') {
     auto way = table().read_text(text, "path");
     if (!way) return std::move(way.error()).in_file(path);
     return way;

@@ -268,7 +268,7 @@ std::string degrees(const gait::Print& print) {
 
 Result<std::vector<Print>> read(std::string_view text, const std::string& path) {
   const std::string_view begin = trimmed(without_byte_order_mark(text).substr(0, 256));
-  if (begin.starts_with('{')) {
+  if (begin.starts_with('{') || begin.starts_with('[')) {
     auto prints = table().read_text(text, "prints");
     if (!prints) return std::move(prints.error()).in_file(path);
     return prints;
