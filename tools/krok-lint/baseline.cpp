@@ -33,6 +33,14 @@ std::string sidecar_of(const std::string& path) {
 
 }  // namespace
 
+Status check_rule(const std::string& id, const std::string& path) {
+  if (krok::lint::find_rule(id)) return {};
+  std::vector<std::string> ids;
+  for (const auto& facts : krok::lint::rules()) ids.emplace_back(facts.id);
+  return Error("lint-rule", fmt::format("'{}' is no rule", shown(id)), nearest_hint(id, ids))
+      .in_file(path);
+}
+
 std::string fingerprint_of(const std::string& path, std::string_view rule, int number) {
   const std::string text = fmt::format("{}|{}|{}", stem_of(path), rule, number);
   return hex(xxh3(std::as_bytes(std::span(text))));
@@ -75,9 +83,7 @@ void leave_out_known(const std::vector<lint_files::KnownFault>& known, LintedFil
 void leave_out_suppressed(LintedFile& file, ToolContext& context) {
   const std::string path = sidecar_of(file.path);
   std::error_code ignored;
-  if (file.findings.empty() || path.empty() || !std::filesystem::is_regular_file(path, ignored)) {
-    return;
-  }
+  if (file.error || path.empty() || !std::filesystem::is_regular_file(path, ignored)) return;
   const auto input = context.open_input(path);
   if (!input) {
     file.error = input.error();
@@ -87,6 +93,15 @@ void leave_out_suppressed(LintedFile& file, ToolContext& context) {
   if (!suppressions) {
     file.error = std::move(suppressions).error().in_file(path);
     return;
+  }
+  for (const lint_files::Suppression& one : *suppressions) {
+    if (Status status = check_rule(one.rule, path); !status) file.error = std::move(status).error();
+    if (one.joint.empty() || std::ranges::find(file.joints, one.joint) != file.joints.end())
+      continue;
+    context.diagnose_in(
+        path,
+        {make_warning("lint-joint", fmt::format("the motion has no joint '{}'", shown(one.joint)),
+                      nearest_hint(one.joint, file.joints))});
   }
   file.suppressed += std::erase_if(file.findings, [&](const Finding& finding) {
     return std::ranges::any_of(*suppressions, [&](const lint_files::Suppression& one) {
@@ -105,13 +120,8 @@ Status apply_profile(const std::string& path, krok::lint::Settings& settings,
   const auto choices = lint_files::read_profile(input->text());
   if (!choices) return Error(choices.error()).in_file(path);
   for (const lint_files::RuleChoice& choice : *choices) {
-    const auto rule = krok::lint::find_rule(choice.rule);
-    if (!rule) {
-      return Error("lint-rule", fmt::format("'{}' is no rule", shown(choice.rule)),
-                   "krok-lint --rules lists them")
-          .in_file(path);
-    }
-    const auto i = static_cast<std::size_t>(*rule);
+    if (Status status = check_rule(choice.rule, path); !status) return status;
+    const auto i = static_cast<std::size_t>(*krok::lint::find_rule(choice.rule));
     settings.enabled[i] = choice.use;
     if (choice.limit) settings.thresholds[i] = *choice.limit;
   }

@@ -68,6 +68,9 @@ void leave_out_known(const std::vector<lint_files::KnownFault>& known, LintedFil
 // be read is the error of its motion.
 void leave_out_suppressed(LintedFile& file, ToolContext& context);
 
+// Whether a file, `path`, names a rule of krok-lint; code lint-rule.
+Status check_rule(const std::string& id, const std::string& path);
+
 // Rules and limits of a profile on top of `settings`. Codes: those of reading it, and lint-rule.
 Status apply_profile(const std::string& path, krok::lint::Settings& settings, ToolContext& context);
 

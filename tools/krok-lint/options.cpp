@@ -1,7 +1,10 @@
 #include "tools/krok-lint/options.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 
+#include "core/text.h"
 #include "formats/io/formats.h"
 #include "lint/rules.h"
 #include "tools/shared/shared_options.h"
@@ -56,6 +59,11 @@ void declare(CommandOptions& command, Options& o) {
 }
 
 Status check_options(const Options& o) {
+  if (o.inputs.empty() && !o.fix.empty()) {
+    return usage(
+        fmt::format("no input given; {} is the folder of --fix", shown(o.fix)),
+        fmt::format("--fix OUT_DIR is for mended motions: krok-lint {} --fix mended", o.fix));
+  }
   if (o.inputs.empty() && !o.list_rules) return usage("no input given", "see krok-lint --help");
   return {};
 }

@@ -125,8 +125,13 @@ std::string rules_text() {
 
 std::string console_text(const LintedFile& file, bool errors_only) {
   if (file.error) {
-    return fmt::format("{}: error: {} [unreadable]\n", shown_path(file),
-                       printable(file.error->message));
+    // That of NAME.lint.json is not the motion's.
+    const std::string& place = file.error->where.file;
+    const bool is_other = !place.empty() && place != file.path;
+    return fmt::format(
+        "{}: error: {} [unreadable]\n{}", shown_path(file),
+        is_other ? printable(base_name(place)) + " has a fault" : printable(file.error->message),
+        is_other ? to_text(*file.error) + "\n" : "");
   }
   std::string text;
   for (const Finding& finding : file.findings) {

@@ -156,6 +156,9 @@ Status leave_out_accepted(const Options& options, std::vector<LintedFile>& files
   if (!input) return input.error();
   const auto known = lint_files::read_baseline(input->text());
   if (!known) return Error(known.error()).in_file(options.baseline);
+  for (const lint_files::KnownFault& fault : *known) {
+    if (Status status = check_rule(fault.rule, options.baseline); !status) return status;
+  }
   for (LintedFile& file : files) leave_out_known(*known, file);
   return {};
 }
