@@ -74,7 +74,10 @@ std::string hint_for(registry::Kind kind, std::string_view what) {
   if (what.find("archive") != std::string_view::npos) return "unpack it first";
   if (what.find("Git LFS") != std::string_view::npos) return "fetch the file with: git lfs pull";
   if (what.find("web page") != std::string_view::npos) return "download the file itself";
-  if (what.find("C3D") != std::string_view::npos) {
+  if (what.find("OpenPose") != std::string_view::npos) {
+    return "krok-import reads 3D positions as .npy, (frames, joints, 3); these are 2D";
+  }
+  if (what.find("markers") != std::string_view::npos) {
     return "write the solved skeleton as BVH or FBX from the capture software";
   }
   if (what.find("OBJ") != std::string_view::npos) return "krok-morph takes shapes of a mesh";

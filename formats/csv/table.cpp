@@ -25,10 +25,15 @@ bool is_gap(std::string_view text) {
                      [&](const char* gap) { return same_word(text, gap); });
 }
 
-// A number, or a gap; nullopt for other text.
-std::optional<double> parse_cell(std::string_view text) {
+// A number, or a gap; nullopt for other text. Between semicolons a comma is a decimal point.
+std::optional<double> parse_cell(std::string_view text, char delimiter) {
   text = trimmed(text);
   if (const auto value = parse_finite(text)) return value;
+  if (const std::size_t comma = text.find(','); delimiter == ';' && comma != text.npos) {
+    const std::string whole(text.substr(0, comma));
+    if (const auto value = parse_finite(whole + "." + std::string(text.substr(comma + 1))))
+      return value;
+  }
   if (is_gap(text)) return kGap;
   return std::nullopt;
 }
@@ -158,7 +163,8 @@ Status Table::read_rows(std::size_t at) {
       const auto cell = cell_at(at);
       if (!cell) return cell.error();
       if (count < columns_.size() && numeric_[count] != 0) {
-        const auto value = parse_cell(text_.substr(cell->begin, cell->end - cell->begin));
+        const auto value =
+            parse_cell(text_.substr(cell->begin, cell->end - cell->begin), delimiter_);
         if (!value) numeric_[count] = 0;
         if (value && *value == *value) any[count] = 1;
       }
@@ -223,7 +229,7 @@ Result<std::vector<std::vector<double>>> Table::numbers(
       at = cell->next;
       if (wanted_by[c].empty()) continue;
       const std::string_view text = text_.substr(cell->begin, cell->end - cell->begin);
-      const auto value = parse_cell(text);
+      const auto value = parse_cell(text, delimiter_);
       if (!value) {
         Error error("csv-number",
                     fmt::format("'{}' in the column '{}' is not a number", shown(trimmed(text)),

@@ -49,7 +49,11 @@ class Loader {
 
   Status load_model() {
     const auto file = open(path_, loaded_.character.model);
-    if (!file) return file.error();
+    if (!file) {
+      Error error = file.error();
+      if (error.code == "file-missing") error.hint = fmt::format("{} names it", shown(path_));
+      return error;
+    }
     auto model = model::read(file->bytes());
     if (!model) return std::move(model.error()).in_file(file->path());
     loaded_.model = *std::move(model);

@@ -1,6 +1,7 @@
 #include "formats/weights/weights.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +24,18 @@ constexpr double kLargestWeight = 1e6;  // of either sign
 // An error for an unknown target, without a location.
 Error unknown_target(std::string_view name, std::span<const std::string> targets) {
   const std::string nearest = nearest_name(name, targets);
+  if (targets.empty()) {
+    return Error("weights-target",
+                 fmt::format("there is no target '{}': the mesh has none", shown(name)),
+                 "weights move morph targets, which a character, glTF or an .exr may have");
+  }
+  constexpr std::size_t kNamed = 5;
+  const std::size_t count = std::min(targets.size(), kNamed);
   return Error("weights-target", fmt::format("there is no target '{}'", shown(name)),
-               nearest.empty() ? std::string("krok-morph info lists the targets")
-                               : fmt::format("did you mean '{}'?", shown(nearest)));
+               nearest.empty()
+                   ? fmt::format("targets are {}{}", fmt::join(targets.first(count), ", "),
+                                 count < targets.size() ? ", ..." : "")
+                   : fmt::format("did you mean '{}'?", shown(nearest)));
 }
 
 // As keys (JSON).
@@ -167,7 +177,7 @@ Error at(Error error, const Location& place) {
 
 // The meaning of the columns of a table.
 struct Columns {
-  std::size_t time = kNone;  // in seconds, or
+  std::size_t time = kNone;  // in seconds or milliseconds, or
   std::size_t frame = kNone;
   std::vector<std::size_t> weights;  // columns, and ...
   std::vector<std::size_t> targets;  // ... their targets
@@ -177,13 +187,20 @@ Result<Columns> find_columns(const csv::Table& table, std::span<const std::strin
   Columns columns;
   const auto& names = table.columns();
   for (std::size_t c = 0; c < names.size(); ++c) {
-    const bool seconds = names[c].unit.empty() || names[c].unit == "s";
+    const bool seconds = names[c].unit.empty() || names[c].unit == "s" || names[c].unit == "ms";
     if (columns.frame == kNone && names[c].header == "frame") {
       columns.frame = c;
     } else if (columns.time == kNone && names[c].label == "time" && seconds) {
       columns.time = c;
     } else {
       const auto target = std::ranges::find(targets, names[c].header);
+      if (target == targets.end() && columns.time == kNone &&
+          same_word(names[c].label, "timecode")) {
+        return at(Error("weights-structure", "there is no column 'time'",
+                        "write times in seconds in place of Timecode, and leave out "
+                        "BlendShapeCount"),
+                  table.header_location(c));
+      }
       if (target == targets.end()) {
         return at(unknown_target(names[c].header, targets), table.header_location(c));
       }
@@ -246,7 +263,9 @@ Result<WeightFile> read_table(std::string_view text, const std::string& path,
   wanted.push_back(columns->time);
   const auto numbers = table->numbers(wanted);
   if (!numbers) return numbers.error();
-  const std::vector<double>& times = numbers->back();
+  std::vector<double> times = numbers->back();
+  const bool milliseconds = table->columns()[columns->time].unit == "ms";
+  for (double& time : times) time /= milliseconds ? 1000 : 1;
   if (Status status = check_times(*table, columns->time, times); !status) return status.error();
 
   WeightFile file;
@@ -274,7 +293,8 @@ Result<WeightFile> read_table(std::string_view text, const std::string& path,
 
 Result<WeightFile> read(std::string_view text, const std::string& path,
                         std::span<const std::string> targets) {
-  const bool is_json = trimmed(without_byte_order_mark(text)).starts_with('{');
+  const std::string_view begin = trimmed(without_byte_order_mark(text));
+  const bool is_json = begin.starts_with('{') || begin.starts_with('[');
   if (!is_json) return read_table(text, path, targets);
   auto file = read_keys(text, targets);
   if (!file) return std::move(file).error().in_file(path);

@@ -23,6 +23,19 @@ struct Split {
   std::string_view unit;
 };
 
+// What to write instead: "1.5s" for 00:00:01.5.
+std::string hint_for(std::string_view text) {
+  double seconds = 0;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    const auto part = parse_finite(text.substr(begin, end - begin));
+    if (!part || (begin == 0 && end == text.size())) return "enter a number with an optional unit";
+    seconds = 60 * seconds + *part;
+    begin = end + 1;
+  }
+  return fmt::format("times are in seconds: write {}s", readable(seconds, 9));
+}
+
 // The unit is the letters (or degree sign) at the end; the rest is the number.
 Result<Split> split(std::string_view text) {
   std::size_t end = text.size();
@@ -35,8 +48,7 @@ Result<Split> split(std::string_view text) {
   while (!number.empty() && number.back() == ' ') number.remove_suffix(1);
   const auto value = parse_finite(number);
   if (!value) {
-    return Error("quantity-number", fmt::format("'{}' is not a number", text),
-                 "enter a number with an optional unit");
+    return Error("quantity-number", fmt::format("'{}' is not a number", text), hint_for(text));
   }
   return Split{*value, text.substr(end)};
 }
