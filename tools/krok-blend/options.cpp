@@ -25,6 +25,10 @@ Result<WeightedInput> parse_weighted_input(const std::string& word) {
   WeightedInput input;
   if (parse_finite(word)) return wrong(fmt::format("'{}' is a weight without a motion", word));
   if (colon == std::string::npos) {
+    const std::size_t equals = word.rfind('=');
+    if (equals != std::string::npos && parse_finite(word.substr(equals + 1))) {
+      return wrong(fmt::format("'{}' has '=' before its weight, not ':'", word));
+    }
     input.path = word;
     return input;
   }

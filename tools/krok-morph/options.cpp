@@ -153,7 +153,14 @@ Status check(const Options& o) {
 }  // namespace
 
 Result<int> run(const Options& options, ToolContext& context) {
-  return facts_of(options.action).run(options, context);
+  Options ordered = options;
+  std::vector<std::string>& files = ordered.files;
+  // Of targets and their base, the .exr is the targets.
+  if (options.action != Action::pack && files.size() == 2 && extension(files[1]) == ".exr" &&
+      extension(files[0]) != ".exr") {
+    std::swap(files[0], files[1]);
+  }
+  return facts_of(options.action).run(ordered, context);
 }
 
 ToolSpec make_spec() {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 
@@ -90,6 +91,29 @@ Result<std::vector<std::size_t>> find_columns(const Table& table, const std::str
   return columns;
 }
 
+// A column that no option names, of numbers but for a cell that is none, would be taken for words.
+Status check_numbers(const Table& table, const TableOptions& options) {
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    const ColumnName& name = table.columns()[c];
+    const auto is_named = [&](const std::string& option) {
+      return option == name.header || option == name.label;
+    };
+    if (table.numeric()[c] != 0 || is_named(options.by) ||
+        std::ranges::any_of(options.where, [&](const auto& one) { return is_named(one.first); })) {
+      continue;
+    }
+    const auto cells = table.texts(c);
+    const auto count = std::ranges::count_if(
+        cells, [](const std::string& cell) { return parse_finite(cell).has_value(); });
+    if (2 * count < static_cast<std::ptrdiff_t>(cells.size()) || count == 0) continue;
+    Error error = table.numbers(std::array{c}).error();
+    error.hint = fmt::format("mend the cell or leave it empty; --by {} takes the column for words",
+                             shown(name.header));
+    return error;
+  }
+  return {};
+}
+
 Result<Choice> choose(const Table& table, const TableOptions& options) {
   Choice choice;
   if (options.x.empty()) {
@@ -103,6 +127,9 @@ Result<Choice> choose(const Table& table, const TableOptions& options) {
     auto columns = find_columns(table, names);
     if (!columns) return columns.error();
     choice.panels.push_back(std::move(*columns));
+  }
+  if (options.by.empty() || options.y.empty()) {
+    if (Status status = check_numbers(table, options); !status) return status.error();
   }
   if (options.y.empty()) choice.panels = usual_panels(table, choice.x);
   if (!options.by.empty()) {

@@ -25,7 +25,7 @@ namespace {
 class FrameNames {
  public:
   // Without a number, the name of a single frame. Code usage for a pattern with several.
-  static Result<FrameNames> parse(const std::string& pattern);
+  static Result<FrameNames> parse(const std::string& given);
   std::string of(int frame) const;
   bool is_single() const { return is_single_; }
 
@@ -35,7 +35,14 @@ class FrameNames {
   bool is_single_ = false;
 };
 
-Result<FrameNames> FrameNames::parse(const std::string& pattern) {
+Result<FrameNames> FrameNames::parse(const std::string& given) {
+  // "####" is %04d, as in other programs.
+  std::string pattern = given;
+  const std::size_t hash = pattern.find('#');
+  const std::size_t behind = std::min(pattern.find_first_not_of('#', hash), pattern.size());
+  if (pattern.find('%') == std::string::npos && hash != std::string::npos) {
+    pattern.replace(hash, behind - hash, fmt::format("%0{}d", behind - hash));
+  }
   const auto refused = [&pattern] {
     return usage(fmt::format("-o {}: a file per frame needs a number in its name", pattern),
                  "such as 'frame_%04d.png'; or write .mp4, .gif or .webp");

@@ -40,7 +40,13 @@ struct Target {
 
 Result<Target> read_target(const std::string& path, ToolContext& context) {
   auto actor = io::open_actor(path, context, {.with_motions = false});
-  if (!actor) return actor.error();
+  if (!actor) {
+    Error error = actor.error();
+    if (error.code == "container-magic") {
+      error.hint = "--onto takes what has joints: a .model, .character, .glb, .fbx, .anim or .bvh";
+    }
+    return error;
+  }
   Target target;
   if (!actor->motions.empty()) {
     target.clip = std::move(actor->motions[0].clip);
@@ -306,7 +312,14 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
   }
 
   auto result = krok::retarget::transfer(source, *source_roles, target->clip, *target_roles, how);
-  if (!result) return std::move(result).error().in_file(options.input);
+  if (!result) {
+    Error error = std::move(result).error();
+    if (error.code == "retarget-roles" && target->clip.skeleton.joint_count() < 3) {
+      error.hint =
+          shown(options.onto) + " has no skeleton: --onto needs a mesh that is bound to one";
+    }
+    return std::move(error).in_file(options.input);
+  }
   std::optional<FollowedFeet> followed;
   if (!options.ground.empty()) {
     auto standing =

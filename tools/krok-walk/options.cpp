@@ -1,5 +1,7 @@
 #include "tools/krok-walk/options.h"
 
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "terrain/spec.h"
@@ -73,7 +75,14 @@ void declare_steps(CommandOptions& command, Options& o) {
   command.add("--first SIDE", o.first,
               choice<FootSide>({{"left", FootSide::left}, {"right", FootSide::right}}),
               "Foot that steps first where footprints are planned", "left");
-  command.add("--speed", o.speed, number({0.1, 10}),
+  ValueKind<double> times = number({0.1, 10});
+  times.read = [read = times.read](const std::string& text) -> Result<double> {
+    auto value = read(text);
+    const auto pace = number({0, 1000}, "m/s").read(text);
+    if (value || !pace || text.find('/') == std::string::npos) return value;
+    return usage(fmt::format("'{}' is a speed, not a factor", text), "write --pace " + text);
+  };
+  command.add("--speed", o.speed, times,
               "Speed of the steps relative to the library's; footprints with times have theirs",
               "1");
   command.add_flag("--adapt", o.adapt,
