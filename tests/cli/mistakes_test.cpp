@@ -249,6 +249,151 @@ TEST_F(Mistakes, WrongFilesAndForeignWordsLeadOn) {
   for (const Row& row : rows) EXPECT_THAT(refused(row.tool, row.arguments), HasSubstr(row.text));
 }
 
+// Would fail if an option of another program, which has one meaning here, led to a list of all
+// options or to one that shares letters with it.
+TEST_F(Mistakes, OptionsOfOtherProgramsHaveTheirName) {
+  struct Row {
+    std::string tool;
+    std::vector<std::string> arguments;
+    std::string hint;
+  };
+  const Row rows[] = {
+      {"krok-import", {"-i", "in.bvh"}, "use inputs without an option"},
+      {"krok-import", {"--axis_up", "z"}, "use --up"},
+      {"krok-import", {"--save_model", "a.model"}, "did you mean '--save-model'?"},
+      {"krok-import", {"--animation", "idle"}, "use --clip"},
+      {"krok-import", {"--list-clips"}, "use krok-info"},
+      {"krok-import", {"--mirror"}, "use krok-edit --mirror"},
+      {"krok-import", {"--start", "10"}, "use krok-edit --from"},
+      {"krok-export", {"--rotation-order", "XYZ"}, "use --order"},
+      {"krok-export", {"--rotate-mode", "XYZ"}, "use --order"},
+      {"krok-export", {"--precision", "4"}, "use --digits"},
+      {"krok-edit", {"--offset", "0,1,0"}, "use --move"},
+      {"krok-edit", {"--remove-root-motion"}, "use --in-place"},
+      {"krok-edit", {"--foot-lock"}, "use --plant"},
+      {"krok-edit", {"--reverse"}, "\"speed\": -1"},
+      {"krok-skin", {"--clip-name", "walk"}, "walk=take_7.anim"},
+      {"krok-skin", {"--simplify", "0.5"}, "--quantize"},
+      {"krok-skin", {"--max-influences", "4"}, "did you mean '--influences'?"},
+      {"krok-cam", {"--focal-length", "50"}, "use --lens"},
+      {"krok-cam", {"--height", "1.6m"}, "use --elevation"},
+      {"krok-lint", {"--config", "p.json"}, "use --profile"},
+      {"krok-lint", {"--disable", "foot-slide"}, "use --ignore"},
+      {"krok-lint", {"--severity", "error"}, "use --quiet"},
+      {"krok-diff", {"--ignore-root"}, "krok-edit --in-place"},
+      {"krok-retarget", {"--source", "a.anim"}, "the motion without an option"},
+      {"krok-retarget", {"--mapping", "m.json"}, "use --map"},
+      {"krok-body", {"--resolution", "high"}, "use --detail"},
+      {"krok-body", {"--gender", "male"}, "follows the skeleton"},
+      {"krok-mix", {"--fps", "30"}, "\"rate\" of the timeline"},
+      {"krok-walk", {"--target", "0,5"}, "use --goal"},
+      {"krok-walk", {"--terrain", "hill.obj"}, "use --ground"},
+      {"krok-ragdoll", {"--impulse", "Spine=1,0,0"}, "use --push"},
+      {"krok-ragdoll", {"--force", "Spine=1,0,0"}, "--push Spine2=100Ns,0,0"},
+      {"krok-ragdoll", {"--gravity", "9.81"}, "gravity is 9.81 m/s2"},
+      {"krok-render", {"-r", "30"}, "use --rate"},
+      {"krok-render", {"--background", "white"}, "another renderer"},
+      {"krok-plot", {"-x", "time"}, "did you mean '--x'?"},
+      {"krok-plot", {"--save", "a.svg"}, "use -o OUT.svg"},
+      {"krok-fit", {"--parameters", "length"}, "\"parameters\" of a description"},
+      {"krok-view", {"--open"}, "open that in a browser"},
+      {"krok-info", {"--frames"}, "krok-export -o OUT.csv"},
+      {"krok-blend", {"--duration", "2s"}, "krok-edit A --append B --blend TIME"},
+      {"krok-blend", {"--at", "0.5"}, "krok-edit A --append B --blend TIME"},
+      {"krok-edit", {"--move", "1", "0", "-2", "-o", "a.anim"}, "write --move 1,0,-2"},
+      {"krok-edit", {"--from", "00:00:01.5", "-o", "a.anim"}, "write 1.5s"},
+      {"krok-walk", {"--goal", "0,5", "--speed", "1.4m/s", "-o", "a.anim"}, "--pace 1.4m/s"},
+      {"krok-blend", {"in.bvh=0.5", "-o", "a.anim"}, "walk.anim:0.5"},
+      {"krok-edit", {"--mirror", "-o", "a_{clip}.anim"}, "--out-dir DIR"}};
+  for (const Row& row : rows) {
+    std::vector<std::string> arguments = row.arguments;
+    arguments.insert(arguments.begin(), "in.bvh");
+    EXPECT_THAT(refused(row.tool, arguments), HasSubstr(row.hint));
+  }
+  EXPECT_THAT(refused("krok-import", {"a.asf", "a.amc", "-o", "a.anim"}),
+              HasSubstr("write a.amc --skeleton a.asf"));
+  EXPECT_THAT(refused("krok-lint", {"--fix", "takes"}), HasSubstr("takes is the folder of --fix"));
+}
+
+// Would fail if a file in another form were blamed for what it is not, or silently read as less
+// than it says.
+TEST_F(Mistakes, FilesOfAnotherFormShowTheirForm) {
+  ASSERT_EQ(run_here("krok-body", {"in.bvh", "-o", "a.model"}).exit_code, 0);
+  put("list.json", R"([{"x": 0, "z": 0}])");
+  put("points.json", R"({"version":1.3,"people":[]})");
+  put("m.trc", "PathFileType\t4\t(X/Y/Z)\tm.trc\n");
+  put("face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  put("smile.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nf 1 2 3\n");
+  ASSERT_EQ(run_here("krok-morph", {"pack", "face.obj", "smile.obj", "-o", "face.exr"}).exit_code,
+            0);
+  put("curves.json", R"({"schema": "krok.weights/1", "curves": {"smile": [[0, 1]]}})");
+  put("live.csv", "Timecode,BlendShapeCount,smile\n12:00:01:00.000,61,0.1\n");
+  put("other.csv", "time,frown\n0,1\n");
+  put("ms.csv", "time_ms,smile\n0,0\n500,1\n");
+  put("bad.csv", "time,a,b\n0,1,2\n1,2,3\n2,oops,4\n");
+  put("comma.csv", "time;a\n0,0;1,5\n0,5;2,5\n");
+  put("mask.json", R"({"schema": "krok.timeline/1", "sources": {"a": "in.bvh"},
+    "base": [{"source": "a"}], "layers": [{"mask": "LeftArm", "items": [{"source": "a"}]}]})");
+  put("rules.json", R"({"schema": "krok.lint-profile/1", "rules": {"pop": 1}})");
+  put("known.json", R"({"schema": "krok.lint-baseline/1", "faults": [
+    {"file": "in", "rule": "popp", "from": 0, "to": 1}]})");
+  put("map.json", R"({"joints": {"Head": "hand_left"}})");
+  put("keys.json", R"({"schema": "krok.camera-keys/1",
+    "keys": [{"time": 0, "position": {"x": 0}, "target": [0, 1, 0]}]})");
+  put("lost.character", R"({"schema": "krok.character/1", "model": "none.model"})");
+  struct Row {
+    std::string tool;
+    std::vector<std::string> arguments;
+    std::string text;
+  };
+  const Row rows[] = {
+      {"krok-import", {"points.json", "-o", "a.anim"}, "OpenPose"},
+      {"krok-import", {"m.trc", "-o", "a.anim"}, "solved skeleton"},
+      {"krok-cam", {"list.json", "-o", "a.cam"}, R"(write {"schema": "krok.camera-keys/1")"},
+      {"krok-cam", {"keys.json", "-o", "a.cam"}, R"(write "position": [1, 1, 1])"},
+      {"krok-mix", {"mask.json", "-o", "a.anim"}, R"(write "mask": [{"joints": "...", ...}])"},
+      {"krok-lint", {"in.bvh", "--profile", "rules.json"}, R"(write "rules": [{"rule": "..."}])"},
+      {"krok-lint", {"in.bvh", "--profile", "known.json"}, "krok-lint --baseline"},
+      {"krok-lint", {"in.bvh", "--baseline", "known.json"}, "did you mean 'pop'?"},
+      {"krok-morph",
+       {"bake", "face.exr", "face.obj", "--weights", "curves.json", "-o", "a.glb"},
+       R"(write "curves": [{"target": "...", "keys": [[1, 1]]}])"},
+      {"krok-morph",
+       {"bake", "face.exr", "face.obj", "--weights", "live.csv", "-o", "a.glb"},
+       "in place of Timecode"},
+      {"krok-morph",
+       {"bake", "face.exr", "face.obj", "--weights", "other.csv", "-o", "a.glb"},
+       "targets are smile"},
+      {"krok-skin", {"lost.character", "in.bvh", "-o", "a.glb"}, "lost.character names it"},
+      {"krok-retarget", {"in.bvh", "--onto", "face.obj", "-o", "a.anim"}, "what has joints"},
+      {"krok-retarget",
+       {"in.bvh", "--onto", "a.model", "--map", "map.json", "-o", "a.anim"},
+       "did you mean \"left_hand\"?"},
+      {"krok-plot", {"bad.csv", "-o", "a.svg"}, "bad.csv:4:3: error: 'oops'"}};
+  for (const Row& row : rows) EXPECT_THAT(refused(row.tool, row.arguments), HasSubstr(row.text));
+  // What has one meaning is done.
+  EXPECT_EQ(run_here("krok-plot", {"comma.csv", "-o", "a.svg"}).exit_code, 0);
+  EXPECT_EQ(run_here("krok-plot", {"bad.csv", "--by", "a", "-o", "b.svg"}).exit_code, 0);
+  const ToolRun baked = run_here(
+      "krok-morph", {"bake", "face.obj", "face.exr", "--weights", "ms.csv", "-o", "a.glb"});
+  EXPECT_THAT(baked.err, HasSubstr("16 frames at 30 fps")) << "half a second, and the .exr second";
+  EXPECT_EQ(run_here("krok-render", {"in.bvh", "--to", "1f", "--size", "64x64", "-o", "f_##.png"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(std::filesystem::exists(path("f_00.png"))) << "a file per frame";
+}
+
+// Would fail if a wrong word in a motion's NAME.lint.json had no effect and no message.
+TEST_F(Mistakes, SuppressionsOfNothingAreNamed) {
+  put("in.lint.json", R"({"schema": "krok.lint-suppressions/1", "suppressions": [
+    {"rule": "popp", "reason": "x"}]})");
+  EXPECT_THAT(run_here("krok-lint", {"in.bvh"}).out,
+              AllOf(HasSubstr("in.lint.json: error: 'popp'"), HasSubstr("did you mean 'pop'?")));
+  put("in.lint.json", R"({"schema": "krok.lint-suppressions/1", "suppressions": [
+    {"rule": "pop", "joint": "Spin", "reason": "x"}]})");
+  EXPECT_THAT(run_here("krok-lint", {"in.bvh"}).err, HasSubstr("did you mean 'Spine'?"));
+}
+
 TEST_F(Mistakes, ScriptsGetAReportOfUnknownVerbs) {
   const ToolRun run = run_here("krok", {"nope", "--json"});
   EXPECT_EQ(run.exit_code, 2);
