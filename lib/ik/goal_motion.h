@@ -81,15 +81,20 @@ struct GoalMotion {
 
 inline constexpr double kHeldWeight = 4;
 
+struct HeldFoot {
+  int upper = 0, lower = 0, foot = 0;  // joints of the leg
+  Vec3 knee_axis = Vec3::UnitX();  // cross(thigh, shank) as it bends, in the upper joint's frame
+};
+
 struct GoalMotionOptions {
   Options solver;
   // Joints that keep their orientation in the world, but for their limits, where their own goals do
   // not turn them: a head looks where it looked as the trunk leans.
   std::vector<int> upright;
-  // Joints that keep their place and orientation in the world where goals turn or shift what
-  // carries them: feet, whose legs bend as the hips follow a hand. They count kHeldWeight times as
-  // much.
-  std::vector<int> held;
+  // Feet that keep their place and orientation in the world where goals turn or shift what carries
+  // them. They count kHeldWeight times as much as goals do; knees bend as they did, and about their
+  // usual axis where they are bent further.
+  std::vector<HeldFoot> held;
   int jobs = 0;                  // for stretches of frames without goals between them
   Progress* progress = nullptr;  // may be null
 };

@@ -163,26 +163,37 @@ Diagnostics missed_goals(const Outcome& outcome) {
   return list;
 }
 
-std::vector<int> feet_without_goals(const Skeleton& skeleton, const RoleMap& roles,
-                                    std::span<const krok::ik::KeyedGoal> goals) {
-  std::vector<int> feet;
+std::vector<krok::ik::HeldFoot> legs_without_goals(const Clip& clip, const RoleMap& roles,
+                                                   std::span<const krok::ik::KeyedGoal> goals) {
+  std::vector<krok::ik::HeldFoot> legs;
   for (const LegRoles& leg : kLegRoles) {
-    const int foot = roles.joint(leg.foot), thigh = roles.joint(leg.upper);
-    if (foot < 0 || thigh < 0) continue;
-    const std::vector<std::uint8_t> within = subtree(skeleton, thigh);
+    krok::ik::HeldFoot held{roles.joint(leg.upper), roles.joint(leg.lower), roles.joint(leg.foot)};
+    if (held.foot < 0 || held.upper < 0 || held.lower < 0) continue;
+    const std::vector<std::uint8_t> within = subtree(clip.skeleton, held.upper);
     const bool sought = std::ranges::any_of(
         goals, [&](const krok::ik::KeyedGoal& goal) { return within[at(goal.goal.joint)] != 0; });
-    if (!sought) feet.push_back(foot);
+    if (sought) continue;
+    Vec3 bend = Vec3::Zero();
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      const auto places = clip.frame_positions(f);
+      const Vec3f thigh = places[at(held.lower)] - places[at(held.upper)];
+      const Vec3f shank = places[at(held.foot)] - places[at(held.lower)];
+      const Quatf& frame = clip.frame_orientations(f)[at(held.upper)];
+      bend += (frame.conjugate() * thigh.cross(shank)).cast<double>();
+    }
+    if (bend.norm() > 0) held.knee_axis = bend.normalized();
+    legs.push_back(held);
   }
-  return feet;
+  return legs;
 }
 
-Diagnostics moved_feet(const Outcome& outcome, const RoleMap& roles) {
+Diagnostics moved_feet(const Outcome& outcome, std::span<const krok::ik::HeldFoot> legs) {
   constexpr double kMoved = 0.01;  // metres
   const Skeleton& skeleton = outcome.input.skeleton;
   krok::ik::GoalMotion::Shift largest{kMoved, -1};
   int joint = -1;
-  for (const int foot : feet_without_goals(skeleton, roles, outcome.goals)) {
+  for (const krok::ik::HeldFoot& leg : legs) {
+    const int foot = leg.foot;
     const krok::ik::GoalMotion::Shift& shift = outcome.motion.shifts[at(foot)];
     if (shift.distance <= largest.distance) continue;
     largest = shift;

@@ -26,12 +26,12 @@ std::string table(const Outcome& outcome);
 // joint that holds it back; ik-never for goals that are active in no frame.
 Diagnostics missed_goals(const Outcome& outcome);
 
-// Of a humanoid's legs that no goal is for.
-std::vector<int> feet_without_goals(const Skeleton& skeleton, const RoleMap& roles,
-                                    std::span<const krok::ik::KeyedGoal> goals);
+// A humanoid's legs that no goal is for; `clip` shows how their knees bend.
+std::vector<krok::ik::HeldFoot> legs_without_goals(const Clip& clip, const RoleMap& roles,
+                                                   std::span<const krok::ik::KeyedGoal> goals);
 
 // A warning (ik-feet) where goals of other limbs move a foot by more than 1 cm.
-Diagnostics moved_feet(const Outcome& outcome, const RoleMap& roles);
+Diagnostics moved_feet(const Outcome& outcome, std::span<const krok::ik::HeldFoot> legs);
 
 // Goals, `with_frames` with their residuals in each frame, and the limits.
 Json to_json(const Outcome& outcome, bool with_frames);

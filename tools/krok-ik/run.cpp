@@ -579,7 +579,7 @@ Result<int> Run::bring_about(const FrameSource& motion,
   how.jobs = context_.jobs;
   if (roles_.humanoid) {
     how.upright = roles_.joints(Role::head);
-    how.held = feet_without_goals(motion.skeleton, roles_, goals_);
+    how.held = legs_without_goals(clip_, roles_, goals_);
   }
   const std::string& asked = options_.goals.empty() ? options_.input : options_.goals;
   auto made = krok::ik::apply_goals(motion, goals_, limits_, how);
@@ -598,7 +598,7 @@ Result<int> Run::bring_about(const FrameSource& motion,
       missed.where.file = options_.input;
       context_.diagnose(std::move(missed));
     }
-    context_.diagnose_in(options_.input, moved_feet(outcome, roles_));
+    context_.diagnose_in(options_.input, moved_feet(outcome, how.held));
   };
   std::string chart;
   if (looks_with_eyes(options_) || !options_.plot.empty()) {
