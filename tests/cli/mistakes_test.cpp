@@ -338,6 +338,8 @@ TEST_F(Mistakes, FilesOfAnotherFormShowTheirForm) {
   put("known.json", R"({"schema": "krok.lint-baseline/1", "faults": [
     {"file": "in", "rule": "popp", "from": 0, "to": 1}]})");
   put("map.json", R"({"joints": {"Head": "hand_left"}})");
+  put("cm.json", R"({"schema": "krok.goals/1", "goals": [
+    {"joint": "Head", "keys": [{"time": 0.2, "target": [-40, 100, 30]}]}]})");
   put("keys.json", R"({"schema": "krok.camera-keys/1",
     "keys": [{"time": 0, "position": {"x": 0}, "target": [0, 1, 0]}]})");
   put("lost.character", R"({"schema": "krok.character/1", "model": "none.model"})");
@@ -381,6 +383,8 @@ TEST_F(Mistakes, FilesOfAnotherFormShowTheirForm) {
                 .exit_code,
             0);
   EXPECT_TRUE(std::filesystem::exists(path("f_00.png"))) << "a file per frame";
+  const ToolRun far = run_here("krok-ik", {"in.bvh", "--goals", "cm.json", "-o", "a.anim"});
+  EXPECT_THAT(far.err, HasSubstr("\"length_unit\": \"cm\""));
 }
 
 // Would fail if a wrong word in a motion's NAME.lint.json had no effect and no message.

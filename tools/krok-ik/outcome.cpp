@@ -81,16 +81,17 @@ std::string holder_text(const Outcome& outcome, const krok::ik::GoalFrame& frame
 }
 
 // Where the motion has the goal's joint.
-std::string place_text(const Outcome& outcome, std::size_t goal, int frame) {
+std::string place_text(const Outcome& outcome, std::size_t goal, int frame, bool very_far) {
   const int joint = outcome.goals[goal].goal.joint;
   if (joint < 0) return {};
   const auto clip = load(part_of(outcome.input, frame, 1), 1);
   if (!clip) return {};
   const Vec3f place = clip->positions[at(joint)];
   return fmt::format(
-      "'{}' is at {}m,{}m,{}m there; krok-edit --at-origin brings a motion to the origin",
-      shown(outcome.input.skeleton.names[at(joint)]), readable(place.x(), 3),
-      readable(place.y(), 3), readable(place.z(), 3));
+      "'{}' is at {}m,{}m,{}m there; {}", shown(outcome.input.skeleton.names[at(joint)]),
+      readable(place.x(), 3), readable(place.y(), 3), readable(place.z(), 3),
+      very_far ? "goals are in metres, or with \"length_unit\": \"cm\" in centimetres"
+               : "krok-edit --at-origin brings a motion to the origin");
 }
 
 Json joint_name(const Outcome& outcome, int joint) {
@@ -153,7 +154,9 @@ Diagnostics missed_goals(const Outcome& outcome) {
                                   counted(summary.counted, "frame"),
                                   miss_text(worst.residual.distance, worst.residual.angle),
                                   worst.frame, holder_text(outcome, worst));
-    if (worst.residual.distance > kFarMissed) warning.hint = place_text(outcome, g, worst.frame);
+    if (worst.residual.distance > kFarMissed) {
+      warning.hint = place_text(outcome, g, worst.frame, worst.residual.distance > 20 * kFarMissed);
+    }
     warning.frame = worst.frame;
     if (worst.residual.held_by >= 0) {
       warning.joint = outcome.input.skeleton.names[at(worst.residual.held_by)];
