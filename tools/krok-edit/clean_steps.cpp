@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "capture/rest_frame.h"
 #include "contacts/contacts.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
@@ -15,6 +16,7 @@
 #include "motion/ground_frame.h"
 #include "motion/place.h"
 #include "motion/travel.h"
+#include "scene/frame_blocks.h"
 #include "tools/krok-edit/steps.h"
 #include "tools/shared/planting.h"
 
@@ -264,9 +266,24 @@ Status filter_jitter(const Options& options, ToolContext& context,
   return {};
 }
 
+// A rest pose in front of the motion is no noise: the frames after it would be drawn towards it.
+Status warn_of_rest_frame(const Options& options, ToolContext& context, const Edit& edit) {
+  constexpr int kExamined = 12;  // by find_rest_pose()
+  if (!options.spikes && options.filter == Filter::none) return {};
+  const FrameSource frames = edit.frames ? *edit.frames : frames_of(edit.clip);
+  const auto start = load(part_of(frames, 0, std::min(kExamined, frames.frame_count)), 1);
+  if (!start) return start.error();
+  const RestPose rest = find_rest_pose(*start, edit.roles);
+  if (!rest.first_frame_is_rest) return {};
+  context.warn("edit-rest-frame", rest.reason + ": it spoils what is filtered",
+               "krok-edit --from 1f in a run before cuts it off");
+  return {};
+}
+
 }  // namespace
 
 Status clean(const Options& options, ToolContext& context, Edit& edit) {
+  if (Status status = warn_of_rest_frame(options, context, edit); !status) return status;
   const auto joints = select_joints(edit.clip.skeleton, options.joints);
   if (!joints) return joints.error();
   if (Status status = remove_spikes(options, context, *joints, edit); !status) return status;

@@ -179,6 +179,24 @@ TEST_F(KrokEdit, FiltersAndSaysWhatItCosts) {
   }
 }
 
+// Would fail if the frames after a T-pose in front of a capture were thrown by metres without a
+// word.
+TEST_F(KrokEdit, ARestPoseIsNotFilteredWithoutAWord) {
+  Clip posed = walk();
+  posed.set_pose(0, posed.skeleton.reference);
+  write("posed.anim", posed);
+  for (const std::vector<std::string>& cleaning :
+       {std::vector<std::string>{"--filter", "butterworth"}, {"--filter", "auto"}, {"--spikes"}}) {
+    std::vector<std::string> arguments = {"posed.anim", "-o", "out.anim"};
+    arguments.insert(arguments.end(), cleaning.begin(), cleaning.end());
+    const auto done = edit(arguments);
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    EXPECT_TRUE(test::has_code(done.err, "edit-rest-frame")) << done.err;
+    arguments[0] = "walk.anim";
+    EXPECT_FALSE(test::has_code(edit(arguments).err, "edit-rest-frame"));
+  }
+}
+
 TEST_F(KrokEdit, LoopsAndRepeats) {
   write("walk.anim", walk());
   const auto report = report_of({"--from", "20f", "--to", "84f", "--loop", "--rounds", "3"});
