@@ -356,10 +356,16 @@ Status FrameSolver::fade_by_turns(std::size_t g, bool first, Goal& goal) {
   std::vector<Vec3>& turns = turns_[g];
   turn_given(turns, parts_[g]);
   Vec3 root = solved_.front().position;
+  // With the feet that it may not take along.
+  std::vector<Goal> others = std::exchange(active_, {goal});
+  mark_chains();
+  hold();
   // A motion may begin as a goal already fades in: far from the solution.
   for (int solves = first ? kFirstSolves : 1; solves > 0; --solves) {
-    if (auto alone = solver_.solve(std::span(&goal, 1), solved_); !alone) return alone.error();
+    if (auto alone = solver_.solve(active_, solved_); !alone) return alone.error();
   }
+  bend_legs();
+  active_ = std::move(others);
   root = strengths_[g] * (solved_.front().position - root);
   list_turns(turns);
   parts_[g] = strengths_[g];

@@ -274,6 +274,48 @@ TEST_F(KrokIk, FeetStayAndAreWarnedOfWhereTheyCannot) {
   EXPECT_THAT(pulled.err, HasSubstr("[ik-feet]"));
 }
 
+// A crouch. Would fail if a solver that only sees to it that feet stay bent knees backwards, or
+// turned a joint from one frame to the next as no one does.
+TEST_F(KrokIk, KneesOfHeldFeetBendAsTheyDo) {
+  Clip stiff = walk_;  // its first half is the frame in which the left leg is straightest
+  const auto bend = [this](const Clip& clip, int f, const std::string& side) {
+    const auto at_joint = [&](const char* joint) { return place(clip, f, (side + joint).c_str()); };
+    const Vec3 thigh = at_joint("Leg") - at_joint("UpLeg"),
+               shank = at_joint("Foot") - at_joint("Leg");
+    const Vec3 across = place(clip, f, "LeftUpLeg") - place(clip, f, "RightUpLeg");
+    return std::atan2(thigh.cross(shank).dot(across.normalized()), thigh.dot(shank));
+  };
+  int straight = 0;
+  for (int f = 1; f < walk_.frame_count(); ++f) {
+    if (bend(walk_, f, "Left") < bend(walk_, straight, "Left")) straight = f;
+  }
+  std::vector<Transform> pose(stiff.skeleton.names.size());
+  walk_.get_pose(straight, pose);
+  // Bent as far backwards, as captures are at times.
+  const auto joint = [&](const char* name) -> Transform& {
+    return pose[at(stiff.skeleton.find(name))];
+  };
+  const Vec3 hip = joint("LeftUpLeg").position, knee = joint("LeftLeg").position;
+  const Vec3 ankle = joint("LeftFoot").position, line = (ankle - hip).normalized();
+  const Vec3 behind = knee - 2 * (knee - hip - line * line.dot(knee - hip));
+  joint("LeftUpLeg").orientation =
+      shortest_arc(knee - hip, behind - hip) * joint("LeftUpLeg").orientation;
+  joint("LeftLeg").orientation =
+      shortest_arc(ankle - knee, ankle - behind) * joint("LeftLeg").orientation;
+  joint("LeftLeg").position = behind;
+  const int half = stiff.frame_count() / 2, middle = half / 2;
+  for (int f = 0; f < half; ++f) stiff.set_pose(f, pose);
+  write("stiff.anim", stiff);
+  const Vec3 hips = place(stiff, 0, "Hips") - Vec3(0, 0.25, 0);
+  const std::string low = fmt::format("Hips={}m,{}m,{}m@{}f", hips.x(), hips.y(), hips.z(), middle);
+  const auto done =
+      ik({"stiff.anim", "--root-moves", "--reach", low, "--fade", "150ms", "-o", "out.anim"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  const Clip out = read("out.anim");
+  EXPECT_LT(bend(out, 0, "Left"), 0);
+  for (const char* side : {"Left", "Right"}) EXPECT_GT(bend(out, middle, side), 0.5) << side;
+}
+
 TEST_F(KrokIk, WrongInputEndsWithTwoAndLeavesNoFile) {
   put("bad.json", R"({"schema": "krok.goals/1", "goals": [
   {"joint": "RightHnd", "keys": [{"time": 0, "target": [0, 0, 0]}]}]})");
