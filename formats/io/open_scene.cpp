@@ -7,6 +7,7 @@
 #include "character/mesh.h"
 #include "character/scene_motion.h"
 #include "core/index.h"
+#include "core/numbers.h"
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/assimp/assimp_reader.h"

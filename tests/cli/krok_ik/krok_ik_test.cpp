@@ -1,6 +1,7 @@
 // If these fail, krok-ik writes another motion than its goals ask for, hides that a goal was missed
 // and why, or ends wrongly on wrong input.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
