@@ -174,7 +174,7 @@ ResampledFile resample_collada(std::string_view text) {
     std::string tag(channel.sampler.substr(0, content));
     if (!channel.shares) {
       const std::size_t place = place_of(channel.sampler);
-      replaced[place] = {sources + tag + inputs, place + channel.sampler.size()};
+      replaced[place] = {sources.append(tag).append(inputs), place + channel.sampler.size()};
       continue;
     }
     // The importer gives a sampler to its last channel alone: each further one gets a copy.

@@ -257,7 +257,7 @@ Denoised denoise(Clip clip, std::span<const std::uint8_t> joints,
   }
   if (!made.spikes.empty()) {
     const double most = 0.5 * SpikeOptions().least_distance;
-    SpikeRemoval repaired = without_throws(made.clip, most, joints, motion, std::move(made.spikes));
+    SpikeRemoval repaired = without_throws(made.clip, most, joints, motion, made.spikes);
     made.spikes = std::move(repaired.spikes);
     for (Track* track : noisy) track->unroll();
   }

@@ -290,7 +290,7 @@ constexpr double kNoJump = 0.1 * kRadiansPerDegree;  // not worth a mention
 class ThrowRepair {
  public:
   ThrowRepair(const Clip& before, double most, std::span<const std::uint8_t> joints,
-              LocalMotion& motion, std::vector<Spike> spikes)
+              LocalMotion& motion, const std::vector<Spike>& spikes)
       : before_(before),
         most_(most),
         joints_(joints),
@@ -403,8 +403,8 @@ class ThrowRepair {
 }  // namespace
 
 SpikeRemoval without_throws(const Clip& before, double most, std::span<const std::uint8_t> joints,
-                            LocalMotion& motion, std::vector<Spike> spikes) {
-  return ThrowRepair(before, most, joints, motion, std::move(spikes)).repair();
+                            LocalMotion& motion, const std::vector<Spike>& spikes) {
+  return ThrowRepair(before, most, joints, motion, spikes).repair();
 }
 
 namespace {
@@ -442,7 +442,7 @@ SpikeRemoval without_spikes(const Clip& clip, const SpikeOptions& options,
   std::vector<Spike> spikes;
   for (const auto& of_joint : found) spikes.insert(spikes.end(), of_joint.begin(), of_joint.end());
   if (spikes.empty()) return {clip, {}};
-  return without_throws(clip, 0.5 * options.least_distance, joints, motion, std::move(spikes));
+  return without_throws(clip, 0.5 * options.least_distance, joints, motion, spikes);
 }
 
 }  // namespace

@@ -70,6 +70,6 @@ Result<FrameSource> remove_spikes(
 // Makes good what replaced spikes throw aside by over `most` metres, as remove_spikes() does:
 // `motion` is that of the clip `before`, with its spikes replaced.
 SpikeRemoval without_throws(const Clip& before, double most, std::span<const std::uint8_t> joints,
-                            LocalMotion& motion, std::vector<Spike> spikes);
+                            LocalMotion& motion, const std::vector<Spike>& spikes);
 
 }  // namespace krok::filter
