@@ -162,13 +162,12 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
 // What moves or poses the file's character is not in a result of the character alone.
 void warn_of_stillness(const nodes::Scene& scene, Diagnostics& found) {
   if (!scene.animations.empty()) {
-    found.push_back(
-        make_warning("scene-still",
-                     fmt::format("{} of the file: not in the result, as no motion is given",
-                                 counted(std::ssize(scene.animations), "animation")),
-                     "krok-import FILE --clip all -o '{clip}.anim' writes them as motions, to be "
-                     "given after the "
-                     "mesh"));
+    found.push_back(make_warning(
+        "scene-still",
+        fmt::format("{} of the file: not in the result, as no motion is given",
+                    counted(std::ssize(scene.animations), "animation")),
+        "krok-import FILE --clip all -o '{clip}.anim' writes motions to be given after "
+        "the mesh"));
     return;
   }
   for (Diagnostic& one : found) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <tuple>
 
 #include "core/index.h"
 #include "core/parallel.h"
@@ -182,12 +181,6 @@ void Track::find_spikes(const WhittakerLadder& ladder, const NoiseLevel* known) 
     if (!is_noisy() || !replace_outliers(ladder)) return;
   }
   unroll();
-}
-
-void sort_spikes(std::vector<Spike>& spikes) {
-  std::ranges::stable_sort(spikes, {}, [](const Spike& spike) {
-    return std::tuple(spike.joint, spike.of_position, spike.first_frame);
-  });
 }
 
 // Spikes in frames side by side as one.

@@ -313,9 +313,7 @@ class ThrowRepair {
     for (const Replaced& one : replaced_) {
       if (!one.taken_back) result.spikes.push_back(one.spike);
     }
-    std::ranges::stable_sort(result.spikes, {}, [](const Spike& spike) {
-      return std::tuple(spike.joint, spike.of_position, spike.first_frame);
-    });
+    sort_spikes(result.spikes);
     return result;
   }
 
@@ -401,6 +399,12 @@ class ThrowRepair {
 };
 
 }  // namespace
+
+void sort_spikes(std::vector<Spike>& spikes) {
+  std::ranges::stable_sort(spikes, {}, [](const Spike& spike) {
+    return std::tuple(spike.joint, spike.of_position, spike.first_frame);
+  });
+}
 
 SpikeRemoval without_throws(const Clip& before, double most, std::span<const std::uint8_t> joints,
                             LocalMotion& motion, const std::vector<Spike>& spikes) {

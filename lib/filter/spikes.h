@@ -67,6 +67,9 @@ Result<FrameSource> remove_spikes(
     const std::function<void(const FrameRun& before, const SpikeRemoval& after)>& watch = {},
     int block_frames = BlockSize().frames / 2);
 
+// Into the order of SpikeRemoval::spikes.
+void sort_spikes(std::vector<Spike>& spikes);
+
 // Makes good what replaced spikes throw aside by over `most` metres, as remove_spikes() does:
 // `motion` is that of the clip `before`, with its spikes replaced.
 SpikeRemoval without_throws(const Clip& before, double most, std::span<const std::uint8_t> joints,

@@ -207,9 +207,7 @@ Diagnostics moved_feet(const Outcome& outcome, std::span<const krok::ik::HeldFoo
       "ik-feet",
       fmt::format("goals move {} by up to {} mm, in frame {}", skeleton.names[at(joint)],
                   readable(1000 * largest.distance, 3), largest.frame),
-      "the goals are further than legs reach from where the feet stay; goals for the feet move "
-      "them, "
-      "too (--goals)");
+      "legs do not reach from where the feet stay; goals for the feet move them, too (--goals)");
   warning.frame = largest.frame;
   return {std::move(warning)};
 }
