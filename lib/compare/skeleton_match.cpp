@@ -23,14 +23,14 @@ NameIndex index_of_names(Names names) {
 }
 
 std::string only_in(Names names, const NameIndex& other) {
-  constexpr std::size_t kNamesShown = 3;
+  constexpr std::size_t kListed = 3;
   std::string list;
   std::size_t missing = 0;
   for (const std::string& name : names) {
     if (other.contains(name)) continue;
-    if (++missing <= kNamesShown) list += (missing > 1 ? ", " : "") + name;
+    if (++missing <= kListed) list += (missing > 1 ? ", " : "") + name;
   }
-  if (missing > kNamesShown) list += fmt::format(" and {} more", missing - kNamesShown);
+  if (missing > kListed) list += fmt::format(" and {} more", missing - kListed);
   return list;
 }
 
