@@ -19,6 +19,10 @@ constexpr double kNoiseLike = -0.45;
 constexpr float kMoves = 2e-3F;          // rad a frame
 constexpr double kDeviations = 5;        // of the detail of a motion's windows
 constexpr double kFrozenLongest = 3600;  // seconds
+// Motions that are generated begin and end at rest, at a twentieth of the usual speed or less, and
+// are eased out of it and into it for so long, seconds.
+constexpr float kRest = 0.05F;
+constexpr double kEase = 0.75;
 
 // What a window of one joint shows; the windows overlap by half.
 struct Detail {
@@ -127,9 +131,24 @@ class DetailOfBody {
   std::vector<std::vector<float>> ratios_;
 };
 
+// Windows in which a motion is eased out of a rest or into one are not judged: not a number.
+void leave_out_rests(const Series& series, const Windows& windows, std::vector<double>& detail) {
+  std::vector<float> speeds(series.moved.begin() + 1, series.moved.end());
+  const auto upper = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() * 3 / 4);
+  std::ranges::nth_element(speeds, upper);
+  const int ease = series.frames_in(kEase, 1), last = series.frames - 1;
+  const bool from_rest = series.moved[1] < kRest * *upper,
+             to_rest = series.moved[at(last)] < kRest * *upper;
+  for (int w = 0; w < windows.count; ++w) {
+    const int first = windows.first(w), end = first + windows.length;
+    if ((from_rest && first <= 1 + ease) || (to_rest && end > last - ease)) detail[at(w)] = NAN;
+  }
+}
+
 void find_smooth(const Series& series, const Windows& windows, const DetailOfBody& body,
                  std::vector<Finding>& found) {
-  const std::vector<double> detail = body.medians();
+  std::vector<double> detail = body.medians();
+  leave_out_rests(series, windows, detail);
   std::vector<double> known;
   std::ranges::copy_if(detail, std::back_inserter(known), [](double v) { return !std::isnan(v); });
   if (known.size() < 6) return;

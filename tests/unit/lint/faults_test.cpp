@@ -258,6 +258,31 @@ TEST(LintFaults, ATakeThatIsSmoothedForMostOfItsTime) {
   EXPECT_NE(find(faults_of(clip), Rule::over_smooth, clip.frame_count() / 2), nullptr);
 }
 
+// Would fail if what is generated without the captures' noise, out of a rest and into one, were
+// called smoothed, as all walks of krok-walk were.
+TEST(LintFaults, EasedOutOfARestAndIntoOneIsNotSmoothed) {
+  const Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
+    constexpr int kFrames = 50;
+    const auto ease = [&](auto all, const auto& between) {
+      const auto first = all[kFrames], last = all[all.size() - 1 - kFrames];
+      for (std::size_t f = 0; f < kFrames; ++f) {
+        const double part = std::pow(static_cast<double>(f) / kFrames, 2);
+        all[f] = between(all[0], first, part);
+        all[all.size() - 1 - f] = between(all[all.size() - 1], last, part);
+      }
+    };
+    for (int j = 0; j < m.joints; ++j) {
+      ease(m.joint_orientations(j),
+           [](const Quat& a, const Quat& b, double part) { return a.slerp(part, b); });
+      ease(m.joint_positions(j),
+           [](const Vec3& a, const Vec3& b, double part) { return Vec3(a + part * (b - a)); });
+    }
+  });
+  for (const lint::Finding& finding : faults_of(clip).findings) {
+    EXPECT_NE(finding.rule, Rule::over_smooth) << listed(clip, faults_of(clip));
+  }
+}
+
 // Would fail if only feet that slide without a rest, or far in one contact, counted: these are
 // carried on by 7 cm a second, now faster and now slower.
 TEST(LintFaults, FeetCreepFromStanceToStance) {
