@@ -55,11 +55,7 @@ void lint_file(const InputFile& input, const Options& options, const io::FindRol
     file.error = roles.error();
     return;
   }
-  krok::lint::MotionOptions mine = how;
-  mine.is_loop = options.loops || is_named_loop(file.path);
-  // Feet of a motion in place slide as fast as it would travel.
-  const auto moving = travelling(*clip, carrying_joint(*roles));
-  auto faults = krok::lint::lint_motion(moving ? *moving : *clip, *roles, mine);
+  auto faults = faults_of(*clip, *roles, file.path, options, how);
   file.findings = std::move(faults.findings);
   file.notes = std::move(faults.notes);
   if (how.settings.has(krok::lint::Rule::duplicate)) {
@@ -124,6 +120,15 @@ krok::lint::MotionOptions judging(const Options& options, const krok::lint::Sett
     how.ground = [ground](const Vec3& point) { return height_below(*ground, point); };
   }
   return how;
+}
+
+krok::lint::MotionFaults faults_of(const Clip& clip, const RoleMap& roles, const std::string& path,
+                                   const Options& options, const krok::lint::MotionOptions& how) {
+  krok::lint::MotionOptions mine = how;
+  mine.is_loop = options.loops || is_named_loop(path);
+  // Feet of a motion in place slide as fast as it would travel.
+  const auto moving = travelling(clip, carrying_joint(roles));
+  return krok::lint::lint_motion(moving ? *moving : clip, roles, mine);
 }
 
 std::vector<LintedFile> lint_all(const Options& options, const krok::lint::MotionOptions& how,

@@ -44,6 +44,10 @@ std::string text_of(const krok::lint::Finding& finding, const LintedFile& file);
 krok::lint::MotionOptions judging(const Options& options, const krok::lint::Settings& settings,
                                   const Terrain* ground);
 
+// Faults of the motion that is or will be in the file `path`, whose name may call it a loop.
+krok::lint::MotionFaults faults_of(const Clip& clip, const RoleMap& roles, const std::string& path,
+                                   const Options& options, const krok::lint::MotionOptions& how);
+
 // Reads and judges all inputs, on the context's threads, in order.
 std::vector<LintedFile> lint_all(const Options& options, const krok::lint::MotionOptions& how,
                                  const io::FindRoles& find_roles, ToolContext& context);

@@ -53,7 +53,8 @@ void declare(CommandOptions& command, Options& o) {
               "A page of all faults, with images of each file's worst moment");
   command.add("--fix OUT_DIR", o.fix, output({}),
               "Write mended motions (.anim) to this folder: without spikes, and with feet that "
-              "stand where they stand; says what was changed");
+              "stand where they stand, each only if fewer faults are left; says what was changed "
+              "and what left out");
   command.add("--save-baseline OUT.json", o.save_baseline, output({".json"}),
               "The faults of now, for --baseline: then only new ones fail");
 }

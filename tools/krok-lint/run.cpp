@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -32,32 +33,63 @@ bool can_be_mended(const LintedFile& file) {
   return has(file, Rule::pop) || has(file, Rule::flip) || has(file, Rule::foot_slide);
 }
 
-// Mends the clip; returns what was done, empty for nothing.
-std::string mend(const LintedFile& file, const RoleMap& roles, int jobs, Clip& clip) {
+// A mended motion, and what was done.
+struct Repair {
+  Clip clip;
   std::string done;
-  const auto add = [&](const std::string& text) { done += (done.empty() ? "" : "; ") + text; };
-  if (has(file, Rule::pop) || has(file, Rule::flip)) {
-    auto removed = filter::remove_spikes(clip, {}, {}, jobs);
-    if (removed && !removed->spikes.empty()) {
-      clip = std::move(removed->clip);
-      add(counted(removed->spikes.size(), "spike") + " removed");
+};
+
+std::optional<Repair> without_spikes(const LintedFile& file, const Clip& clip, const RoleMap&,
+                                     int jobs) {
+  if (!has(file, Rule::pop) && !has(file, Rule::flip)) return std::nullopt;
+  auto removed = filter::remove_spikes(clip, {}, {}, jobs);
+  if (!removed || removed->spikes.empty()) return std::nullopt;
+  return Repair{std::move(removed->clip), counted(removed->spikes.size(), "spike") + " removed"};
+}
+
+std::optional<Repair> with_planted_feet(const LintedFile& file, const Clip& clip,
+                                        const RoleMap& roles, int) {
+  if (!has(file, Rule::foot_slide)) return std::nullopt;
+  auto planted = plant_feet(clip, roles);
+  if (!planted || planted->drift_after >= planted->drift_before) return std::nullopt;
+  return Repair{std::move(planted->clip), fmt::format("feet planted, drift {} to {} mm",
+                                                      readable(1e3 * planted->drift_before, 3),
+                                                      readable(1e3 * planted->drift_after, 3))};
+}
+
+struct Mended {
+  std::vector<std::string> done, left_out;
+  std::size_t faults_before = 0, faults_left = 0;  // accepted ones, too
+};
+
+// Mends the clip step by step; steps after which it has as many faults or more are left out.
+Mended mend(const LintedFile& file, const RoleMap& roles, const Options& options,
+            const krok::lint::MotionOptions& how, int jobs, Clip& clip) {
+  const auto count = [&](const Clip& of) {
+    return faults_of(of, roles, file.path, options, how).findings.size();
+  };
+  Mended mended;
+  mended.faults_before = mended.faults_left = count(clip);
+  for (const auto step : {without_spikes, with_planted_feet}) {
+    auto repair = step(file, clip, roles, jobs);
+    if (!repair) continue;
+    const std::size_t left = count(repair->clip);
+    if (left >= mended.faults_left) {
+      mended.left_out.push_back(fmt::format("{}: {} of {} would be left", repair->done,
+                                            counted(left, "fault"), mended.faults_left));
+      continue;
     }
+    clip = std::move(repair->clip), mended.faults_left = left;
+    mended.done.push_back(std::move(repair->done));
   }
-  if (has(file, Rule::foot_slide)) {
-    auto planted = plant_feet(clip, roles);
-    if (planted && planted->drift_after < planted->drift_before) {
-      clip = std::move(planted->clip);
-      add(fmt::format("feet planted, drift {} to {} mm", readable(1e3 * planted->drift_before, 3),
-                      readable(1e3 * planted->drift_after, 3)));
-    }
-  }
-  return done;
+  return mended;
 }
 
 // --fix OUT_DIR: writes NAME.anim there for each motion with faults that can be mended: spikes are
-// removed as by `krok edit --spikes`, sliding feet planted as by `krok ik --plant`. Says for each
-// what was changed, and which faults are left when the result is judged again. Inputs stay as they
-// are. Code lint-fix where two motions would have one name.
+// removed as by `krok edit --spikes`, sliding feet planted as by `krok ik --plant`, each only where
+// fewer faults are left. Says for each what was changed, what was left out, and how many faults are
+// left when the result is judged again. Inputs stay as they are. Code lint-fix where two motions
+// would have one name.
 Status fix_all(const Options& options, const krok::lint::MotionOptions& how,
                const std::vector<LintedFile>& files, const io::FindRoles& find_roles,
                ToolContext& context) {
@@ -73,8 +105,13 @@ Status fix_all(const Options& options, const krok::lint::MotionOptions& how,
     if (!clip) return clip.error();
     const auto roles = find_roles(clip->skeleton);
     if (!roles) return roles.error();
-    const std::string done = mend(file, *roles, context.jobs, *clip);
-    if (done.empty()) continue;
+    const Mended mended = mend(file, *roles, options, how, context.jobs, *clip);
+    std::string left_out;
+    for (const std::string& step : mended.left_out) left_out += "; left out: " + step;
+    if (mended.done.empty()) {
+      if (!left_out.empty()) context.log(file.path + ": nothing mended" + left_out);
+      continue;
+    }
     const std::string name = std::filesystem::path(file.path).stem().string() + ".anim";
     const std::string path = (std::filesystem::path(options.fix) / name).string();
     if (!names.insert(name).second) {
@@ -85,10 +122,13 @@ Status fix_all(const Options& options, const krok::lint::MotionOptions& how,
     const Status status =
         outputs.add(path, [&](OutputFile& out) { return anim::write(*clip, {}, out); });
     if (!status) return status;
-    const auto left = krok::lint::lint_motion(*clip, *roles, how).findings.size();
-    context.log(fmt::format("{}: {}; {} left of {}", path, done, counted(left, "fault"),
-                            file.findings.size()));
-    list.push_back({{"path", path}, {"done", done}, {"faults_left", left}});
+    const std::string done = fmt::format("{}", fmt::join(mended.done, "; "));
+    context.log(fmt::format("{}: {}; {} left of {}{}", path, done,
+                            counted(mended.faults_left, "fault"), mended.faults_before, left_out));
+    list.push_back({{"path", path},
+                    {"done", done},
+                    {"left_out", mended.left_out},
+                    {"faults_left", mended.faults_left}});
   }
   context.report.result["fixed"] = std::move(list);
   if (Status status = outputs.finish(); !status) return status;

@@ -140,6 +140,26 @@ TEST_F(KrokLint, ReportsAreWhatOtherProgramsRead) {
   EXPECT_THAT(text_of("out.csv"), HasSubstr("spi ked.anim,pop,spike,error,2,120,LeftForeArm,1,"));
 }
 
+// Would fail if repairs were kept that mend nothing: here a small spike, which is no fault, beside
+// a step, which no repair mends.
+TEST_F(KrokLint, RepairsAfterWhichNoFewerFaultsAreLeftAreLeftOut) {
+  write_spiked("spiked.anim");
+  const ToolRun mended = run_here("krok-lint", {"spiked.anim", "--fix", "mended"});
+  EXPECT_THAT(mended.err, HasSubstr("1 spike removed; 0 faults left of 1"));
+  EXPECT_EQ(run_here("krok-lint", {"mended/spiked.anim"}).exit_code, 0);
+  Clip clip = write_walk(8);
+  LocalMotion local = local_motion(clip);
+  auto head = local.joint_orientations(clip.skeleton.find("Head"));
+  head[120] = head[120] * from_rotation_vector(Vec3(0, 0.06, 0));
+  for (Quat& turn : head.subspan(200)) turn = turn * from_rotation_vector(Vec3(0, 0.5, 0.2));
+  set_local_motion(local, clip);
+  write("step.anim", clip);
+  const ToolRun run = run_here("krok-lint", {"step.anim", "--fix", "other"});
+  EXPECT_THAT(run.err, HasSubstr("step.anim: nothing mended; left out: 1 spike removed: 1 fault of "
+                                 "1 would be left"));
+  EXPECT_FALSE(std::filesystem::exists(path("other/step.anim")));
+}
+
 TEST_F(KrokLint, AnyNumberOfThreadsGivesTheSame) {
   write_spiked("spiked.anim");
   const std::vector<std::string> inputs = {"walk.anim", "spiked.anim", "walk.anim"};
