@@ -422,9 +422,11 @@ double part_given_way(const Knee& knee) {
   const double straight = std::max(0.0, 1 - bend / kNearlyStraight);
   const double give_way = straight * std::min(1.0, added / bend);
   const double along = bend * std::cos(knee.angle) + added * std::max(0.0, std::cos(knee.angle));
-  const double left = std::atan2((1 - give_way) * bend * std::sin(knee.angle),
+  // Of a knee that is a hinge as of one that is nearly one: what the angle is divided by is not 0.
+  const double angle = std::max(std::abs(knee.angle), 1e-6);
+  const double left = std::atan2((1 - give_way) * bend * std::sin(angle),
                                  (1 - give_way) * along + give_way * (bend + added));
-  return std::abs(knee.angle) < 1e-9 ? 0 : 1 - left / knee.angle;
+  return 1 - left / angle;
 }
 
 // The directions of the knee's axis, [frames], as Knee::angle. Not from one frame to the next: a
@@ -446,8 +448,9 @@ std::vector<double> knee_angles(const Clip& clip, const Leg& leg, const FootPath
                                      : knee.angle);
   }
   const int reach = static_cast<int>(std::lround(kTurnsWithin * clip.rate));
-  parts = mean_within(mean_within(parts, reach), reach);
-  for (std::size_t f = 0; f < angles.size(); ++f) angles[f] *= 1 - parts[f];
+  // Never less than a frame needs by itself.
+  const std::vector<double> around = mean_within(mean_within(parts, reach), reach);
+  for (std::size_t f = 0; f < angles.size(); ++f) angles[f] *= 1 - std::max(parts[f], around[f]);
   return angles;
 }
 

@@ -54,7 +54,8 @@ void find_rolls(std::span<const StanceTimes> stances, double rate, double leg_le
 // The largest slide of all rolls, metres.
 double slide_of(const std::vector<Footing>& footings);
 
-// The diagonal of the box that positions of a stay span, metres.
+// How far apart the positions of a stay are, metres: from the one farthest from the first to the
+// one farthest from it. Whichever way the body faces.
 double drift_of(std::span<const Vec3> track, int first, int last);
 
 // Where fixed points bring each foot.

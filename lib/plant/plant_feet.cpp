@@ -133,6 +133,8 @@ constexpr double kPartMissed = 0.2;
 // In captures of five sets 0 to 24 % of steps are as small, in planted ones 65 to 100 %.
 constexpr double kHeldStep = 1e-4, kHeldPart = 0.4;
 constexpr std::size_t kFewSteps = 4;
+// What a short touch leaves, once or twice in a motion, does not count: seconds, and of all steps.
+constexpr double kFewMissedFor = 0.2, kMissedPart = 0.1;
 
 void note_stays(const plant::PlantedBody& body, const std::vector<plant::Footing>& captured,
                 const std::vector<plant::Footing>& footings, PlantedFeet& planted) {
@@ -241,17 +243,20 @@ bool is_held(const Clip& clip, const FoundContacts& found) {
       touches[static_cast<std::size_t>(point.side)][static_cast<std::size_t>(f)] = 1;
     }
   }
-  bool any = false;
+  const auto few = std::max(kFewSteps, static_cast<std::size_t>(kFewMissedFor * clip.rate));
+  std::size_t all = 0, missed = 0;
   for (const std::size_t side : {0U, 1U}) {
     for (std::size_t from = 0, to = 0; from < steps; from = ++to) {
       int held = 0;
       while (to < steps && touches[side][to]) held += still[side][to++];
       if (to - from < kFewSteps) continue;
-      if (held < kHeldPart * static_cast<double>(to - from)) return false;
-      any = any || to > from;
+      all += to - from;
+      if (held >= kHeldPart * static_cast<double>(to - from)) continue;
+      if (to - from > few) return false;
+      missed += to - from;
     }
   }
-  return any;
+  return all > 0 && static_cast<double>(missed) <= kMissedPart * static_cast<double>(all);
 }
 
 // Plants feet by given contacts.

@@ -19,7 +19,7 @@ struct FixedStay {
   SolePoint point;
   int first = 0, last = 0;    // frames, inclusive
   Vec3 place = Vec3::Zero();  // of the point, metres, world
-  // Metres, the diagonal of the box that the point moves in during the stay.
+  // Metres, how far apart the positions of the point are during the stay.
   double drift_before = 0, drift_after = 0;
 };
 

@@ -17,7 +17,11 @@ constexpr double kJitter = 0.002;      // metres, less does not matter to a plac
 constexpr double kUneven = 1.5;        // deviations
 constexpr int kDistanceRounds = 200;
 constexpr double kStillPart = 0.5;  // of a stay
-constexpr double kExact = 1e-8;     // metres
+// Of feet that have been planted, metres for a leg of one: people who stand move by more between
+// few frames, at 120 Hz, too.
+constexpr double kStill = 4e-5;
+constexpr int kFewFrames = 4;
+constexpr double kExact = 1e-8;  // metres
 
 Vec3 median_place(const std::vector<Vec3>& track, int first, int last) {
   return krok::median_place(std::span(track).subspan(static_cast<std::size_t>(first),
@@ -229,9 +233,12 @@ class StayFixer {
   std::vector<Part> still_parts(const std::vector<Vec3>& track, const FixedStay& stay) const {
     std::vector<Part> parts;
     int still = 0;
+    const auto off = [&](int from, int to) {
+      return (track[static_cast<std::size_t>(to)] - track[static_cast<std::size_t>(from)]).norm();
+    };
     for (int from = stay.first, to = from; from <= stay.last; from = ++to) {
-      while (to < stay.last && drift_of(track, from, to + 1) <= kMaxDrift * body_.leg_length) ++to;
-      if (to == from) continue;
+      while (to < stay.last && off(from, to + 1) <= kStill * body_.leg_length) ++to;
+      if (to - from < kFewFrames) continue;
       parts.emplace_back(from, to);
       still += to - from + 1;
     }
@@ -365,12 +372,14 @@ std::vector<Footing> fix_stays(const Clip& clip, const PlantedBody& body,
 }
 
 double drift_of(std::span<const Vec3> track, int first, int last) {
-  Vec3 low = track[static_cast<std::size_t>(first)], high = low;
-  for (int f = first; f <= last; ++f) {
-    low = low.cwiseMin(track[static_cast<std::size_t>(f)]);
-    high = high.cwiseMax(track[static_cast<std::size_t>(f)]);
-  }
-  return (high - low).norm();
+  const auto places =
+      track.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first + 1));
+  const auto farthest = [&](const Vec3& from) {
+    return *std::ranges::max_element(
+        places, {}, [&](const Vec3& place) { return (place - from).squaredNorm(); });
+  };
+  const Vec3 end = farthest(places.front());
+  return (farthest(end) - end).norm();
 }
 
 }  // namespace krok::plant
