@@ -281,21 +281,28 @@ class FootSolver {
       const auto held = [&](std::size_t f) { return shift.is_exact(f); };
       bool alone = true;
       for (std::size_t f = first; f <= last; ++f) alone = alone && !held(f);
-      // Roughly: toes bend, and their joints jitter most of all.
-      const auto hold = [&](std::size_t f, const Vec3& place) {
-        if (!held(f)) shift.set(f, place - turned(tip_, f, turn[f]), Known::roughly);
+      // Roughly, and along the ground: toes bend, and the heights of their ends jitter most of all.
+      const auto hold = [&](std::size_t f, const Vec3& place, double lift) {
+        if (held(f)) return;
+        Vec3 needed = place - turned(tip_, f, turn[f]);
+        needed.y() = lift;
+        shift.set(f, needed, Known::roughly);
       };
       if (alone) {
-        for (std::size_t f = first; f <= last; ++f) hold(f, fixed.place);
+        for (std::size_t f = first; f <= last; ++f) hold(f, fixed.place, 0);
         continue;
       }
       std::size_t from = first;
       while (!held(from)) ++from;
       Vec3 place = turned(tip_, from, turn[from]) + shift.values[from];
-      for (std::size_t f = first; f < from; ++f) hold(f, place);
+      double lift = shift.values[from].y();
+      for (std::size_t f = first; f < from; ++f) hold(f, place, lift);
       for (std::size_t f = from; f <= last; ++f) {
-        if (held(f)) place = turned(tip_, f, turn[f]) + shift.values[f];
-        hold(f, place);
+        if (held(f)) {
+          place = turned(tip_, f, turn[f]) + shift.values[f];
+          lift = shift.values[f].y();
+        }
+        hold(f, place, lift);
       }
     }
   }
