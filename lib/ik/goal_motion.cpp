@@ -355,7 +355,15 @@ bool FrameSolver::fades_by_turns(std::size_t g) const {
 Status FrameSolver::fade_by_turns(std::size_t g, bool first, Goal& goal) {
   std::vector<Vec3>& turns = turns_[g];
   turn_given(turns, parts_[g]);
-  Vec3 root = solved_.front().position;
+  const int moving = solver_.options().moving_joint;
+  // In its parent's frame.
+  const auto place = [&] {
+    const int parent = clip_.skeleton.parents[at(moving)];
+    const Vec3& position = solved_[at(moving)].position;
+    return parent < 0 ? position : Vec3(solved_[at(parent)].inverse() * position);
+  };
+  const bool shifts = solver_.options().root_moves;
+  Vec3 shift = shifts ? place() : Vec3(Vec3::Zero());
   // With the feet that it may not take along.
   std::vector<Goal> others = std::exchange(active_, {goal});
   mark_chains();
@@ -366,11 +374,14 @@ Status FrameSolver::fade_by_turns(std::size_t g, bool first, Goal& goal) {
   }
   bend_legs();
   active_ = std::move(others);
-  root = strengths_[g] * (solved_.front().position - root);
+  if (shifts) shift = strengths_[g] * (place() - shift);
   list_turns(turns);
   parts_[g] = strengths_[g];
   turn_given(turns, parts_[g]);
-  for (Transform& joint : solved_) joint.position += root;
+  if (shifts) {
+    local_[at(moving)].position += shift;
+    local_to_world(clip_.skeleton.parents, local_, solved_);
+  }
   const Transform frame = goal.anchor >= 0 ? solved_[at(goal.anchor)] : Transform();
   const Transform& joint = solved_[at(goal.joint)];
   goal.target = frame.inverse() * (joint * goal.point);
@@ -417,6 +428,7 @@ void FrameSolver::hold() {
 void FrameSolver::bend_legs() {
   const auto& parents = clip_.skeleton.parents;
   for (const HeldFoot* leg : held_) {
+    if (leg->upper < 0) continue;
     const int above = parents[at(leg->upper)];
     const Transform moved =
         above < 0 ? Transform() : solved_[at(above)] * given_[at(above)].inverse();

@@ -82,7 +82,8 @@ struct GoalMotion {
 inline constexpr double kHeldWeight = 4;
 
 struct HeldFoot {
-  int upper = 0, lower = 0, foot = 0;  // joints of the leg
+  // Joints of the leg; without the upper one (-1) the foot is held by whatever carries it.
+  int upper = 0, lower = 0, foot = 0;
   Vec3 knee_axis = Vec3::UnitX();  // cross(thigh, shank) as it bends, in the upper joint's frame
 };
 

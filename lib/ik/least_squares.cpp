@@ -103,7 +103,7 @@ void keep(const Tree& tree, State& state) {
   for (std::size_t j = 0; j < tree.joints.size(); ++j) {
     state.turns[j] = {tree.joints[j].local, tree.joints[j].twist};
   }
-  state.root = tree.joints.front().offset;
+  if (tree.shifted >= 0) state.offset = tree.joints[at(tree.shifted)].offset;
 }
 
 template <typename State>
@@ -112,18 +112,18 @@ void restore(Tree& tree, const State& state) {
     tree.joints[j].local = state.turns[j].local;
     tree.joints[j].twist = state.turns[j].twist;
   }
-  tree.joints.front().offset = state.root;
+  if (tree.shifted >= 0) tree.joints[at(tree.shifted)].offset = state.offset;
 }
 
 }  // namespace
 
-void LeastSquares::list_columns(const Tree& tree, const Options& options) {
+void LeastSquares::list_columns(const Tree& tree) {
   columns_.clear();
   turnings_.clear();
   for (std::size_t j = 0; j < tree.joints.size(); ++j) {
     const ChainJoint& joint = tree.joints[j];
-    const bool root_shifts = joint.parent < 0 && options.root_moves && joint.weight > 0;
-    if (!joint.moves && !root_shifts) continue;
+    const bool shifts = static_cast<int>(j) == tree.shifted && joint.weight > 0;
+    if (!joint.moves && !shifts) continue;
     int first_row = tree.rows, last_row = 0;
     for (const GoalRows& goal : tree.goals) {
       const auto begin = tree.path.begin() + goal.first_reach, end = begin + goal.reaches;
@@ -141,7 +141,7 @@ void LeastSquares::list_columns(const Tree& tree, const Options& options) {
       column.weight = joint.mobility;
       for (int i = 0; i < count; ++i) columns_.push_back(column);
     }
-    if (root_shifts) {
+    if (shifts) {
       column.freedom.shift = true;
       column.weight = joint.weight;
       for (int i = 0; i < 3; ++i) {
@@ -390,7 +390,12 @@ void LeastSquares::take_step(Tree& tree, double scale) const {
   }
   for (const Column& column : columns_) {
     if (!column.freedom.shift) continue;
-    tree.joints[at(column.freedom.joint)].offset += scale * column.turn * column.freedom.world;
+    ChainJoint& joint = tree.joints[at(column.freedom.joint)];
+    Vec3 shift = column.freedom.world;
+    if (joint.parent >= 0) {
+      shift = tree.joints[at(joint.parent)].world.orientation.conjugate() * shift;
+    }
+    joint.offset += scale * column.turn * shift;
   }
   tree.forward();
 }
@@ -430,7 +435,7 @@ int LeastSquares::descend(Tree& tree, const Options& options, int most, double s
 
 int LeastSquares::solve(Tree& tree, const Options& options, int& starts) {
   selective_ = options.method == Method::selectively_damped;
-  list_columns(tree, options);
+  list_columns(tree);
   starts = 1;
   int iterations = 0;
   if (columns_.empty() || tree.rows == 0) return iterations;

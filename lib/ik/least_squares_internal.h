@@ -46,27 +46,28 @@ class LeastSquares {
     bool fixed = false;
     int first_row = 0, last_row = 0;
   };
-  // One joint's columns: turns first, three of them or one, and three shifts of a root that moves.
+  // One joint's columns: turns first, three of them or one, and three shifts of the joint that
+  // moves.
   struct Turning {
     int joint = 0;
     int first = 0, count = 0;
     int fixed = 0;  // the last `fixed` of them are held by limits
   };
 
-  // The rotations of all joints of the tree, and where the root is.
+  // The rotations of all joints of the tree, and where the one that may be shifted is.
   struct PoseState {
     struct Turn {
       Quat local;
       double twist;
     };
     std::vector<Turn> turns;
-    Vec3 root = Vec3::Zero();
+    Vec3 offset = Vec3::Zero();
   };
 
   // At most `most` steps, until the goals are reached or several steps in a row lower the error by
   // less than `slow_part` of it.
   int descend(Tree& tree, const Options& options, int most, double slow_part);
-  void list_columns(const Tree& tree, const Options& options);
+  void list_columns(const Tree& tree);
   void fill_columns(Tree& tree);
   void find_step(const Tree& tree, double damping);
   // `damping`: of selective steps how far their limits are trusted, 1 as published.

@@ -142,8 +142,7 @@ void Tree::column(const GoalRows& g, const Freedom& freedom, double* column) con
     return freedom.shift ? axis : Vec3(axis.cross(point - turning.world.position));
   };
   const auto moved_with = [&](int carried, const Vec3& point) {
-    const bool moves = freedom.shift ? carried >= 0 : carries(freedom.joint, carried);
-    return moves ? moved(point) : Vec3(Vec3::Zero());
+    return carries(freedom.joint, carried) ? moved(point) : Vec3(Vec3::Zero());
   };
   const auto turned_with = [&](int carried) {
     return !freedom.shift && carries(freedom.joint, carried) ? axis : Vec3(Vec3::Zero());

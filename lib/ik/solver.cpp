@@ -100,6 +100,9 @@ Status check(const Options& options, std::size_t joints) {
   if (!(options.rest_pull >= 0 && options.rest_pull <= 1)) {
     return wrong("the pull to the rest pose must be from 0 to 1");
   }
+  if (options.root_moves && (options.moving_joint < 0 || at(options.moving_joint) >= joints)) {
+    return wrong("the joint that moves does not exist");
+  }
   const auto fits = [&](std::size_t size) { return size == 0 || size == joints; };
   if (!fits(options.stiffness.size()) || !fits(options.masses.size()) ||
       !fits(options.mass_centres.size())) {

@@ -57,8 +57,10 @@ struct Options {
   // from step to step.
   double rest_pull = 0.0;
 
-  // Whether the root may move, for goals of a whole body; it always may turn.
+  // Whether a joint may be shifted with all that hangs on it, for goals of a whole body: the root,
+  // or the pelvis of a skeleton whose root lies on the ground. The root always may turn.
   bool root_moves = false;
+  int moving_joint = 0;
 
   // [joints] or empty: 0 moves freely, 1 not at all. Least squares weights a joint's turns by (1 -
   // stiffness), ccd multiplies them.

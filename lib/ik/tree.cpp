@@ -101,6 +101,7 @@ void Tree::collect(std::span<const Goal> wanted, const Limits& limits, const Opt
     joint.local = joint.start;
     joints.push_back(joint);
   }
+  shifted = options.root_moves ? chain_index(options.moving_joint) : -1;
   add_paths(wanted);
   order_rows();
   for (ChainJoint& joint : joints) {

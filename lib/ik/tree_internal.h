@@ -49,8 +49,7 @@ struct GoalRows {
   int first_reach = 0, reaches = 0;
 };
 
-// A direction in which the pose can change: a turn of a joint about an axis, or a shift of the
-// root.
+// A direction in which the pose can change: a turn of a joint about an axis, or a shift of one.
 struct Freedom {
   int joint = 0;  // in Tree::joints
   bool shift = false;
@@ -95,6 +94,7 @@ class Tree {
   std::span<const int> parents() const { return parents_; }
 
   std::vector<ChainJoint> joints;  // parents first
+  int shifted = -1;                // of these, the joint that may be shifted; -1: none
   std::vector<GoalRows> goals;     // in the order of the caller's
   std::vector<int> path;
   int rows = 0;

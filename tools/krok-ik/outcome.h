@@ -30,8 +30,22 @@ Diagnostics missed_goals(const Outcome& outcome);
 std::vector<krok::ik::HeldFoot> legs_without_goals(const Clip& clip, const RoleMap& roles,
                                                    std::span<const krok::ik::KeyedGoal> goals);
 
+// Of a skeleton without legs that have roles: what ends on the ground in `clip` and hangs on no
+// goal's joint, each as a foot without a leg.
+std::vector<krok::ik::HeldFoot> ends_on_ground(const Clip& clip,
+                                               std::span<const krok::ik::KeyedGoal> goals);
+
+// The joint to shift for goals of the whole body: where legs and trunk part, or what carries that
+// joint at hardly any distance. Without legs the root, or the joint below it that is apart from the
+// ends on the ground.
+int moving_joint(const Clip& clip, const RoleMap& roles,
+                 std::span<const krok::ik::KeyedGoal> goals);
+
 // A warning (ik-feet) where goals of other limbs move a foot by more than 1 cm.
 Diagnostics moved_feet(const Outcome& outcome, std::span<const krok::ik::HeldFoot> legs);
+
+// A warning (ik-no-feet) where goals take half of a skeleton or more along and nothing is held.
+Diagnostics moved_body(const Outcome& outcome);
 
 // Goals, `with_frames` with their residuals in each frame, and the limits.
 Json to_json(const Outcome& outcome, bool with_frames);

@@ -427,6 +427,14 @@ Status Run::set_stiffness() {
   for (std::size_t j = 0; j < trunk.size(); ++j) {
     solver_.stiffness[j] = 1 - (1 - solver_.stiffness[j]) * (1 - trunk[j]);
   }
+  solver_.moving_joint = moving_joint(clip_, roles_, goals_);
+  // Of a root on the ground nothing is turned or shifted but for its own goals.
+  for (int j = clip_.skeleton.parents[at(solver_.moving_joint)]; j >= 0;
+       j = clip_.skeleton.parents[at(j)]) {
+    if (std::ranges::find(goals_, j, [](const auto& g) { return g.goal.joint; }) == goals_.end()) {
+      solver_.stiffness[at(j)] = 1;
+    }
+  }
   const krok::ik::BodyMasses body = krok::ik::body_masses(clip_.skeleton, roles_);
   solver_.masses = body.masses;
   solver_.mass_centres = body.centres;
@@ -577,10 +585,9 @@ Result<int> Run::bring_about(const FrameSource& motion,
   krok::ik::GoalMotionOptions how;
   how.solver = solver_;
   how.jobs = context_.jobs;
-  if (roles_.humanoid) {
-    how.upright = roles_.joints(Role::head);
-    how.held = legs_without_goals(clip_, roles_, goals_);
-  }
+  if (roles_.humanoid) how.upright = roles_.joints(Role::head);
+  const bool has_legs = roles_.joint(Role::left_foot) >= 0 || roles_.joint(Role::right_foot) >= 0;
+  how.held = has_legs ? legs_without_goals(clip_, roles_, goals_) : ends_on_ground(clip_, goals_);
   const std::string& asked = options_.goals.empty() ? options_.input : options_.goals;
   auto made = krok::ik::apply_goals(motion, goals_, limits_, how);
   if (!made) return std::move(made).error().in_file(asked);
@@ -598,7 +605,9 @@ Result<int> Run::bring_about(const FrameSource& motion,
       missed.where.file = options_.input;
       context_.diagnose(std::move(missed));
     }
-    context_.diagnose_in(options_.input, moved_feet(outcome, how.held));
+    context_.diagnose_in(options_.input, !has_legs && how.held.empty()
+                                             ? moved_body(outcome)
+                                             : moved_feet(outcome, how.held));
   };
   std::string chart;
   if (looks_with_eyes(options_) || !options_.plot.empty()) {

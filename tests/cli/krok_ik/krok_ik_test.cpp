@@ -275,6 +275,80 @@ TEST_F(KrokIk, FeetStayAndAreWarnedOfWhereTheyCannot) {
   EXPECT_THAT(pulled.err, HasSubstr("[ik-feet]"));
 }
 
+// Would fail if the bone on the ground went under it with the pelvis, as in captures of Bandai
+// Namco.
+TEST_F(KrokIk, ARootOnTheGroundStaysWhereThePelvisMoves) {
+  Clip rooted;
+  rooted.rate = walk_.rate;
+  rooted.skeleton.add("Ground", -1, Transform());
+  for (int j = 0; j < walk_.joint_count(); ++j) {
+    rooted.skeleton.add(walk_.skeleton.names[at(j)], walk_.skeleton.parents[at(j)] + 1,
+                        walk_.skeleton.reference[at(j)], walk_.skeleton.end_sites[at(j)] != 0);
+  }
+  rooted.resize(walk_.frame_count());
+  for (int f = 0; f < walk_.frame_count(); ++f) {
+    rooted.frame_positions(f)[0] = walk_.frame_positions(f)[0].cwiseProduct(Vec3f(1, 0, 1));
+    rooted.frame_orientations(f)[0] = Quatf::Identity();
+    std::ranges::copy(walk_.frame_positions(f), rooted.frame_positions(f).begin() + 1);
+    std::ranges::copy(walk_.frame_orientations(f), rooted.frame_orientations(f).begin() + 1);
+  }
+  write("rooted.anim", rooted);
+  for (const double lower : {0.1, 0.25}) {
+    const Vec3 hips = place(rooted, 30, "Hips") - Vec3(0, lower, 0);
+    const auto run =
+        ik({"rooted.anim", "--root-moves", "--reach",
+            fmt::format("Hips={}m,{}m,{}m@30f", hips.x(), hips.y(), hips.z()), "-o", "out.anim"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, Not(HasSubstr("[ik-")));
+    const Clip out = read("out.anim");
+    EXPECT_LT((place(out, 30, "Hips") - hips).norm(), 1e-3);
+    for (int f = 0; f < out.frame_count(); ++f) {
+      EXPECT_LT((place(out, f, "Ground") - place(rooted, f, "Ground")).norm(), 1e-5) << f;
+    }
+    EXPECT_LT((place(out, 30, "LeftFoot") - place(rooted, 30, "LeftFoot")).norm(), 1e-3);
+  }
+}
+
+// Would fail if a skeleton without a person's legs slid along with what it reaches for, without a
+// word.
+TEST_F(KrokIk, WhatIsNoPersonKeepsItsEndsOnTheGroundOrSaysSo) {
+  Clip spider;
+  spider.rate = 30;
+  const auto add = [&](const char* name, int parent, const Vec3& place) {
+    spider.skeleton.add(name, parent, Transform{place, Quat::Identity()});
+    return spider.skeleton.joint_count() - 1;
+  };
+  const int body = add("thorax", -1, Vec3(0, 0.4, 0));
+  add("feeler", add("feeler_base", body, Vec3(0, 0.45, 0.2)), Vec3(0, 0.6, 0.4));
+  for (int leg = 0; leg < 4; ++leg) {
+    const Vec3 out(leg < 2 ? 1 : -1, 0, leg % 2 == 0 ? 1 : -1);
+    const int coxa = add(fmt::format("coxa{}", leg).c_str(), body, 0.1 * out + Vec3(0, 0.4, 0));
+    const int tibia = add(fmt::format("tibia{}", leg).c_str(), coxa, 0.3 * out + Vec3(0, 0.5, 0));
+    add(fmt::format("claw{}", leg).c_str(), tibia, 0.45 * out);
+  }
+  spider.resize(40);
+  for (int f = 0; f < 40; ++f) spider.set_pose(f, spider.skeleton.reference);
+  write("spider.anim", spider);
+  const std::string far = "feeler=0.05m,0.65m,0.6m@20f";
+  const auto held = ik({"spider.anim", "--root-moves", "--reach", far, "-o", "out.anim"});
+  ASSERT_EQ(held.exit_code, 0) << held.err;
+  EXPECT_THAT(held.err, Not(HasSubstr("[ik-")));
+  const Clip out = read("out.anim");
+  EXPECT_GT((place(out, 20, "thorax") - place(spider, 20, "thorax")).norm(), 0.005);
+  for (const char* claw : {"claw0", "claw1", "claw2", "claw3"}) {
+    EXPECT_LT((place(out, 20, claw) - place(spider, 20, claw)).norm(), 1e-3) << claw;
+  }
+  // Nothing ends near the lowest of its joints, which the goal is for.
+  for (Vec3f& position : spider.positions) {
+    if (position.y() < 0.3f) position.y() = 0.8f;
+  }
+  write("flies.anim", spider);
+  const auto whole =
+      ik({"flies.anim", "--root-moves", "--reach", "feeler=1m,0.1m,1m@20f", "-o", "out.anim"});
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_THAT(whole.err, HasSubstr("[ik-no-feet]"));
+}
+
 // A crouch. Would fail if a solver that only sees to it that feet stay bent knees backwards, or
 // turned a joint from one frame to the next as no one does.
 TEST_F(KrokIk, KneesOfHeldFeetBendAsTheyDo) {

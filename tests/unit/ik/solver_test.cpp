@@ -430,6 +430,25 @@ TEST(IkSolver, ARootThatMayMoveTakesTheBodyAlong) {
   EXPECT_GT(chain.pose[0].position.norm(), 3);
 }
 
+// Would fail if the ground bone of a rig left the ground with the pelvis, or if the shift of a
+// joint in a turned parent's frame went another way.
+TEST(IkSolver, AJointBelowTheRootMayMoveAlone) {
+  Dice dice(15);
+  Chain chain = test::bent_chain(4, dice);
+  Options options;
+  options.root_moves = true;
+  options.moving_joint = 1;
+  options.stiffness = {1, 0, 0, 0};
+  Solver solver = test::solver_for(chain, {}, options);
+  const Transform root = chain.pose[0];
+  const Vec3 place = chain.pose[1].position;
+  const Goal goal = test::reach(3, Vec3(9, 1, -3));
+  EXPECT_TRUE((*solver.solve({&goal, 1}, chain.pose))->reached);
+  EXPECT_LT((chain.pose[0].position - root.position).norm(), 1e-12);
+  EXPECT_LT(angle_between(chain.pose[0].orientation, root.orientation), 1e-9);
+  EXPECT_GT((chain.pose[1].position - place).norm(), 3);
+}
+
 TEST(IkSolver, WrongGoalsAndOptionsAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Chain chain = test::straight_chain(3);
@@ -452,12 +471,13 @@ TEST(IkSolver, WrongGoalsAndOptionsAreRefused) {
       EXPECT_EQ(chain.pose[j].position, before[j].position);
     }
   }
-  std::vector<Options> wrong(5);
+  std::vector<Options> wrong(6);
   wrong[0].stiffness = {0.5};
   wrong[1].stiffness = {0, 2, 0};
   wrong[2].rest_pull = nan;
   wrong[3].iterations = -1;
   wrong[4].masses = {1, nan, 1};
+  wrong[5].root_moves = true, wrong[5].moving_joint = 3;
   for (const Options& options : wrong) {
     const auto made = Solver::create(chain.parents, {}, options);
     ASSERT_FALSE(made.ok());
