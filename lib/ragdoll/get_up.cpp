@@ -18,6 +18,7 @@
 #include "motion/mirror.h"
 #include "motion/place.h"
 #include "motion/sample.h"
+#include "ragdoll/crouch_internal.h"
 
 namespace krok::ragdoll {
 
@@ -25,6 +26,7 @@ namespace {
 
 constexpr double kOverlap = 0.5;         // seconds in which the motion begins, at most
 constexpr double kShortest = 0.65;       // seconds of the way there
+constexpr double kToCrouch = 1.2;        // the same into a crouch, mostly turned over
 constexpr double kLongestWay = 1.4;      // seconds
 constexpr double kHelps = 0.85;          // of the acceleration of the try before
 constexpr double kTooDeep = 0.3;         // metres in the ground
@@ -165,10 +167,11 @@ class Riser {
   }
 
   void place();
-  void run(RisenClip& risen);
+  // `shortest`: seconds of the way there.
+  void run(double shortest, RisenClip& risen);
 
  private:
-  double first_duration() const;
+  double first_duration(double shortest) const;
   LocalMotion way(int frames, int overlap) const;
 
   const Clip& fall_;
@@ -196,14 +199,14 @@ void Riser::place() {
 }
 
 // Seconds for the way there, from the largest turn and the root's way.
-double Riser::first_duration() const {
+double Riser::first_duration(double shortest) const {
   double turn = 0;
   for (int j = 0; j < joints_; ++j) {
     turn = std::max(turn, angle_between(locals_[at(j)].orientation, local_.at(j, 0).orientation));
   }
   const double travel = (locals_[0].position - local_.at(0, 0).position).norm();
   const double speed = 1.875 * travel / kTravel;
-  return std::clamp(std::max(std::sqrt(kQuinticPeak * turn / limit_), speed), kShortest,
+  return std::clamp(std::max(std::sqrt(kQuinticPeak * turn / limit_), speed), shortest,
                     kLongestWay);
 }
 
@@ -239,7 +242,7 @@ LocalMotion Riser::way(int frames, int overlap) const {
   return way;
 }
 
-void Riser::run(RisenClip& risen) {
+void Riser::run(double shortest, RisenClip& risen) {
   const double rate = fall_.rate;
   // Of joints with bodies: fingers and end sites that keep still are no measure.
   std::vector<int> bodied, all(at(joints_));
@@ -249,7 +252,7 @@ void Riser::run(RisenClip& risen) {
   // A motion that stands still gives no measure.
   risen.motion_acceleration = std::max(typical, 1.0);
   limit_ = options_.max_acceleration * risen.motion_acceleration;
-  double duration = first_duration();
+  double duration = first_duration(shortest);
   LocalMotion motion;
   int frames = 0;
   risen.acceleration = std::numeric_limits<double>::infinity();
@@ -341,12 +344,21 @@ Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
 Result<RisenClip> get_up(const Clip& fall, int frame, std::span<const Clip> motions,
                          const RoleMap& roles, const std::vector<Body>& bodies,
                          const GetUpOptions& options) {
-  auto tried = choose_rise(fall, frame, motions, roles, bodies, options.mirror);
+  std::vector<Clip> begun;
+  for (const Clip& motion : motions) {
+    const bool crouches = begins_standing(motion, roles) && check_skeleton(fall.skeleton, motion);
+    auto made = crouches ? begun_in_crouch(motion, roles) : Result<Clip>(motion);
+    if (!made) return made.error();
+    begun.push_back(*std::move(made));
+  }
+  auto tried = choose_rise(fall, frame, begun, roles, bodies, options.mirror);
   if (!tried) return tried.error();
   RisenClip risen;
   risen.tried = std::move(*tried);
   risen.choice = *std::ranges::min_element(risen.tried, {}, &RiseChoice::distance);
-  auto motion = resample(motions[at(risen.choice.motion)], fall.rate);
+  const std::size_t chosen = at(risen.choice.motion);
+  risen.crouches = begun[chosen].frame_count() != motions[chosen].frame_count();
+  auto motion = resample(begun[chosen], fall.rate);
   if (!motion) return motion.error();
   if (risen.choice.mirrored) *motion = mirror(*motion, find_mirror_pairs(fall.skeleton, roles));
   // A turn below a root that is elsewhere would carry the body away.
@@ -355,7 +367,7 @@ Result<RisenClip> get_up(const Clip& fall, int frame, std::span<const Clip> moti
   const Clip lying = hips_root.rooted(fall);
   Riser riser(lying, fall.joint_count(), frame, hips_root.rooted(*motion), bodies, options);
   riser.place();
-  riser.run(risen);
+  riser.run(risen.crouches ? kToCrouch : kShortest, risen);
   risen.clip = hips_root.restored(risen.clip, fall.skeleton);
   for (int f = 0; f < frame; ++f) {
     std::ranges::copy(fall.frame_positions(f), risen.clip.frame_positions(f).begin());

@@ -62,7 +62,8 @@ struct RisenClip {
   // Radians/s^2: the largest angular acceleration of a joint relative to its parent on the way to
   // the motion, and the motion's 99th percentile among joints with bodies.
   double acceleration = 0, motion_acceleration = 0;
-  double depth = 0;  // metres: the deepest that a body is in the ground from `first_frame` on
+  double depth = 0;       // metres: the deepest that a body is in the ground from `first_frame` on
+  bool crouches = false;  // the motion begins standing, so that a crouch was put before it
 };
 
 // Finds the motion of `motions` that is nearest to the pose of `fall` at a frame. The motions have
@@ -73,12 +74,13 @@ Result<std::vector<RiseChoice>> choose_rise(const Clip& fall, int frame,
                                             const std::vector<Body>& bodies, bool mirror);
 
 // Lets a character that lies still at `frame` of `fall` get up with the nearest of `motions`, which
-// begin lying and stand on y = 0. The motion is placed where its first pose is nearest; the
-// remaining difference is removed joint by joint along a quintic in time (the smoothest way from
-// rest to rest, Flash and Hogan 1985), while the motion begins slowly, so that neither speeds nor
-// accelerations jump. How long that takes follows from how far it is and how fast the motion moves,
-// 1.4 s at most: people who get up do not wait for their slowest joint. Bodies that come into the
-// ground are lifted out of it (clear_ground()).
+// begin lying and stand on y = 0. One that begins standing follows standing up from a crouch with
+// fingertips on the ground: no one rises from lying as a whole. The motion is placed where its
+// first pose is nearest; the remaining difference is removed joint by joint along a quintic in time
+// (the smoothest way from rest to rest, Flash and Hogan 1985), while the motion begins slowly, so
+// that neither speeds nor accelerations jump. How long that takes follows from how far it is and
+// how fast the motion moves, 1.4 s at most: people who get up do not wait for their slowest joint.
+// Bodies that come into the ground are lifted out of it (clear_ground()).
 //
 // Poses are summed with the root at the hips (HipsRoot), so that a root above them does not matter.
 //

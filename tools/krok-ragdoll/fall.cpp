@@ -146,6 +146,12 @@ std::vector<Error> faults_of(const Fallen& fallen) {
                     risen.acceleration / risen.motion_acceleration),
         "another --get-up, which begins more as the body lies");
   }
+  if (risen.crouches) {
+    faults.emplace_back("ragdoll-rise-standing",
+                        "the motion to get up with begins standing: a crouch with the hands on the "
+                        "ground was put before it",
+                        "a --get-up that begins lying, which gets up as people do");
+  }
   if (risen.depth > kMaxDepth) {
     faults.emplace_back("ragdoll-rise-penetration",
                         fmt::format("getting up takes a body {:.1f} cm into the ground (1 is "

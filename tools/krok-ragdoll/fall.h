@@ -48,7 +48,8 @@ Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOption
 // What the fall misses: a code, a message without the fall's name, and what to do. Empty if it
 // keeps all tolerances: at rest, limits exceeded by at most 1 degree and the ground entered by at
 // most 5 cm at first and 5 mm after the first 0.2 s, an undisturbed motion followed within 5
-// degrees, getting up within 1.5 x the motion's acceleration and 1 cm of the ground.
+// degrees, getting up with a motion that begins lying, within 1.5 x its acceleration and 1 cm of
+// the ground.
 std::vector<Error> faults_of(const Fallen& fallen);
 
 // The measures for the report.

@@ -199,6 +199,48 @@ TEST_F(GetUp, WhereItLiesDoesNotMatter) {
   }
 }
 
+// Would fail if a body rose from lying to standing as a whole, stiff as a board, within a second.
+TEST_F(GetUp, AMotionThatBeginsStandingComesAfterACrouch) {
+  Clip standing = cut(motions_[0], motions_[0].frame_count() - 1, motions_[0].frame_count() - 1);
+  std::vector<Transform> pose(standing.skeleton.names.size());
+  standing.get_pose(0, pose);
+  standing.resize(60);
+  for (int f = 0; f < 60; ++f) standing.set_pose(f, pose);
+  const int hips = roles_.joint(Role::hips);
+  const double height = pose[at(hips)].position.y();
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    const auto risen = get_up(lying(m, 1.2, 0.3), 20, {&standing, 1}, roles_, bodies_, {});
+    ASSERT_TRUE(risen.ok()) << risen.error().message;
+    EXPECT_TRUE(risen->crouches);
+    const Clip& clip = risen->clip;
+    const auto place = [&](int f, Role role) {
+      return Vec3(clip.frame_positions(f)[at(roles_.joint(role))].cast<double>());
+    };
+    // From where the hips are over half their height for good.
+    int rises = clip.frame_count() - 1, stands = rises;
+    while (rises > 0 && place(rises, Role::hips).y() > 0.5 * height) --rises;
+    while (stands > 0 && place(stands, Role::hips).y() > 0.99 * height) --stands;
+    const Vec3 feet = 0.5 * (place(rises, Role::left_foot) + place(rises, Role::right_foot));
+    const Vec3 beside = place(rises, Role::hips) - feet;
+    EXPECT_LT(Vec3(beside.x(), 0, beside.z()).norm(), 0.3 * height) << m;
+    double hands = height, speed = 0;
+    for (int f = risen->first_frame; f <= rises; ++f) {
+      if (place(f, Role::hips).y() < 0.35 * height) continue;
+      hands = std::min({hands, place(f, Role::left_hand).y(), place(f, Role::right_hand).y()});
+    }
+    EXPECT_LT(hands, 0.25 * height) << m;
+    for (int f = risen->first_frame; f < stands; ++f) {
+      speed = std::max(speed, clip.rate * (place(f + 1, Role::hips) - place(f, Role::hips)).y());
+    }
+    EXPECT_LT(speed, 1.0) << m;
+    const double seconds = (stands - risen->first_frame) / clip.rate;
+    EXPECT_GT(seconds, 2) << m;
+    EXPECT_LT(seconds, 6) << m;
+    EXPECT_LT(risen->depth, 0.005) << m;
+  }
+  EXPECT_FALSE(up(lying(0, 0, 0)).crouches);
+}
+
 TEST_F(GetUp, OtherSkeletonsAreTold) {
   samples::RiseOptions small;
   small.stature = 1.4;
