@@ -92,6 +92,20 @@ class FrameTransfer {
     return pose[at(joint)].orientation * plan_.rest_back[at(joint)];
   }
 
+  // Of a turn what twists the target's joint k in that of its parent: about its bone.
+  Quat twist_of(int k, std::span<const Transform> source_pose, const Quat& turn) const {
+    const int above = plan_.mapping[at(target_.parents[at(k)])].first;
+    const auto child = std::ranges::find(target_.parents, k);
+    if (above < 0 || child == target_.parents.end()) return turn;
+    const Vec3 bone = plan_.local[at(static_cast<int>(child - target_.parents.begin()))].position;
+    const Vec3 axis = plan_.aligned[at(k)] * bone.stableNormalized();
+    const Quat carried = turn_of(source_pose, above);
+    const Quat since = carried.conjugate() * turn;
+    const Vec3 about = axis * axis.dot(since.vec());
+    const Quat twist(since.w(), about.x(), about.y(), about.z());
+    return twist.norm() > 1e-6 ? carried * twist.normalized() : carried;
+  }
+
   // joint_to_world of the target, with its anchor at its reference position.
   void pose_of(std::span<const Transform> source_pose, std::span<Transform> pose) const {
     for (int k = 0; k < target_.joint_count(); ++k) {
@@ -107,6 +121,7 @@ class FrameTransfer {
       if (from.first < 0) continue;
       Quat turn = turn_of(source_pose, from.first);
       if (from.second >= 0) turn = slerp(turn, turn_of(source_pose, from.second), from.share);
+      if (from.twists) turn = twist_of(k, source_pose, turn);
       pose[at(k)].orientation = (turn * plan_.aligned[at(k)]).normalized();
     }
   }

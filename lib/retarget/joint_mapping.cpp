@@ -124,6 +124,13 @@ class RoleMapper {
     mapping_[at(to)].first = from;
     const int palm = palm_joint(target_, target_roles_, hand);
     if (palm != to) mapping_[at(palm)].first = from;
+    if (wrist_twists(target_, target_roles_, hand)) {
+      if (wrist_twists(source_, source_roles_, hand)) {
+        mapping_[at(to)].first = source_roles_.joint(hand);
+      } else {
+        mapping_[at(to)].twists = true;
+      }
+    }
     if (!with_fingers) return;
     for (const int joint : target_roles_.joints(fingers)) {
       const FingerJoint place = target_roles_.fingers[at(joint)];
@@ -232,6 +239,16 @@ int palm_joint(const Skeleton& skeleton, const RoleMap& roles, Role hand) {
     palm = j;
   }
   return palm >= 0 && has_fingers_below ? palm : wrist;
+}
+
+bool wrist_twists(const Skeleton& skeleton, const RoleMap& roles, Role hand) {
+  constexpr double kFar = 0.4;  // of the way from the elbow to the wrist
+  const int wrist = roles.joint(hand), palm = palm_joint(skeleton, roles, hand);
+  if (wrist < 0 || palm == wrist) return false;
+  const int elbow = skeleton.parents[at(wrist)];
+  if (elbow < 0) return false;
+  return skeleton.reference_local(palm).position.norm() >
+         kFar * skeleton.reference_local(wrist).position.norm();
 }
 
 std::vector<int> first_toes(const Skeleton& skeleton, const RoleMap& roles, Role foot) {

@@ -13,6 +13,8 @@ struct JointSource {
   int second = -1;   // a joint further along the same chain, or -1
   double share = 0;  // interpolation from first to second, 0 to 1
   double along = 0;  // for trunk joints: fraction of the way from hips (0) to chest (1)
+  // Only by what of the rotation, from that of the parent's source, is about the joint's own bone.
+  bool twists = false;
 };
 
 using JointMapping = std::vector<JointSource>;  // [target joints]
@@ -24,6 +26,10 @@ std::vector<int> chain_between(const Skeleton& skeleton, const RoleMap& roles, i
 // The joint that carries the palm: the wrist, or a joint below it that is the parent of all fingers
 // but the thumb (as in Acclaim skeletons). -1 if the skeleton lacks that hand.
 int palm_joint(const Skeleton& skeleton, const RoleMap& roles, Role hand);
+
+// Whether the wrist lies in the forearm (as in Acclaim skeletons): it turns the hand about the
+// forearm, and the palm's joint, a good part of the forearm further, bends it.
+bool wrist_twists(const Skeleton& skeleton, const RoleMap& roles, Role hand);
 
 // The toe joints directly below the foot, skipping helpers.
 std::vector<int> first_toes(const Skeleton& skeleton, const RoleMap& roles, Role foot);

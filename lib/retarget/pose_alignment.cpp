@@ -148,7 +148,8 @@ class Aligner {
     // The palm turns by the twist of the forearm, so the forearm gets half of it.
     if (elbow && forearm) lower = from_rotation_vector(0.5 * twist * *forearm) * lower;
     set(target_.joint(arm.lower), lower);
-    set(target_.joint(arm.hand), hand);
+    const int wrist = target_.joint(arm.hand);
+    set(wrist, wrist >= 0 && mapping_[at(wrist)].twists ? lower : hand);
     const int palm = palm_joint(target_.skeleton(), target_.roles(), arm.hand);
     set(palm, hand);
     align_fingers(arm, hand, palm, forward);

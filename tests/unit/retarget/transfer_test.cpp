@@ -81,6 +81,66 @@ TEST(Retarget, TheReferencePoseDoesNotMatter) {
   }
 }
 
+// The forearm of Acclaim skeletons has a joint that turns the hand, the palm's joint bends it.
+// Would fail if a motion that comes back from one hand joint bent the forearm in its middle, by up
+// to 67 degrees in captures of CMU.
+TEST(Retarget, AWristInTheForearmTwistsAndThePalmBends) {
+  const Skeleton plain = human_skeleton();
+  Skeleton acclaim;
+  for (int j = 0; j < plain.joint_count(); ++j) {
+    const std::string& name = plain.names[at(j)];
+    const int parent = plain.parents[at(j)];
+    Transform place = plain.reference[at(j)];
+    if (name.ends_with("Hand_end")) {
+      const std::string side = name.substr(0, name.find("Hand"));
+      const int wrist = acclaim.find(side + "Hand");
+      const int palm = acclaim.add(side + "FingerBase", wrist, plain.reference[at(parent)]);
+      const Vec3 hand = place.position - plain.reference[at(parent)].position;
+      place.position -= 0.5 * hand;
+      const int fingers = acclaim.add(side[0] + std::string("Fingers"), palm, place);
+      place.position += 0.5 * hand;
+      acclaim.add(name, fingers, place, true);
+      continue;
+    }
+    if (name.ends_with("Hand")) {
+      const Vec3& elbow = plain.reference[at(parent)].position;
+      place.position = elbow + 0.66 * (place.position - elbow);
+    }
+    acclaim.add(name, parent < 0 ? -1 : acclaim.find(plain.names[at(parent)]), place,
+                plain.end_sites[at(j)] != 0);
+  }
+  Clip clip = lively_clip(acclaim);
+  const auto turned = [&](int f, const char* joint, const Vec3& turn,
+                          std::vector<Transform>& pose) {
+    const int root = acclaim.find(joint);
+    clip.get_pose(f, pose);
+    std::vector<Transform> local(pose.size());
+    world_to_local(acclaim.parents, pose, local);
+    local[at(root)].orientation = from_rotation_vector(turn);
+    local_to_world(acclaim.parents, local, pose);
+    clip.set_pose(f, pose);
+  };
+  std::vector<Transform> pose(acclaim.names.size());
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const double swing = std::sin(0.3 * f);
+    turned(f, "LeftHand", Vec3(1.2 * swing, 0, 0), pose);
+    turned(f, "LeftFingerBase", Vec3(0, 0.2, 0.9 * swing), pose);
+  }
+  const auto there = transfer(clip, with_other_axes(plain, 3));
+  ASSERT_TRUE(there.ok());
+  const auto back = transfer(there->clip, acclaim);
+  ASSERT_TRUE(back.ok());
+  double off = 0;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    for (const char* joint : {"LeftForeArm", "LeftHand", "LeftFingerBase"}) {
+      const auto j = at(acclaim.find(joint));
+      off = std::max(off, angle_between(clip.frame_orientations(f)[j].cast<double>(),
+                                        back->clip.frame_orientations(f)[j].cast<double>()));
+    }
+  }
+  EXPECT_LT(off / kRadiansPerDegree, 6);
+}
+
 // Collars that are raised with the arms are turned back with them: the shoulders stay as wide as
 // they are. A collar that points elsewhere under arms that do not is build, and stays.
 TEST(Retarget, CollarsRiseWithArmsOnly) {
