@@ -211,11 +211,12 @@ void normalize_weights(Primitive& primitive, bool all_kept, const std::string& n
   const auto per_vertex = static_cast<std::size_t>(primitive.influences_per_vertex);
   // Bytes may be off by this much in sum without the exporter's fault.
   constexpr double kRounding = 0.02;
-  std::size_t without = 0, unnormalized = 0;
+  std::size_t without = 0, unnormalized = 0, negative = 0;
   double least = std::numeric_limits<double>::max(), most = 0;
   for (std::size_t v = 0; v < primitive.vertex_count(); ++v) {
     const std::span<float> weights(&primitive.influence_weights[v * per_vertex], per_vertex);
     double sum = 0;
+    if (std::ranges::any_of(weights, [](float weight) { return weight < 0; })) ++negative;
     for (float& weight : weights) {
       weight = std::max(weight, 0.0f);
       sum += static_cast<double>(weight);
@@ -238,8 +239,13 @@ void normalize_weights(Primitive& primitive, bool all_kept, const std::string& n
                      name, counted(static_cast<long long>(unnormalized), "vertex", "vertices"),
                      readable(least, 3), readable(most, 3)));
   }
-  if (without > 0) {
+  if (negative > 0) {
     warn(diagnostics, "gltf-mesh-weights",
+         fmt::format("{}: negative weights of {} are taken as 0", name,
+                     counted(static_cast<long long>(negative), "vertex", "vertices")));
+  }
+  if (without > 0) {
+    warn(diagnostics, "gltf-mesh-unweighted",
          fmt::format("{}: {} vertices have no weights and are bound to their first joint", name,
                      without));
   }

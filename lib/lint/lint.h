@@ -17,6 +17,7 @@ namespace krok::lint {
 struct Finding {
   Rule rule = Rule::unreadable;
   std::string kind;         // of rules that tell several apart: "spike", "step", "seam"
+  std::string mesh;         // of the rules of meshes: its name; frames do not matter
   int joint = -1;           // the worst joint, -1: the whole body
   int joints = 1;           // how many show the fault at the same time
   int first = 0, last = 0;  // frames, inclusive

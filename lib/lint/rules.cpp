@@ -32,6 +32,18 @@ constexpr std::array<RuleFacts, kRuleCount> kRules = {{
     {Rule::asymmetric_rest_pose, "asymmetric-rest-pose", kWarning, 4, "%",
      "Left and right limbs of the reference pose differ in length"},
     {Rule::duplicate, "duplicate", kWarning, 4, "deg", "The same motion is in two files"},
+    {Rule::unweighted_vertex, "unweighted-vertex", kError, 0, "",
+     "Vertices of a skinned mesh follow no joint"},
+    {Rule::vertex_weight, "vertex-weight", kWarning, 0, "",
+     "Weights do not sum to 1, are negative, or name no joint"},
+    {Rule::bind_pose, "bind-pose", kError, 2, "",
+     "Inverse bind matrices that are singular, scaled, or tear the mesh"},
+    {Rule::degenerate_triangle, "degenerate-triangle", kWarning, 0.5, "%",
+     "Triangles without area, or with a vertex twice"},
+    {Rule::triangle_winding, "triangle-winding", kWarning, 0.5, "%",
+     "Neighbouring triangles face opposite sides"},
+    {Rule::vertex_normal, "vertex-normal", kWarning, 0.5, "%",
+     "Normals are zero, or opposite to the triangles around"},
 }};
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "core/result.h"
 
-// The rules of krok-lint, in one table.
+// The rules of krok-lint, in one table: of motions, then of the meshes of characters.
 
 namespace krok::lint {
 
@@ -29,9 +29,15 @@ enum class Rule : std::uint8_t {
   loop_seam,
   rest_frame,
   asymmetric_rest_pose,
-  duplicate
+  duplicate,
+  unweighted_vertex,
+  vertex_weight,
+  bind_pose,
+  degenerate_triangle,
+  triangle_winding,
+  vertex_normal
 };
-inline constexpr std::size_t kRuleCount = 17;
+inline constexpr std::size_t kRuleCount = 23;
 
 struct RuleFacts {
   Rule rule;

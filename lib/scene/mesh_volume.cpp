@@ -7,12 +7,7 @@
 
 namespace krok {
 
-namespace {
-
-using Triangle = std::array<std::uint32_t, 3>;
-
-// For each vertex the first one at the same position. NaN only matches itself.
-std::vector<std::uint32_t> welded(std::span<const Vec3> positions) {
+std::vector<std::uint32_t> first_at_position(std::span<const Vec3> positions) {
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     const Vec3 &p = positions[a], &q = positions[b];
     const bool odd_p = p.hasNaN(), odd_q = q.hasNaN();
@@ -29,8 +24,12 @@ std::vector<std::uint32_t> welded(std::span<const Vec3> positions) {
   return first;
 }
 
+namespace {
+
+using Triangle = std::array<std::uint32_t, 3>;
+
 bool is_closed(std::span<const Vec3> positions, std::span<const Triangle> triangles) {
-  const auto place = welded(positions);
+  const auto place = first_at_position(positions);
   // Each edge, lower index first, with 1 or -1 for its direction.
   std::vector<std::pair<std::pair<std::uint32_t, std::uint32_t>, int>> edges;
   for (const Triangle& triangle : triangles) {

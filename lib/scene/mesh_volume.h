@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "math/types.h"
 
@@ -14,6 +15,10 @@ struct MeshVolume {
   double area = 0;      // square metres
   bool closed = false;  // if false, `volume` is meaningless
 };
+
+// For each vertex the first one at exactly the same position: files duplicate them at seams. NaN
+// only matches itself.
+std::vector<std::uint32_t> first_at_position(std::span<const Vec3> positions);
 
 // By the divergence theorem: the sum over the triangles of a . (b x c) / 6, relative to the centre
 // of the bounding box, so that a mesh far from the origin loses no precision. Closed means that

@@ -5,15 +5,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <tuple>
 
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
+#include "formats/io/open_scene.h"
+#include "formats/registry/registry.h"
+#include "lint/mesh_rules.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
+#include "nodes/evaluate.h"
 #include "tools/cli/file_name.h"
 
 namespace krok::cli::lint {
@@ -38,12 +44,108 @@ std::optional<double> height_below(const Terrain& ground, const Vec3& point) {
   return found->height;
 }
 
+// Which rule a reader's warning is about.
+std::optional<krok::lint::Rule> rule_of(const std::string& code) {
+  using krok::lint::Rule;
+  if (code == "gltf-mesh-unweighted" || code == "assimp-weights") return Rule::unweighted_vertex;
+  if (code == "gltf-mesh-weights" || code == "assimp-bone") return Rule::vertex_weight;
+  return std::nullopt;
+}
+
+void lint_scene_meshes(const nodes::Scene& scene, const krok::lint::Settings& settings,
+                       LintedFile& file) {
+  for (const Diagnostic& diagnostic : scene.diagnostics) {
+    const auto rule = rule_of(diagnostic.code);
+    if (!rule || !settings.has(*rule)) continue;
+    Finding finding;
+    finding.rule = *rule;
+    const std::size_t colon = diagnostic.message.find(": ");
+    const bool named = diagnostic.message.starts_with("mesh ") && colon != std::string::npos;
+    finding.mesh = named ? diagnostic.message.substr(0, colon) : "mesh";
+    finding.value = 1;
+    finding.detail = named ? diagnostic.message.substr(colon + 2) : diagnostic.message;
+    file.findings.push_back(std::move(finding));
+  }
+  const auto evaluator = nodes::Evaluator::create(scene);
+  if (!evaluator) return;  // the error of reading the motion
+  nodes::Evaluation rest;
+  evaluator->place_nodes(-1, 0, rest);
+  std::set<std::tuple<int, int, int>> seen;
+  for (const nodes::Instance& instance : evaluator->instances()) {
+    const int skin = scene.nodes[at(instance.node)].skin;
+    if (!seen.insert({instance.mesh, instance.primitive, skin}).second) continue;
+    const nodes::Mesh& mesh = scene.meshes[at(instance.mesh)];
+    const nodes::Primitive& shape = mesh.primitives[at(instance.primitive)];
+    krok::lint::MeshView view;
+    view.name = fmt::format("mesh {}", instance.mesh);
+    if (!mesh.name.empty()) view.name += fmt::format(" ({})", to_utf8(mesh.name));
+    view.name += fmt::format(", primitive {}", instance.primitive);
+    view.positions = *shape.positions, view.triangles = shape.triangles;
+    if (shape.normals) view.normals = *shape.normals;
+    std::vector<std::string> names;
+    std::vector<Mat4> rests;
+    if (skin >= 0) {
+      for (const int joint : scene.skins[at(skin)].joints) {
+        names.push_back(to_utf8(scene.nodes[at(joint)].name));
+        rests.push_back(rest.node_to_world[at(joint)]);
+      }
+      view.joint_names = names, view.rests = rests;
+      view.inverse_binds = scene.skins[at(skin)].inverse_binds;
+      view.influences_per_vertex = shape.influences_per_vertex;
+      view.influence_joints = shape.influence_joints;
+      view.influence_weights = shape.influence_weights;
+    }
+    for (Finding& finding : krok::lint::lint_mesh(view, settings)) {
+      file.findings.push_back(std::move(finding));
+    }
+  }
+}
+
+// Faults of the meshes of a scene that has any; false for other files.
+bool lint_scene(const InputFile& input, const krok::lint::Settings& settings, LintedFile& file) {
+  using krok::lint::Rule;
+  const auto& enabled = settings.enabled;
+  const auto of_meshes = static_cast<std::ptrdiff_t>(Rule::unweighted_vertex);
+  if (std::none_of(enabled.begin() + of_meshes, enabled.end(), [](bool rule) { return rule; })) {
+    return false;
+  }
+  if (!io::is_scene(registry::identify(input.path(), input.bytes()))) return false;
+  io::PlainInputs inputs;
+  inputs.jobs = 1;
+  const auto scene = io::open_scene(input, inputs);
+  if (!scene || scene->meshes.empty()) return false;
+  lint_scene_meshes(*scene, settings, file);
+  return true;
+}
+
+// A .model or .character, which have no motion.
+void lint_model(const InputFile& input, const krok::lint::Settings& settings, LintedFile& file) {
+  io::PlainInputs inputs;
+  const auto actor = io::open_actor(input, inputs);
+  file.diagnostics = std::move(inputs.diagnostics);
+  if (!actor) {
+    file.error = actor.error();
+    return;
+  }
+  krok::lint::MeshView view;
+  view.name = "mesh";
+  view.positions = actor->model.positions, view.normals = actor->model.normals;
+  view.triangles = actor->model.triangles;
+  file.findings = krok::lint::lint_mesh(view, settings);
+}
+
 void lint_file(const InputFile& input, const Options& options, const io::FindRoles& find_roles,
                const krok::lint::MotionOptions& how, LintedFile& file) {
+  const auto kind = registry::identify(input.path(), input.bytes());
+  if (kind == registry::Kind::model || kind == registry::Kind::character) {
+    return lint_model(input, how.settings, file);
+  }
   io::PlainInputs inputs;
   inputs.jobs = 1;
   const auto clip = io::open_motion(input, inputs);
   file.diagnostics = std::move(inputs.diagnostics);
+  const bool has_mesh = lint_scene(input, how.settings, file);
+  if (!clip && has_mesh) return;
   if (!clip) {
     file.error = clip.error();
     return;
@@ -56,7 +158,8 @@ void lint_file(const InputFile& input, const Options& options, const io::FindRol
     return;
   }
   auto faults = faults_of(*clip, *roles, file.path, options, how);
-  file.findings = std::move(faults.findings);
+  file.findings.insert(file.findings.end(), std::make_move_iterator(faults.findings.begin()),
+                       std::make_move_iterator(faults.findings.end()));
   file.notes = std::move(faults.notes);
   if (how.settings.has(krok::lint::Rule::duplicate)) {
     file.signature = krok::lint::signature_of(*clip, *roles);
@@ -84,7 +187,7 @@ void add_duplicates(const krok::lint::Settings& settings, std::vector<LintedFile
 }  // namespace
 
 std::string LintedFile::joint_of(const Finding& finding) const {
-  return finding.joint < 0 ? "" : joints[at(finding.joint)];
+  return finding.joint < 0 ? finding.mesh : joints[at(finding.joint)];
 }
 
 std::string quantity_text(double value, const std::string& unit) {
@@ -94,7 +197,8 @@ std::string quantity_text(double value, const std::string& unit) {
 }
 
 std::string text_of(const Finding& finding, const LintedFile& file) {
-  std::string text = finding.joint < 0 ? "body" : printable(file.joint_of(finding));
+  const std::string where = file.joint_of(finding);
+  std::string text = where.empty() ? "body" : printable(where);
   if (finding.joints > 1) {
     text += fmt::format(" and {} more", finding.joints - 1);
   }

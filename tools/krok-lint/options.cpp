@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "core/text.h"
 #include "formats/io/formats.h"
+#include "formats/registry/registry.h"
 #include "lint/rules.h"
 #include "tools/shared/shared_options.h"
 
@@ -25,7 +28,8 @@ ValueKind<std::string> rule() {
 void declare(CommandOptions& command, Options& o) {
   command.add_option("inputs IN", o.inputs,
                      "Motions: .anim files, or captures and characters as krok-import reads them; "
-                     "folders stand for all motions in them");
+                     ".model and .character, whose mesh is judged; folders stand for all of them "
+                     "but .character");
   command.add_flag("--rules", o.list_rules, "Print the rules with their limits, and end");
   command.add("--only RULE", o.only, rule(), "Use this rule alone; repeatable")
       .allow_extra_args(false);
@@ -74,7 +78,8 @@ Status check_options(const Options& o) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-lint", options, declare, check_options, run);
-  spec.summary = "Finds faults of motions: sliding feet, pops, flips, jitter, wrong rates";
+  spec.summary =
+      "Finds faults of motions (sliding feet, pops, flips) and meshes (weights, bind pose)";
   spec.details =
       "One line for each fault, the worst file first. NAME.lint.json beside a motion says which of "
       "its faults are accepted, and why.";
@@ -88,6 +93,8 @@ ToolSpec make_spec() {
   spec.exit_no = "faults were found";
   spec.exit_partly = "some files could not be read";
   spec.folder_endings = io::motion_endings();
+  std::ranges::copy(registry::endings_of(registry::Kind::model),
+                    std::back_inserter(spec.folder_endings));
   spec.has_output = false;
   return spec;
 }

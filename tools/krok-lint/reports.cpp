@@ -29,6 +29,11 @@ std::string shown_path(const LintedFile& file) {
   return printable(to_utf8(file.path));
 }
 
+// Meshes have their faults at any time.
+std::string when(const Finding& finding, const LintedFile& file) {
+  return finding.mesh.empty() ? fmt::format("{:.2f} s: ", file.seconds(finding.worst)) : "";
+}
+
 Json sarif_rules() {
   Json list = Json::array();
   for (const auto& facts : krok::lint::rules()) {
@@ -137,9 +142,8 @@ std::string console_text(const LintedFile& file, bool errors_only) {
   for (const Finding& finding : file.findings) {
     const auto& facts = facts_of(finding.rule);
     if (errors_only && facts.severity != Severity::error) continue;
-    text +=
-        fmt::format("{}: {:.2f} s: {}: {} [{}]\n", shown_path(file), file.seconds(finding.worst),
-                    severity_name(facts.severity), text_of(finding, file), facts.id);
+    text += fmt::format("{}: {}{}: {} [{}]\n", shown_path(file), when(finding, file),
+                        severity_name(facts.severity), text_of(finding, file), facts.id);
   }
   return text;
 }
@@ -180,6 +184,7 @@ Json json_of(const LintedFile& file) {
     Json fault = {{"rule", facts.id}, {"severity", severity_name(facts.severity)}};
     if (!f.kind.empty()) fault["kind"] = f.kind;
     if (f.joint >= 0) fault["joint"] = file.joint_of(f);
+    if (!f.mesh.empty()) fault["mesh"] = f.mesh;
     fault["joints"] = f.joints;
     fault["time"] = file.seconds(f.worst);
     fault["frame"] = f.worst;
@@ -221,8 +226,8 @@ std::string sarif_of(LintedFiles files, const std::string& version) {
       const Finding& f = file->findings[i];
       const auto& facts = facts_of(f.rule);
       add(sarif_result(*file, facts.id, facts.severity,
-                       fmt::format("{} At {:.2f} s: {}", std::string(facts.meaning) + ".",
-                                   file->seconds(f.worst), text_of(f, *file)),
+                       fmt::format("{}. {}{}{}", facts.meaning, f.mesh.empty() ? "At " : "",
+                                   when(f, *file), text_of(f, *file)),
                        prints[i]));
     }
   }
@@ -259,7 +264,7 @@ std::string junit_of(LintedFiles files) {
       std::string text;
       for (const Finding& f : file->findings) {
         if (f.rule == facts.rule) {
-          text += fmt::format("{:.2f} s: {}\n", file->seconds(f.worst), text_of(f, *file));
+          text += fmt::format("{}{}\n", when(f, *file), text_of(f, *file));
         }
       }
       cases += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", path, facts.id);
@@ -297,7 +302,7 @@ Result<std::string> page_of(LintedFiles files, ToolContext& context) {
     ++faulty;
     const Finding& worst = file->findings.front();
     body += fmt::format("<h2>{}</h2>\n", to_markup(to_utf8(file->path)));
-    if (strips < kMaxStrips) {
+    if (strips < kMaxStrips && file->frames > 0) {
       const auto strip = strip_of(*file, worst, context);
       if (!strip) return strip.error();
       body += fmt::format("<img alt=\"{} at {:.2f} s\" src=\"data:image/png;base64,{}\">\n",
@@ -308,9 +313,10 @@ Result<std::string> page_of(LintedFiles files, ToolContext& context) {
     for (const Finding& finding : file->findings) {
       const auto& facts = facts_of(finding.rule);
       body += fmt::format(
-          "<tr><td>{:.2f} s</td><td class=\"{}\" title=\"{}\">{}</td><td>{}</td></tr>\n",
-          file->seconds(finding.worst), severity_name(facts.severity), to_markup(facts.meaning),
-          facts.id, to_markup(text_of(finding, *file)));
+          "<tr><td>{}</td><td class=\"{}\" title=\"{}\">{}</td><td>{}</td></tr>\n",
+          finding.mesh.empty() ? fmt::format("{:.2f} s", file->seconds(finding.worst)) : "",
+          severity_name(facts.severity), to_markup(facts.meaning), facts.id,
+          to_markup(text_of(finding, *file)));
     }
     body +=
         fmt::format("</table><p><code>krok view {}</code></p>\n", to_markup(to_utf8(file->path)));

@@ -8,6 +8,7 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "motion/local_motion.h"
+#include "support/glb_builder.h"
 
 namespace krok::lint_test {
 namespace {
@@ -158,6 +159,39 @@ TEST_F(KrokLint, RepairsAfterWhichNoFewerFaultsAreLeftAreLeftOut) {
   EXPECT_THAT(run.err, HasSubstr("step.anim: nothing mended; left out: 1 spike removed: 1 fault of "
                                  "1 would be left"));
   EXPECT_FALSE(std::filesystem::exists(path("other/step.anim")));
+}
+
+// Would fail if readers that mend weights kept the fault from krok-lint, if files without a motion
+// were unreadable, or if a mesh had its faults at a time.
+TEST_F(KrokLint, MeshesAreJudgedWithOrWithoutAMotion) {
+  const auto put_glb = [&](const std::string& name, const GlbBuilder& builder) {
+    const auto bytes = builder.glb();
+    write_text(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  };
+  put_glb("clean.glb", square());
+  EXPECT_EQ(run_here("krok-lint", {"clean.glb"}).exit_code, 0);
+  GlbBuilder rigged = rig();
+  auto& primitive = rigged.json["meshes"][0]["primitives"][0];
+  primitive["attributes"]["WEIGHTS_0"] =
+      rigged.add(std::vector<float>{0, 0, 0, 0, .5F, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+  put_glb("rigged.glb", rigged);
+  const ToolRun weights = run_here("krok-lint", {"rigged.glb", "--ignore", "loop-seam"});
+  EXPECT_EQ(weights.exit_code, 1);
+  EXPECT_THAT(weights.out, HasSubstr("rigged.glb: error: mesh 0 (Square), primitive 0: 1 vert"));
+  EXPECT_THAT(weights.out, HasSubstr("[unweighted-vertex]"));
+  EXPECT_THAT(weights.out, HasSubstr("sum to 0.5 to 0.5 instead of 1"));
+  GlbBuilder still = square();
+  still.json["meshes"][0]["primitives"][0]["indices"] =
+      still.add(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3, 3, 3, 1}, "SCALAR");
+  put_glb("still.glb", still);
+  const std::vector<std::string> in = {"still.glb", "--only", "degenerate-triangle"};
+  const ToolRun scene = run_here("krok-lint", in);
+  EXPECT_THAT(scene.out, HasSubstr("still.glb: warning: mesh 0 (Square), primitive 0: 33.3 %, "
+                                   "limit 0.5 % (1 with a vertex twice"));
+  ASSERT_EQ(run_here("krok-import", {"rigged.glb", "--save-character", "hero.character"}).exit_code,
+            0);
+  const ToolRun models = run_here("krok-lint", {"hero.character", "hero.model"});
+  EXPECT_EQ(models.exit_code, 0) << models.out;
 }
 
 TEST_F(KrokLint, AnyNumberOfThreadsGivesTheSame) {

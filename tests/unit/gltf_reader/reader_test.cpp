@@ -358,7 +358,20 @@ TEST(GltfReader, VerticesWithoutWeightsHangOnTheirFirstJointWithAWarning) {
   const nodes::Scene asset = read_good(builder);
   EXPECT_EQ(asset.meshes.at(0).primitives.at(0).influence_weights[8], 1.0f);
   ASSERT_EQ(asset.diagnostics.size(), 1u);
+  EXPECT_EQ(asset.diagnostics[0].code, "gltf-mesh-unweighted");
+}
+
+// Would fail if the reader took negative weights as 0 without a word: krok-lint could not see them.
+TEST(GltfReader, NegativeWeightsAreAWarning) {
+  GlbBuilder builder = test::rig();
+  std::vector<float> weights(16, 0.0f);
+  for (std::size_t v = 0; v < 4; ++v) weights[4 * v] = 1;
+  weights[5] = -0.5f;
+  primitive_of(builder)["attributes"]["WEIGHTS_0"] = builder.add(weights, "VEC4");
+  const nodes::Scene asset = read_good(builder);
+  ASSERT_EQ(asset.diagnostics.size(), 1u);
   EXPECT_EQ(asset.diagnostics[0].code, "gltf-mesh-weights");
+  EXPECT_NE(asset.diagnostics[0].message.find("negative weights of 1 vertex"), std::string::npos);
 }
 
 TEST(GltfReader, ANodeThatIsNoRootIsShownWhereItsParentsPutIt) {
