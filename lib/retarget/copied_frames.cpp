@@ -36,7 +36,7 @@ std::vector<Follower> followers_of(const Clip& target, const RoleMap& roles,
     } else if (carries(skeleton, parent, hips) && parent != hips) {
       follower.carrier = hips;
     } else if (std::ranges::find(faces, k) != faces.end()) {
-      follower.offset.orientation = turn_in_first_frame(target, k);
+      follower.offset.orientation = turn_in_frame(target, k, 0);
     }
     const Transform& own = skeleton.reference[at(k)];
     if (follower.carrier < 0) follower.offset = own;
@@ -72,8 +72,8 @@ std::vector<int> faces_of_motion(const Clip& target, const RoleMap& roles) {
   return faces;
 }
 
-Quat turn_in_first_frame(const Clip& target, int joint) {
-  const auto turns = target.frame_orientations(0);
+Quat turn_in_frame(const Clip& target, int joint, int frame) {
+  const auto turns = target.frame_orientations(frame);
   const Quatf& parent = turns[at(target.skeleton.parents[at(joint)])];
   return (parent.conjugate() * turns[at(joint)]).cast<double>().normalized();
 }

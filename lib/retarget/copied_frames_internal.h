@@ -17,7 +17,7 @@ inline constexpr double kAtHips = 0.05;
 std::vector<int> faces_of_motion(const Clip& target, const RoleMap& roles);
 
 // Of the joint in its parent.
-Quat turn_in_first_frame(const Clip& target, int joint);
+Quat turn_in_frame(const Clip& target, int joint, int frame);
 
 // Copies orientations and scales positions, without rounding except by the scale. What the source
 // lacks is on its parent as in the reference pose, a face as faces_of_motion() has it; what is

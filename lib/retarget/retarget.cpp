@@ -119,6 +119,7 @@ class Transfer {
       plan_.aligned.push_back(turns_[at(k)] * target_rest_[at(k)].orientation);
     }
     take_face_from_motion();
+    take_hip_joints_from_motion();
     for (const Transform& joint : rest_) plan_.rest_back.push_back(joint.orientation.conjugate());
     plan_.scale = report_->path_scale = report_->scale;
     if (by_roles) {
@@ -145,7 +146,28 @@ class Transfer {
   void take_face_from_motion() {
     for (const int joint : faces_of_motion(target_clip_, target_roles_)) {
       if (plan_.mapping[at(joint)].first >= 0) continue;
-      plan_.local[at(joint)].orientation = turn_in_first_frame(target_clip_, joint);
+      plan_.local[at(joint)].orientation = turn_in_frame(target_clip_, joint, 0);
+    }
+  }
+
+  // Joints between hips and thighs that captures of CMU keep turned by 10 degrees from the
+  // reference pose: thighs are below the hips as in the target's motion.
+  void take_hip_joints_from_motion() {
+    const int frames = target_clip_.frame_count();
+    const int hips = target_roles_.joint(Role::hips);
+    for (const LegRoles& leg : kLegRoles) {
+      int joint = target_roles_.joint(leg.upper);
+      if (frames == 0 || joint < 0 || hips < 0 || !carries(target_, hips, joint)) continue;
+      for (joint = target_.parents[at(joint)]; joint != hips; joint = target_.parents[at(joint)]) {
+        if (plan_.mapping[at(joint)].first >= 0) continue;
+        const Quat first = turn_in_frame(target_clip_, joint, 0);
+        Vec3 mean = Vec3::Zero();
+        for (int f = 0; f < frames; ++f) {
+          mean += rotation_vector(first.conjugate() * turn_in_frame(target_clip_, joint, f));
+        }
+        plan_.local[at(joint)].orientation =
+            (first * from_rotation_vector(mean / frames)).normalized();
+      }
     }
   }
 

@@ -727,6 +727,40 @@ TEST(Retarget, AFaceIsThatOfTheTargetsMotion) {
   EXPECT_LT(angle_between(turn(kept->clip), Quat::Identity()), 1e-3);
 }
 
+// Captures of CMU keep the joints between hips and thighs turned from the reference pose. Would
+// fail if hips, and all above them, came to lie 11 mm lower over the legs than they do in the
+// target.
+TEST(Retarget, ThighsHangBelowTheHipsAsInTheTargetsMotion) {
+  const Clip walk = lively_clip(human_skeleton());
+  Skeleton rig;
+  const Skeleton human = human_skeleton();
+  for (int j = 0; j < human.joint_count(); ++j) {
+    const std::string& name = human.names[at(j)];
+    int parent = human.parents[at(j)];
+    if (parent >= 0) parent = rig.find(human.names[at(parent)]);
+    if (name.ends_with("UpLeg")) {
+      parent = rig.add(name.substr(0, 1) + "HipJoint", parent, human.reference[0]);
+    }
+    rig.add(name, parent, human.reference[at(j)], human.end_sites[at(j)] != 0);
+  }
+  // Turned in the motion alone.
+  Clip target = lively_clip(posed(rig, "LHipJoint", from_rotation_vector(Vec3(-0.2, 0, 0))));
+  target.skeleton = rig;
+  const auto result = transfer(walk, target);
+  ASSERT_TRUE(result.ok());
+  const auto below = [&](const Clip& clip, int f, const char* thigh) {
+    const Quat hips = clip.frame_orientations(f)[0].cast<double>();
+    const auto places = clip.frame_positions(f);
+    return Vec3(hips.conjugate() * (places[at(rig.find(thigh))] - places[0]).cast<double>());
+  };
+  Vec3 mean = Vec3::Zero();
+  for (int f = 0; f < target.frame_count(); ++f) mean += below(target, f, "LeftUpLeg");
+  mean /= target.frame_count();
+  for (const int f : {0, 13, 39}) {
+    EXPECT_LT((below(result->clip, f, "LeftUpLeg") - mean).norm(), 2e-3);
+  }
+}
+
 // Would fail if feet of a body that lies, which are low in any pose, were taken for feet that
 // stand: a take that ends in a fall had bodies whose toes pointed down.
 TEST(Retarget, AFallAfterAWalkLeavesTheStance) {
