@@ -14,11 +14,20 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kTipUp = 0.25;  // of the swing, after which the tip of the toes is off the ground
-constexpr double kAway = 0.09;   // metres from where the foot was or will be, to be cleared in full
+// Of the swing, between which the tip of the toes is off the ground.
+constexpr double kTipUp = 0.25, kTipDown = 0.92;
+constexpr double kAway = 0.09;  // metres from where the foot was or will be, to be cleared in full
+constexpr double kBetweenFrames = 3e-4;  // metres, by which a foot may be lower between frames
+constexpr double kLanding = 0.12;        // of the swing, in which less and less is to be cleared
 constexpr double kRaisedFrom = 0.25, kRaisedInFull = 0.45;  // of the swing
 constexpr double kShortestRamp = 0.06;                      // seconds
-constexpr double kRamp = 0.35;  // of the time from strike to flat, and from flat to off
+// Exponents of bumps over a swing, the least sharp first.
+constexpr int kShapes[][2] = {{3, 3},  {3, 5},  {5, 3},  {3, 9}, {9, 3},
+                              {3, 15}, {15, 3}, {3, 24}, {24, 3}};
+constexpr double kMaxToesUp = 15 * kRadiansPerDegree;
+constexpr double kToesEdge = 0.25;     // of the bump: below, it does not raise the toes
+constexpr double kToesLeftCost = 300;  // per metre, of a radian times the exponents
+constexpr double kRamp = 0.35;         // of the time from strike to flat, and from flat to off
 
 double ramp_of(double lasts) {
   return std::min(lasts, std::max(kRamp * lasts, kShortestRamp));
@@ -170,6 +179,12 @@ FootPose Swing::at(double time, const FootPose& blend) const {
   foot.foot.position += detour_at(since / length, detour_);
   foot.foot.orientation.coeffs() =
       (blend.foot.orientation.coeffs() + offset.segment<4>(3)).normalized();
+  const double part = since / length;
+  if (detour_.toes_up != 0 && part > 0 && part < 1) {
+    const double angle = detour_.toes_up * bump(part, detour_.toes_rise, detour_.toes_fall);
+    const Quat up = leg_->sole.sole * from_rotation_vector(Vec3(-angle, 0, 0));
+    foot.foot.orientation = foot.foot.orientation * up * leg_->sole.sole.conjugate();
+  }
   Quat toes = blend.foot.orientation.conjugate() * blend.toes;
   toes.coeffs() = (toes.coeffs() + offset.tail<4>()).normalized();
   foot.toes = foot.foot.orientation * toes;
@@ -183,8 +198,9 @@ double Swing::away(const FootPose& foot) const {
 
 double Swing::share_of_clearance(double part, const FootPose& foot) const {
   // A foot that turns or steps on the spot is lifted, too.
-  const double middle = (std::min(part, 1 - part) - kRaisedFrom) / (kRaisedInFull - kRaisedFrom);
-  return smoother_step(std::max(away(foot) / kAway, middle));
+  const double from_end = std::min(part, 1 - part);
+  const double middle = (from_end - kRaisedFrom) / (kRaisedInFull - kRaisedFrom);
+  return smoother_step(std::max(away(foot) / kAway, middle)) * smoother_step(from_end / kLanding);
 }
 
 bool Swing::is_to_be_clear(double time, const FootPose& foot) const {
@@ -199,31 +215,66 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
     const double u = (times[i] - off_) / (strike_ - off_);
     if (!(u > 0 && u < 1)) continue;
     const FootPose foot = at(times[i], blend[i]);
-    const double wanted = clearance * share_of_clearance(u, foot);
-    // The tip of the toes rolls over the ground as the foot leaves.
+    const double wanted = (clearance + kBetweenFrames) * share_of_clearance(u, foot);
+    // The tip of the toes rolls over the ground as the foot leaves, and as it lands on the ball.
     const auto points = sole_points(*leg_, foot);
-    const std::size_t count = u < kTipUp ? 2 : 3;
+    const std::size_t count = u < kTipUp || u > kTipDown ? 2 : 3;
     for (const Vec3& point : std::span(points).first(count)) {
       const auto found = ground_near(ground, point.x(), point.z(), from, leg_->length);
       if (!found || point.y() - found->height >= wanted) continue;
-      result.push_back({u, wanted - (point.y() - found->height)});
+      const Vec3 ahead = foot.foot.orientation * (leg_->sole.sole * Vec3::UnitZ());
+      result.push_back(
+          {u, wanted - (point.y() - found->height), ahead.dot(point - foot.foot.position)});
     }
   }
   return result;
 }
 
+void Swing::raise_toes(std::span<const Lack> missing, Detour& detour) {
+  double heel = 0, part = -1, least = std::numeric_limits<double>::infinity();
+  std::vector<Lack> ahead;
+  for (const Lack& lack : missing) {
+    if (lack.part != part) heel = 0;
+    part = lack.part;
+    if (lack.lever <= 0) {
+      heel = lack.height;
+    } else if (lack.height > heel) {
+      ahead.push_back({lack.part, lack.height - heel, lack.lever});
+    }
+  }
+  if (ahead.empty()) return;
+  for (const auto& [rise, fall] : kShapes) {
+    double angle = 0, left = 0;
+    for (const Lack& lack : ahead) {
+      const double value = bump(lack.part, rise, fall);
+      if (value > kToesEdge) angle = std::max(angle, lack.height / (lack.lever * value));
+    }
+    angle = std::min(angle, kMaxToesUp);
+    for (const Lack& lack : ahead) {
+      left = std::max(left, lack.height - angle * lack.lever * bump(lack.part, rise, fall));
+    }
+    const double cost = angle * (rise + fall) + kToesLeftCost * left;
+    if (cost >= least) continue;
+    least = cost;
+    detour.toes_up = angle, detour.toes_rise = rise, detour.toes_fall = fall;
+  }
+}
+
 void Swing::clear(const Terrain& ground, std::span<const double> times,
                   std::span<const FootPose> blend, double clearance, double from) {
-  constexpr int kShapes[][2] = {{3, 3}, {3, 5}, {5, 3}, {3, 9}, {9, 3}, {3, 15}, {15, 3}};
   constexpr double kHolds[] = {0,     -0.04, 0.04, -0.08, 0.08,  -0.12, 0.12,
                                -0.16, 0.16,  -0.2, 0.2,   -0.26, 0.26};  // metres
-  constexpr double kEdge = 0.08;    // of the bump: below, it does not raise the foot
+  constexpr double kEdge = 0.2;     // of the bump: below, it does not raise the foot
   constexpr double kEnough = 3e-4;  // metres: what is raised less needs no holding
   constexpr double kHoldCost = 0.3, kLeftCost = 30;
+  // People clear the ground by their ankles first.
+  detour_ = {};
   Detour best;
+  raise_toes(lacks(ground, times, blend, clearance, from), best);
   double least = std::numeric_limits<double>::infinity();
   for (const double hold : kHolds) {
-    detour_ = {.hold = hold};
+    detour_ = best;
+    detour_.lift = 0, detour_.hold = hold;
     const std::vector<Lack> missing = lacks(ground, times, blend, clearance, from);
     for (const auto& [rise, fall] : kShapes) {
       double height = 0, left = 0;
@@ -240,7 +291,8 @@ void Swing::clear(const Terrain& ground, std::span<const double> times,
           height * (rise + fall) / 6 + kHoldCost * std::abs(hold) + kLeftCost * left;
       if (cost >= least) continue;
       least = cost;
-      best = {std::min(height, 0.6 * leg_->length), hold, rise, fall};
+      best.lift = std::min(height, 0.6 * leg_->length), best.hold = hold;
+      best.rise = rise, best.fall = fall;
     }
     if (hold == 0 && least < kEnough) break;
   }

@@ -100,10 +100,15 @@ class Swing {
   struct Detour {
     double lift = 0, hold = 0;  // metres up, and along the swing
     int rise = 3, fall = 3;     // exponents of the lift
+    double toes_up = 0;         // radians, about the ankle
+    int toes_rise = 3, toes_fall = 3;
   };
+  // A point of the sole that is too low by `height` metres, `lever` ahead of the ankle.
   struct Lack {
-    double part, height;
+    double part, height, lever;
   };
+  // The turn of the foot by which ball and tip lack no more than the heel does, as far as it goes.
+  static void raise_toes(std::span<const Lack> missing, Detour& detour);
   double away(const FootPose& foot) const;  // metres from the nearer print, level
   // 0 to 1: the share of the clearance that is asked for at a part of the swing.
   double share_of_clearance(double part, const FootPose& foot) const;
