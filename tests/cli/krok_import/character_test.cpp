@@ -25,10 +25,10 @@ class CharacterImportTest : public CliTest {
   // materials under these names.
   static GlbBuilder character(const std::vector<std::string>& names) {
     GlbBuilder builder = rig();
-    auto& json = builder.json;
-    json["nodes"].push_back({{"name", "Eye.L"}, {"translation", {0.1, 0.2, 0.3}}});
-    json["nodes"][2]["children"] = nlohmann::json::array({3});
-    auto& mesh = json["meshes"][0];
+    auto& document = builder.json;
+    document["nodes"].push_back({{"name", "Eye.L"}, {"translation", {0.1, 0.2, 0.3}}});
+    document["nodes"][2]["children"] = nlohmann::json::array({3});
+    auto& mesh = document["meshes"][0];
     mesh["extras"] = {{"targetNames", {"Nose"}}};
     mesh["weights"] = nlohmann::json::array({0.5});
     auto& first = mesh["primitives"][0];
@@ -39,10 +39,10 @@ class CharacterImportTest : public CliTest {
           builder.add(std::vector<float>{0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3")}}};
     Json part = first;
     for (std::size_t m = 0; m < names.size(); ++m) {
-      json["images"].push_back(
+      document["images"].push_back(
           {{"bufferView", builder.add_view(m % 2 == 0 ? png() : jpeg())}, {"name", names[m]}});
-      json["textures"].push_back({{"source", m}});
-      json["materials"].push_back(
+      document["textures"].push_back({{"source", m}});
+      document["materials"].push_back(
           {{"name", names[m]},
            {"pbrMetallicRoughness",
             {{"baseColorTexture", {{"index", m}}}, {"roughnessFactor", 0.5}}}});

@@ -25,21 +25,21 @@ class SceneImportTest : public CliTest {
   // The rig with a second animation, a camera that the second joint carries, and a morph target.
   static GlbBuilder character() {
     GlbBuilder builder = rig();
-    auto& json = builder.json;
-    Json second = json["animations"][0];
+    auto& document = builder.json;
+    Json second = document["animations"][0];
     second["name"] = "Bend/twice";
-    json["animations"].push_back(second);
-    json["cameras"] = {{{"name", "Lens"},
-                        {"type", "perspective"},
-                        {"perspective", {{"yfov", 0.7}, {"znear", 1}}}}};
-    json["nodes"].push_back({{"name", "Shot"}, {"camera", 0}, {"translation", {0, 0, 2}}});
-    json["nodes"][2]["children"] = nlohmann::json::array({3});
-    auto& primitive = json["meshes"][0]["primitives"][0];
+    document["animations"].push_back(second);
+    document["cameras"] = {{{"name", "Lens"},
+                            {"type", "perspective"},
+                            {"perspective", {{"yfov", 0.7}, {"znear", 1}}}}};
+    document["nodes"].push_back({{"name", "Shot"}, {"camera", 0}, {"translation", {0, 0, 2}}});
+    document["nodes"][2]["children"] = nlohmann::json::array({3});
+    auto& primitive = document["meshes"][0]["primitives"][0];
     primitive["targets"] = {
         {{"POSITION",
           builder.add(std::vector<float>{0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0}, "VEC3")}}};
-    json["meshes"][0]["extras"] = {{"targetNames", {"Nose"}}};
-    json["meshes"][0]["weights"] = nlohmann::json::array({0.5});
+    document["meshes"][0]["extras"] = {{"targetNames", {"Nose"}}};
+    document["meshes"][0]["weights"] = nlohmann::json::array({0.5});
     return builder;
   }
 
@@ -69,14 +69,14 @@ TEST_F(SceneImportTest, AFirstKeyThatIsNotAtZeroStaysWhereItIs) {
 // 1,900 places of one mesh became a file of 282 MB.
 TEST_F(SceneImportTest, AMeshAtManyNodesIsRefusedOverAStatedGrowth) {
   GlbBuilder builder = rig();
-  auto& json = builder.json;
+  auto& document = builder.json;
   std::vector<float> grid;
   for (int i = 0; i < 3 * 6000; ++i) grid.push_back(0.01f * static_cast<float>(i % 71));
-  json["meshes"].push_back(
+  document["meshes"].push_back(
       {{"primitives", {{{"attributes", {{"POSITION", builder.add(grid, "VEC3")}}}}}}});
   for (int i = 0; i < 200; ++i) {
-    json["nodes"][1]["children"].push_back(json["nodes"].size());
-    json["nodes"].push_back({{"name", "Leaf" + std::to_string(i)}, {"mesh", 1}});
+    document["nodes"][1]["children"].push_back(document["nodes"].size());
+    document["nodes"].push_back({{"name", "Leaf" + std::to_string(i)}, {"mesh", 1}});
   }
   put_glb("in.glb", builder);
   const ToolRun run = import({"--save-character", path("a.character")});
@@ -194,16 +194,16 @@ class AnimationsOfObjectsTest : public SceneImportTest {
  protected:
   void SetUp() override {
     GlbBuilder builder = character();
-    auto& json = builder.json;
-    json["nodes"][2].erase("children");
-    json["scenes"][0]["nodes"].push_back(3);
+    auto& document = builder.json;
+    document["nodes"][2].erase("children");
+    document["scenes"][0]["nodes"].push_back(3);
     const int times = builder.add(std::vector<float>{0, 3}, "SCALAR");
     const int places = builder.add(std::vector<float>{0, 0, 2, 3, 0, 2}, "VEC3");
-    json["animations"][1] = {
+    document["animations"][1] = {
         {"name", "Dolly"},
         {"samplers", {{{"input", times}, {"output", places}}}},
         {"channels", {{{"sampler", 0}, {"target", {{"node", 3}, {"path", "translation"}}}}}}};
-    std::swap(json["animations"][0], json["animations"][1]);
+    std::swap(document["animations"][0], document["animations"][1]);
     put_glb("in.glb", builder);
   }
   CameraTrack camera() const {
@@ -385,9 +385,9 @@ TEST_F(SceneImportTest, TheOutputsAppearTogetherOrNotAtAll) {
 
 TEST_F(SceneImportTest, ABufferBesideTheFileIsAnInputToo) {
   GlbBuilder builder = rig();
-  Json json = builder.json;
-  json["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", "data.bin"}}};
-  put("in.gltf", json.dump());
+  Json document = builder.json;
+  document["buffers"] = {{{"byteLength", builder.bin.size()}, {"uri", "data.bin"}}};
+  put("in.gltf", document.dump());
   put("data.bin",
       std::string(reinterpret_cast<const char*>(builder.bin.data()), builder.bin.size()));
   const ToolRun run = run_tool("krok-import", {path("in.gltf"), "-o", path("a.anim"), "--json"});
