@@ -154,7 +154,8 @@ void declare_solver(CommandOptions& command, Options& o) {
               "How many joints take part for each goal, from the joint's own upwards; 0: all; "
               "default: all below the hips");
   command.add_flag("--root-moves", o.solver.root_moves,
-                   "The root may be shifted to reach the goals");
+                   "The root may be shifted to reach the goals, or the pelvis over a root on the "
+                   "ground");
   command.add("--iterations", o.solver.iterations, whole(0, 100'000), "Max iterations in a frame",
               "60");
   command.add("--restarts", o.solver.restarts, whole(0, 1000),

@@ -189,6 +189,7 @@ Json report_of(const Subject& subject, const Fallen& fallen) {
   }
   json["get_up"] = {{"motion", subject.rise_names[at(risen.choice.motion)]},
                     {"mirrored", risen.choice.mirrored},
+                    {"crouches", risen.crouches},
                     {"distance", risen.choice.distance},
                     {"first_frame", risen.first_frame},
                     {"handover_frame", risen.handover},

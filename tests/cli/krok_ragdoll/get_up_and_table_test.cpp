@@ -80,6 +80,20 @@ TEST_F(RagdollFiles, WhatFallsGetsUp) {
       "walk.anim", "ragdoll-moving", "--duration");
 }
 
+// Would fail if a motion that begins standing were taken for one that gets up, without a word.
+TEST_F(RagdollFiles, AMotionThatBeginsStandingIsWarnedOf) {
+  const std::vector<std::string> arguments = {
+      "walk.anim",          "--at",       "1s",      "--push",
+      "Spine2=90Ns,0,20Ns", "--duration", "6s",      "--get-up",
+      "walk.anim",          "-o",         "up.anim", "--json"};
+  const auto run = fall(arguments);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json report = json::parse(run.out);
+  EXPECT_EQ(report["result"]["get_up"]["crouches"], true);
+  ASSERT_EQ(report["issues"].size(), 1u) << run.err;
+  EXPECT_EQ(report["issues"][0]["code"], "ragdoll-rise-standing");
+}
+
 TEST_F(RagdollFiles, ATableGivesTheFallsOfItsRows) {
   put("pushes.csv", kTable);
   const json falls = result({"walk.anim", "--pushes", "pushes.csv", "--duration", "1s", "-j", "1",
