@@ -15,21 +15,6 @@ namespace {
 
 constexpr double kUsualLeg = 0.86;  // metres
 
-double legs_of(const Skeleton& skeleton, const RoleMap& roles) {
-  double sum = 0;
-  int legs = 0;
-  for (const auto& [upper, lower, foot] :
-       {std::tuple(Role::left_upper_leg, Role::left_lower_leg, Role::left_foot),
-        std::tuple(Role::right_upper_leg, Role::right_lower_leg, Role::right_foot)}) {
-    const int a = roles.joint(upper), b = roles.joint(lower), c = roles.joint(foot);
-    if (a < 0 || b < 0 || c < 0) continue;
-    const auto place = [&](int joint) { return skeleton.reference[at(joint)].position; };
-    sum += (place(a) - place(b)).norm() + (place(b) - place(c)).norm();
-    ++legs;
-  }
-  return legs > 0 ? sum / legs : 0;
-}
-
 // q and -q are one rotation; the one with w >= 0 turns less.
 Vec3f turn_between(const Quatf& before, const Quatf& after) {
   const Quatf turn = after * before.conjugate();
@@ -43,6 +28,21 @@ Quatf in_parent(const Clip& clip, int joint, int parent, int frame) {
 
 }  // namespace
 
+double legs_scale(const Skeleton& skeleton, const RoleMap& roles) {
+  double sum = 0;
+  int legs = 0;
+  for (const auto& [upper, lower, foot] :
+       {std::tuple(Role::left_upper_leg, Role::left_lower_leg, Role::left_foot),
+        std::tuple(Role::right_upper_leg, Role::right_lower_leg, Role::right_foot)}) {
+    const int a = roles.joint(upper), b = roles.joint(lower), c = roles.joint(foot);
+    if (a < 0 || b < 0 || c < 0) continue;
+    const auto place = [&](int joint) { return skeleton.reference[at(joint)].position; };
+    sum += (place(a) - place(b)).norm() + (place(b) - place(c)).norm();
+    ++legs;
+  }
+  return sum > 0 ? sum / legs / kUsualLeg : 1;
+}
+
 double Finding::excess() const {
   if (threshold <= 0) return value > 0 ? value : 1;
   const bool both_ways = rule == Rule::frame_rate || rule == Rule::unit;
@@ -55,8 +55,7 @@ Series::Series(const Clip& motion, const RoleMap& role_map, const MotionOptions&
   joints = clip.joint_count();
   frames = clip.frame_count();
   rate = clip.rate;
-  const double legs = legs_of(clip.skeleton, roles);
-  scale = legs > 0 ? legs / kUsualLeg : 1;
+  scale = legs_scale(clip.skeleton, roles);
   carrier = std::max(0, carrying_joint(roles));
   largest.assign(at(joints), 0.0F);
   steps.assign(at(frames), Vec3f::Zero());

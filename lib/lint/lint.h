@@ -48,6 +48,9 @@ struct MotionFaults {
   std::vector<std::string> notes;
 };
 
+// The length of the legs as a multiple of 0.86 m, by which limits of lengths scale; 1 if not known.
+double legs_scale(const Skeleton& skeleton, const RoleMap& roles);
+
 // All rules of one motion. `roles`: of the clip's joints; rules about feet, limits and sides need
 // them and are left out otherwise. The clip must pass check().
 //

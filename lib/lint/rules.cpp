@@ -32,6 +32,8 @@ constexpr std::array<RuleFacts, kRuleCount> kRules = {{
     {Rule::asymmetric_rest_pose, "asymmetric-rest-pose", kWarning, 4, "%",
      "Left and right limbs of the reference pose differ in length"},
     {Rule::duplicate, "duplicate", kWarning, 4, "deg", "The same motion is in two files"},
+    {Rule::self_intersection, "self-intersection", kWarning, 0.07, "m",
+     "Limbs go into each other or into the trunk"},
     {Rule::unweighted_vertex, "unweighted-vertex", kError, 0, "",
      "Vertices of a skinned mesh follow no joint"},
     {Rule::vertex_weight, "vertex-weight", kWarning, 0, "",
@@ -64,6 +66,7 @@ std::optional<Rule> find_rule(std::string_view id) {
 
 Settings::Settings() {
   enabled.fill(true);
+  enabled[static_cast<std::size_t>(Rule::self_intersection)] = false;
   for (const RuleFacts& facts : kRules) {
     thresholds[static_cast<std::size_t>(facts.rule)] = facts.threshold;
   }

@@ -30,6 +30,7 @@ enum class Rule : std::uint8_t {
   rest_frame,
   asymmetric_rest_pose,
   duplicate,
+  self_intersection,
   unweighted_vertex,
   vertex_weight,
   bind_pose,
@@ -37,7 +38,7 @@ enum class Rule : std::uint8_t {
   triangle_winding,
   vertex_normal
 };
-inline constexpr std::size_t kRuleCount = 23;
+inline constexpr std::size_t kRuleCount = 24;
 
 struct RuleFacts {
   Rule rule;
@@ -60,7 +61,7 @@ struct Settings {
   std::array<bool, kRuleCount> enabled{};
   std::array<double, kRuleCount> thresholds{};
 
-  // All rules with their own thresholds.
+  // All rules but self-intersection, which is slow, with their own thresholds.
   Settings();
   bool has(Rule rule) const { return enabled[static_cast<std::size_t>(rule)]; }
   double threshold(Rule rule) const { return thresholds[static_cast<std::size_t>(rule)]; }

@@ -7,6 +7,7 @@
 #include "ik/anatomical_limits.h"
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
+#include "ragdoll/overlaps.h"
 
 namespace krok::ragdoll {
 
@@ -46,20 +47,6 @@ void fit_capsule(const std::vector<Vec3>& points, Body& body) {
   for (const Vec3& point : points) distances.push_back(std::hypot(point.x(), point.z()));
   shape.radius = std::clamp(quantile(distances, kInside), 0.05 * whole, 0.95 * whole);
   shape.half_length = whole - shape.radius;
-}
-
-// 0 inside.
-double distance_to(const Shape& shape, Vec3 point) {
-  switch (shape.kind) {
-    case Shape::Kind::box:
-      return (point.cwiseAbs() - shape.half).cwiseMax(0).norm();
-    case Shape::Kind::capsule:
-      point.y() -= std::clamp(point.y(), -shape.half_length, shape.half_length);
-      break;
-    case Shape::Kind::sphere:
-      break;
-  }
-  return std::max(0.0, point.norm() - shape.radius);
 }
 
 // Brings the shapes to the sizes of the model's vertices: sides and radii, not where the bones
@@ -416,7 +403,7 @@ double covered_share(const Model& model, const std::vector<Body>& bodies, double
   for (const Vec3f& position : model.positions) {
     const Vec3 point = position.cast<double>();
     for (std::size_t b = 0; b < bodies.size(); ++b) {
-      if (distance_to(bodies[b].shape, to_body[b] * point) > distance) continue;
+      if (signed_distance(bodies[b].shape, to_body[b] * point) > distance) continue;
       ++covered;
       break;
     }

@@ -20,6 +20,7 @@
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
 #include "nodes/evaluate.h"
+#include "ragdoll/overlaps.h"
 #include "tools/cli/file_name.h"
 
 namespace krok::cli::lint {
@@ -134,6 +135,35 @@ void lint_model(const InputFile& input, const krok::lint::Settings& settings, Li
   file.findings = krok::lint::lint_mesh(view, settings);
 }
 
+// By bodies of people's proportions on the bones: clothes, and what hands hold, are no part of
+// them.
+void add_self_intersections(const Clip& clip, const RoleMap& roles,
+                            const krok::lint::Settings& settings, LintedFile& file) {
+  if (!roles.humanoid) {
+    file.notes.push_back("self-intersection: only of humanoids");
+    return;
+  }
+  const auto bodies = ragdoll::make_bodies(clip.skeleton, roles);
+  if (!bodies) {
+    file.notes.push_back("self-intersection: " + bodies.error().message);
+    return;
+  }
+  const double limit = settings.threshold(krok::lint::Rule::self_intersection) *
+                       krok::lint::legs_scale(clip.skeleton, roles);
+  for (const ragdoll::Overlap& overlap : ragdoll::find_overlaps(clip, *bodies, limit)) {
+    const ragdoll::Body &first = (*bodies)[at(overlap.first)],
+                        &second = (*bodies)[at(overlap.second)];
+    Finding finding;
+    finding.rule = krok::lint::Rule::self_intersection;
+    finding.joint = second.joint;
+    finding.first = overlap.first_frame, finding.last = overlap.last_frame;
+    finding.worst = overlap.worst;
+    finding.value = overlap.depth, finding.threshold = limit, finding.unit = "m";
+    finding.detail = to_utf8(second.name) + " in " + to_utf8(first.name);
+    file.findings.push_back(std::move(finding));
+  }
+}
+
 void lint_file(const InputFile& input, const Options& options, const io::FindRoles& find_roles,
                const krok::lint::MotionOptions& how, LintedFile& file) {
   const auto kind = registry::identify(input.path(), input.bytes());
@@ -161,6 +191,9 @@ void lint_file(const InputFile& input, const Options& options, const io::FindRol
   file.findings.insert(file.findings.end(), std::make_move_iterator(faults.findings.begin()),
                        std::make_move_iterator(faults.findings.end()));
   file.notes = std::move(faults.notes);
+  if (how.settings.has(krok::lint::Rule::self_intersection)) {
+    add_self_intersections(*clip, *roles, how.settings, file);
+  }
   if (how.settings.has(krok::lint::Rule::duplicate)) {
     file.signature = krok::lint::signature_of(*clip, *roles);
   }

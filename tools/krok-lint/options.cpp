@@ -48,6 +48,8 @@ void declare(CommandOptions& command, Options& o) {
                    "The ground moves: foot-slide and drift do not apply");
   command.add_flag("--loops", o.loops,
                    "All motions repeat; otherwise those with loop or cycle in their name do");
+  command.add_flag("--self-intersection", o.self_intersection,
+                   "Also use the rule self-intersection, which is slow");
   command.group("Output");
   command.add("--table OUT.csv", o.table, output({".csv"}), "A table with a row for each fault");
   command.add("--sarif OUT.sarif", o.sarif, output({".sarif", ".json"}),

@@ -14,7 +14,7 @@ struct Options {
   std::string map;                        // path of a role map, or empty
   std::vector<std::string> only, ignore;  // ids of rules
   bool list_rules = false;
-  bool loops = false, treadmill = false;
+  bool loops = false, treadmill = false, self_intersection = false;
   GroundChoice ground;
   std::string profile, baseline;  // paths, or empty
   // Paths of outputs, or empty; `fix` is a folder.

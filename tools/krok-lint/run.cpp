@@ -176,6 +176,9 @@ Result<krok::lint::Settings> settings_of(const Options& options, ToolContext& co
       return status.error();
     }
   }
+  if (options.self_intersection) {
+    settings.enabled[static_cast<std::size_t>(Rule::self_intersection)] = true;
+  }
   for (const auto& facts : krok::lint::rules()) {
     const std::string id(facts.id);
     const auto named = [&](const std::vector<std::string>& list) {

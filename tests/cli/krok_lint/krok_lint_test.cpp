@@ -194,6 +194,21 @@ TEST_F(KrokLint, MeshesAreJudgedWithOrWithoutAMotion) {
   EXPECT_EQ(models.exit_code, 0) << models.out;
 }
 
+// Would fail if the slow rule ran unasked, or were not found by its option.
+TEST_F(KrokLint, SelfIntersectionIsAskedFor) {
+  Clip clip = write_walk(8);
+  LocalMotion local = local_motion(clip);
+  for (Quat& one : local.joint_orientations(clip.skeleton.find("LeftUpLeg")).subspan(100, 50)) {
+    one = from_rotation_vector(Vec3(0, 0, -0.25)) * one;
+  }
+  set_local_motion(local, clip);
+  write("crossed.anim", clip);
+  EXPECT_THAT(run_here("krok-lint", {"crossed.anim"}).out, Not(HasSubstr("self-intersection")));
+  EXPECT_THAT(run_here("krok-lint", {"crossed.anim", "--self-intersection"}).out,
+              HasSubstr("[self-intersection]"));
+  EXPECT_EQ(run_here("krok-lint", {"walk.anim", "--only", "self-intersection"}).exit_code, 0);
+}
+
 TEST_F(KrokLint, AnyNumberOfThreadsGivesTheSame) {
   write_spiked("spiked.anim");
   const std::vector<std::string> inputs = {"walk.anim", "spiked.anim", "walk.anim"};
