@@ -63,6 +63,8 @@ StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
   Vec3 before = Vec3::Zero();  // the stride of the step before
   bool follows = false;
   const int hips = roles.joint(Role::hips);
+  const std::array<int, 2> thighs = {roles.joint(Role::left_upper_leg),
+                                     roles.joint(Role::right_upper_leg)};
   std::array<std::vector<double>, 2> lengths;
   for (std::size_t i = 0; i + 2 < places.size(); ++i) {
     const FootPlace &first = places[i], &between = places[i + 1], &next = places[i + 2];
@@ -91,7 +93,14 @@ StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
     const Vec3 ahead = stride / length, across = Vec3::UnitY().cross(ahead);  // to the left
     const Vec3 step = between.place - first.place;
     lengths[between.side].push_back(step.dot(ahead));
-    widths.push_back(step.dot(across) * (between.side == 0 ? 1 : -1));
+    // Who walks backwards has the left foot on the right of the way.
+    bool backwards = false;
+    if (thighs[0] >= 0 && thighs[1] >= 0) {
+      const Vec3 left = mean_position(clip, thighs[0], first.time, next.time) -
+                        mean_position(clip, thighs[1], first.time, next.time);
+      backwards = left.dot(across) < -kAlike * left.norm();
+    }
+    widths.push_back(step.dot(across) * ((between.side == 0) != backwards ? 1 : -1));
   }
   measures.speed = median_if_any(speeds);
   measures.stride_length = median_if_any(strides);

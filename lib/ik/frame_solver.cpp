@@ -246,7 +246,7 @@ Status FrameSolver::solve(int frame, std::span<GoalFrame> report, Clip& result, 
   strengths_.clear();
   double strength = 0;
   for (const KeyedGoal& goal : goals_) {
-    strengths_.push_back(strength_at(goal, time, duration_));
+    strengths_.push_back(strength_at(goal, time, duration_, clip_.rate));
     strength = std::max(strength, strengths_.back());
   }
   if (!(strength > 0)) {

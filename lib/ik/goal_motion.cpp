@@ -96,7 +96,7 @@ class BlockSolver {
     std::vector<Stretch> stretches;
     for (int f = first; f < end; ++f) {
       const bool active = std::ranges::any_of(goals_, [&](const KeyedGoal& goal) {
-        return strength_at(goal, f / rate_, duration_) > 0;
+        return strength_at(goal, f / rate_, duration_, rate_) > 0;
       });
       if (!active) continue;
       if (stretches.empty() || stretches.back().last + 1 < f) stretches.push_back({f, f});

@@ -128,8 +128,10 @@ Result<GoalFrames> apply_goals(const FrameSource& source, std::span<const KeyedG
 // world, the support where its joints stand. The goal is one that apply_goals() takes.
 Goal goal_in_frame(const KeyedGoal& goal, const Clip& clip, int frame);
 
-// Strength of a goal at a time, 0 to 1, for a motion that lasts `duration` seconds.
-double strength_at(const KeyedGoal& goal, double time, double duration);
+// Strength of a goal at the time of a frame, 0 to 1, for a motion that lasts `duration` seconds at
+// `rate` frames per second. A goal that would have its full strength between two frames has it in
+// the nearer one.
+double strength_at(const KeyedGoal& goal, double time, double duration, double rate);
 
 // Target and orientation of the keys at a time.
 GoalKey key_at(const KeyedGoal& goal, double time);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "core/index.h"
@@ -151,12 +152,16 @@ std::vector<Vec2> outline(std::vector<Vec2> points) {
   return hull;
 }
 
-double strength_at(const KeyedGoal& goal, double time, double duration) {
+double strength_at(const KeyedGoal& goal, double time, double duration, double rate) {
   // Some easings overshoot.
   const auto eased = [&](double u) { return std::clamp(goal.fade.at(u), 0.0, 1.0); };
-  const double from = goal.from.value_or(goal.keys.empty() ? 0 : goal.keys.front().time);
-  const double to =
+  double from = goal.from.value_or(goal.keys.empty() ? 0 : goal.keys.front().time);
+  double to =
       std::max(from, goal.to.value_or(goal.keys.empty() ? duration : goal.keys.back().time));
+  const bool between_frames = std::ceil(from * rate) / rate > to;
+  if (between_frames && from <= duration) {
+    from = to = std::min(std::round(std::midpoint(from, to) * rate) / rate, duration);
+  }
   if (time < from) {
     return goal.fade_in > 0 ? eased((time - from + goal.fade_in) / goal.fade_in) : 0;
   }

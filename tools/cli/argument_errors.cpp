@@ -144,6 +144,10 @@ Error CommandLine::parse_error(const std::vector<std::string>& arguments,
       return usage(fmt::format("unexpected argument {}", shown_list(left)),
                    "write a number and its unit as one word: 1s");
     }
+    if (left.front().find('=') != std::string::npos && app_.get_option_no_throw("--set")) {
+      return usage(fmt::format("unexpected argument {}", shown_list(left)),
+                   "write --set " + left.front());
+    }
     return Error(
         "usage",
         fmt::format("unexpected argument{} {}", left.size() == 1 ? "" : "s", shown_list(left)),

@@ -116,6 +116,10 @@ Result<Format> format_of(const Options& options, const std::string& output) {
   for (const auto& [word, format] : kFormats) {
     if (ending == "." + word) return format;
   }
+  if (ending == ".html" || ending == ".svg") {
+    return usage(fmt::format("-o {}: {} is no film", output, ending),
+                 ending == ".svg" ? "krok-plot draws charts and sheets" : "krok-view writes pages");
+  }
   return usage(
       ending.empty() ? fmt::format("-o {}: no extension to choose a format by", output)
                      : fmt::format("-o {}: {} is no film", output, shown(ending)),

@@ -102,7 +102,7 @@ class GoalViewer {
  private:
   draw::ViewedGoal::Frame frame(const krok::ik::KeyedGoal& keyed, int f) {
     draw::ViewedGoal::Frame shown;
-    shown.strength = strength_at(keyed, f / clip_.rate, clip_.duration());
+    shown.strength = strength_at(keyed, f / clip_.rate, clip_.duration(), clip_.rate);
     if (!(shown.strength > 0)) return shown;
     const Goal goal = goal_in_frame(keyed, clip_, f);
     clip_.get_pose(f, pose_);

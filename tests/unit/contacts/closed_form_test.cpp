@@ -141,6 +141,22 @@ TEST(Cycloid, MeasuresOfTheSteps) {
   EXPECT_FALSE(none.speed || none.step_width || none.step_length[0]);
 }
 
+// Would fail if the feet of one who walks backwards were said to cross.
+TEST(Cycloid, StepsBackwardsAreAsWide) {
+  samples::WalkOptions options;
+  options.steps = 10;
+  std::array<double, 2> widths = {};
+  for (const bool backward : {false, true}) {
+    options.backward = backward;
+    const Clip clip = samples::make_walk(options).value().clip;
+    const StepMeasures steps =
+        step_measures(clip, find_roles(clip.skeleton), test::keytimes_of(clip));
+    widths[backward] = steps.step_width.value_or(0);
+  }
+  EXPECT_GT(widths[0], 0.05);
+  EXPECT_NEAR(widths[1], widths[0], 0.02);
+}
+
 // Would fail if a dance to and fro passed for a walk, and its steps for a speed.
 TEST(Cycloid, StepsToAndFroAreNoGait) {
   Clip clip = cycloid_walk(120);

@@ -99,9 +99,26 @@ TEST(GoalMotion, MovesThroughItsKeysWithTheirEasing) {
   EXPECT_NEAR(key_at(goal, 1.25).target.y(), 3 * 0.0625 - 2 * 0.015625, 1e-12);
   EXPECT_EQ(key_at(goal, -1).target, Vec3(0, 0, 0));
   EXPECT_EQ(key_at(goal, 9).target, Vec3(1, 1, 0));
-  EXPECT_EQ(strength_at(goal, 1, 3), 1);
-  EXPECT_EQ(strength_at(goal, 2.31, 3), 0);
-  EXPECT_NEAR(strength_at(goal, 2.15, 3), 0.5, 1e-9);
+  EXPECT_EQ(strength_at(goal, 1, 3, 30), 1);
+  EXPECT_EQ(strength_at(goal, 2.31, 3, 30), 0);
+  EXPECT_NEAR(strength_at(goal, 2.15, 3, 30), 0.5, 1e-9);
+}
+
+// Would fail if a goal for a time between two frames were at full strength in none of them: it
+// would be called reached ten metres away, as one that only fades.
+TEST(GoalMotion, AGoalBetweenTwoFramesIsOfTheNearerOne) {
+  const Clip clip = calm_human(61);
+  const KeyedGoal goal = reach_of(clip, "LeftHand", 0.5 + 0.4 / clip.rate, Vec3::Zero());
+  const auto strength = [&](int frame) {
+    return strength_at(goal, frame / clip.rate, clip.duration(), clip.rate);
+  };
+  const int nearer = static_cast<int>(std::lround(0.5 * clip.rate));
+  EXPECT_EQ(strength(nearer), 1);
+  EXPECT_LT(strength(nearer - 1), 1);
+  EXPECT_LT(strength(nearer + 1), 1);
+  KeyedGoal late = goal;
+  late.keys.front().time = clip.duration() + 5;
+  EXPECT_EQ(strength_at(late, clip.duration(), clip.duration(), clip.rate), 0);
 }
 
 TEST(GoalMotion, FollowsAJointThatMovesWithTheSolution) {
