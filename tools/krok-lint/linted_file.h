@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -97,8 +98,15 @@ std::string sarif_of(LintedFiles files, const std::string& version);
 // JUnit XML: a test suite for each file, a failed test case for each rule with faults.
 std::string junit_of(LintedFiles files);
 
-// An HTML page, without other files: a table of all faults, the worst file first, and for the worst
-// fault of each file five images of the body around its worst moment, for the first 100 files.
-Result<std::string> page_of(LintedFiles files, ToolContext& context);
+// Pages that play files, as links from another page.
+using PlayerLinks = std::map<const LintedFile*, std::string>;
+
+// An HTML page: a table of all faults, the worst file first, and for the worst fault of each file
+// five images of the body around its worst moment, for the first 100 files. Times lead to the
+// moment in the page that plays the file, if it has one.
+Result<std::string> page_of(LintedFiles files, const PlayerLinks& players, ToolContext& context);
+
+// A page that plays a file's motion, with its mesh if it has one.
+Result<std::string> player_of(const LintedFile& file);
 
 }  // namespace krok::cli::lint

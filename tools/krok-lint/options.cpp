@@ -57,6 +57,8 @@ void declare(CommandOptions& command, Options& o) {
   command.add("--junit OUT.xml", o.junit, output({".xml"}), "JUnit XML, as CI servers read it");
   command.add("--html OUT.html", o.html, output({".html"}),
               "A page of all faults, with images of each file's worst moment");
+  command.add("--save-pages OUT_DIR", o.save_pages, output({}),
+              "With --html: pages that play the worst 100 files, to which its times lead");
   command.add("--fix OUT_DIR", o.fix, output({}),
               "Write mended motions (.anim) to this folder: without spikes, and with feet that "
               "stand where they stand, each only if fewer faults are left; says what was changed "
@@ -70,6 +72,9 @@ Status check_options(const Options& o) {
     return usage(
         fmt::format("no input given; {} is the folder of --fix", shown(o.fix)),
         fmt::format("--fix OUT_DIR is for mended motions: krok-lint {} --fix mended", o.fix));
+  }
+  if (!o.save_pages.empty() && o.html.empty()) {
+    return usage("--save-pages is for pages that --html leads to", "give --html faults.html, too");
   }
   if (o.inputs.empty() && !o.list_rules) return usage("no input given", "see krok-lint --help");
   return {};

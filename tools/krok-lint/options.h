@@ -17,8 +17,8 @@ struct Options {
   bool loops = false, treadmill = false, self_intersection = false;
   GroundChoice ground;
   std::string profile, baseline;  // paths, or empty
-  // Paths of outputs, or empty; `fix` is a folder.
-  std::string table, sarif, junit, html, save_baseline, fix;
+  // Paths of outputs, or empty; `fix` and `save_pages` are folders.
+  std::string table, sarif, junit, html, save_pages, save_baseline, fix;
 };
 
 // The tool. Each call has options of its own.

@@ -8,7 +8,9 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "draw/viewer_page.h"
 #include "formats/csv/field.h"
+#include "formats/io/open_character.h"
 #include "render/image.h"
 #include "render/sheet.h"
 #include "tools/cli/file_name.h"
@@ -289,7 +291,21 @@ std::string junit_of(LintedFiles files) {
       tests, failures, errors, suites);
 }
 
-Result<std::string> page_of(LintedFiles files, ToolContext& context) {
+Result<std::string> player_of(const LintedFile& file) {
+  io::PlainInputs inputs;
+  const auto actor = io::open_actor(file.path, inputs);
+  if (!actor) return actor.error();
+  draw::ViewedMotion motion;
+  motion.name = to_utf8(name_of_input(file.path));
+  motion.clip = &actor->motions.front().clip;
+  if (actor->has_mesh()) motion.body = &actor->model, motion.materials = actor->materials;
+  draw::ViewerPage page;
+  page.title = motion.name;
+  page.motions.push_back(std::move(motion));
+  return draw::write_viewer_page(page);
+}
+
+Result<std::string> page_of(LintedFiles files, const PlayerLinks& players, ToolContext& context) {
   std::string body;
   std::size_t strips = 0, faulty = 0;
   for (const LintedFile* file : files) {
@@ -309,14 +325,22 @@ Result<std::string> page_of(LintedFiles files, ToolContext& context) {
                           facts_of(worst.rule).id, file->seconds(worst.worst), *strip);
       ++strips;
     }
+    const auto player = players.find(file);
+    const auto time_of = [&](const Finding& finding) -> std::string {
+      if (!finding.mesh.empty()) return "";
+      const double seconds = file->seconds(finding.worst);
+      if (player == players.end()) return fmt::format("{:.2f} s", seconds);
+      const std::string joint = finding.joint < 0 ? "" : fmt::format("&joint=0,{}", finding.joint);
+      return fmt::format("<a href=\"{}\">{:.2f} s</a>",
+                         to_markup(fmt::format("{}#t={:.4f}{}", player->second, seconds, joint)),
+                         seconds);
+    };
     body += "<table><tr><th>time</th><th>rule</th><th>what</th></tr>\n";
     for (const Finding& finding : file->findings) {
       const auto& facts = facts_of(finding.rule);
-      body += fmt::format(
-          "<tr><td>{}</td><td class=\"{}\" title=\"{}\">{}</td><td>{}</td></tr>\n",
-          finding.mesh.empty() ? fmt::format("{:.2f} s", file->seconds(finding.worst)) : "",
-          severity_name(facts.severity), to_markup(facts.meaning), facts.id,
-          to_markup(text_of(finding, *file)));
+      body += fmt::format("<tr><td>{}</td><td class=\"{}\" title=\"{}\">{}</td><td>{}</td></tr>\n",
+                          time_of(finding), severity_name(facts.severity), to_markup(facts.meaning),
+                          facts.id, to_markup(text_of(finding, *file)));
     }
     body +=
         fmt::format("</table><p><code>krok view {}</code></p>\n", to_markup(to_utf8(file->path)));

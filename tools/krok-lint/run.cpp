@@ -10,10 +10,12 @@
 
 #include "core/numbers.h"
 #include "core/result.h"
+#include "core/text.h"
 #include "filter/spikes.h"
 #include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
 #include "plant/plant_feet.h"
+#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-lint/linted_file.h"
 
@@ -206,6 +208,32 @@ Status leave_out_accepted(const Options& options, std::vector<LintedFile>& files
   return {};
 }
 
+// --save-pages OUT_DIR: NAME.html for each file with faults and a motion, numbered where names are
+// the same. Fills `players`.
+Status save_players(const Options& options, LintedFiles order, PlayerLinks& players,
+                    OutputSet& outputs) {
+  constexpr std::size_t kMaxPages = 100;
+  namespace fs = std::filesystem;
+  const fs::path from = fs::absolute(fs::path(options.html)).parent_path();
+  std::set<std::string> names;
+  for (const LintedFile* file : order) {
+    if (file->error || file->findings.empty() || file->frames == 0) continue;
+    if (players.size() == kMaxPages) break;
+    const std::string stem = fs::path(file->path).stem().string();
+    std::string name = stem;
+    for (int number = 2; !names.insert(name).second; ++number) {
+      name = fmt::format("{}_{}", stem, number);
+    }
+    const fs::path path = fs::path(options.save_pages) / (name + ".html");
+    const auto page = player_of(*file);
+    if (!page) return page.error();
+    if (Status status = outputs.add(path.string(), *page); !status) return status;
+    const fs::path link = fs::absolute(path).lexically_normal().lexically_relative(from);
+    players[file] = uri_of(to_utf8(link.generic_string()));
+  }
+  return {};
+}
+
 Status write_reports(const Options& options, const std::vector<LintedFile>& files,
                      LintedFiles order, ToolContext& context) {
   OutputSet outputs(context);
@@ -222,14 +250,22 @@ Status write_reports(const Options& options, const std::vector<LintedFile>& file
         })}) {
     if (!status) return status;
   }
+  NewFolders folders;
   if (!options.html.empty()) {
-    const auto page = page_of(order, context);
+    PlayerLinks players;
+    if (!options.save_pages.empty()) {
+      if (Status status = folders.make(options.save_pages); !status) return status;
+      if (Status status = save_players(options, order, players, outputs); !status) return status;
+    }
+    const auto page = page_of(order, players, context);
     if (!page) return page.error();
     if (Status status = outputs.add(options.html, *page); !status) {
       return status;
     }
   }
-  return outputs.finish();
+  if (Status status = outputs.finish(); !status) return status;
+  folders.keep();
+  return {};
 }
 
 std::string summary_of(const std::vector<LintedFile>& files, const Counts& counts) {

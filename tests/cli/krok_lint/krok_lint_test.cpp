@@ -209,6 +209,22 @@ TEST_F(KrokLint, SelfIntersectionIsAskedFor) {
   EXPECT_EQ(run_here("krok-lint", {"walk.anim", "--only", "self-intersection"}).exit_code, 0);
 }
 
+// Would fail if a row of the page did not lead to its moment and joint in a page that is there.
+TEST_F(KrokLint, RowsOfThePageOpenTheirMoment) {
+  const Clip clip = write_spiked("spi ked.anim");
+  std::filesystem::create_directory(path("report"));
+  const ToolRun run =
+      run_here("krok-lint", {"spi ked.anim", "walk.anim", "--ignore", "duplicate", "--html",
+                             "report/faults.html", "--save-pages", "pages"});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_THAT(text_of("report/faults.html"),
+              HasSubstr("<a href=\"../pages/spi%20ked.html#t=2.0000&amp;joint=0," +
+                        std::to_string(clip.skeleton.find("LeftForeArm")) + "\">2.00 s</a>"));
+  EXPECT_THAT(text_of("pages/spi ked.html"), HasSubstr("\"spi ked"));
+  EXPECT_FALSE(std::filesystem::exists(path("pages/walk.html")));
+  EXPECT_EQ(run_here("krok-lint", {"walk.anim", "--save-pages", "pages"}).exit_code, 2);
+}
+
 TEST_F(KrokLint, AnyNumberOfThreadsGivesTheSame) {
   write_spiked("spiked.anim");
   const std::vector<std::string> inputs = {"walk.anim", "spiked.anim", "walk.anim"};
