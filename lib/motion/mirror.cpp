@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "core/index.h"
 #include "math/quaternion.h"
@@ -173,11 +174,11 @@ class AxesFinder {
   // +x and right ones along -x leave the twist to convention: of quarter turns about the bone, the
   // one that turns the joint least in its parent, if it does so clearly less than `fitted`.
   Quat by_quarter_turns(int joint, int other, const Correlation& correlation, const Quat& fitted) {
-    Quat best = fitted;
+    std::vector<Quat> turns;
     for (int quarter = 1; quarter < 4; ++quarter) {
-      const Quat turn = fitted * Quat(Eigen::AngleAxisd(quarter * kPi / 2, correlation.own()));
-      best = less_changed(joint, other, best, turn);
+      turns.push_back(fitted * Quat(Eigen::AngleAxisd(quarter * kPi / 2, correlation.own())));
     }
+    const Quat best = least_changed(joint, other, fitted, std::move(turns));
     turned_[at(joint)] = best.coeffs() == fitted.coeffs() ? 0 : 1;
     return best;
   }
@@ -192,11 +193,18 @@ class AxesFinder {
     return turn;
   }
 
-  // `turn` where it turns the joint clearly less in its parent than `usual` does.
-  Quat less_changed(int joint, int other, const Quat& usual, const Quat& turn) const {
+  // Of `turns` the one that turns the joint least in its parent, where that is clearly less than
+  // what `usual` does, and what `usual` would do to the mirrored motion: it is decided alike when
+  // that is mirrored again.
+  Quat least_changed(int joint, int other, const Quat& usual, std::vector<Quat> turns) const {
     if (pose_.empty()) return usual;
-    const double gain = change(joint, other, usual) - change(joint, other, turn);
-    return gain > kClearlyLess ? turn : usual;
+    const auto changed = [&](const Quat& turn) { return change(joint, other, turn); };
+    std::ranges::stable_sort(turns, {}, changed);
+    for (const Quat& turn : turns) {
+      const double before = std::min(changed(usual), changed(turn * usual.conjugate() * turn));
+      if (before - changed(turn) > kClearlyLess) return turn;
+    }
+    return usual;
   }
 
   // By how much mirroring turns the joint in its parent, both of the posture.
@@ -225,14 +233,13 @@ class AxesFinder {
   // chest, and say nothing. Mirrored, people stand about as before: of `usual` and the axes of the
   // joints above and below, those which turn the joint least in its parent.
   Quat by_posture(int joint, const Correlation& correlation, const Quat& usual) const {
-    Quat best = usual;
+    std::vector<Quat> turns;
     const auto consider = [&](const Quat& turn) {
-      if (correlation.angle_after(turn) >= kBent) return;
-      best = less_changed(joint, joint, best, turn);
+      if (correlation.angle_after(turn) < kBent) turns.push_back(turn);
     };
     consider(found_[at(skeleton_.parents[at(joint)])]);
     if (const auto found = below(joint)) consider(*found);
-    return best;
+    return least_changed(joint, joint, usual, std::move(turns));
   }
 
   static Mat3 correlation_of(const Bones& bones) {
