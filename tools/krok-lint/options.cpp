@@ -85,7 +85,7 @@ Status check_options(const Options& o) {
 ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of<Options>("krok-lint", options, declare, check_options, run);
-  spec.summary = "Finds faults of motions (sliding feet, pops) and of meshes (weights, bind pose)";
+  spec.summary = "Finds faults of motions (sliding feet, pops) and meshes (weights, bind pose)";
   spec.details =
       "One line for each fault, the worst file first. NAME.lint.json beside a motion says which of "
       "its faults are accepted, and why.";
