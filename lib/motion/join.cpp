@@ -57,23 +57,45 @@ constexpr double kTwoSteps = 1.2;  // seconds
 // Radians: from the first to the second half of that time, and between joints of two poses.
 constexpr double kStraight = 8 * kRadiansPerDegree, kTurning = 20 * kRadiansPerDegree;
 constexpr double kAlike = 3 * kRadiansPerDegree, kOther = 12 * kRadiansPerDegree;
+constexpr double kTwistedChest = 60 * kRadiansPerDegree;
 
-// How the character faces, between hips and chest.
-double facing(const Clip& clip, int carrier, int chest, int frame) {
-  const double hips = ground_frame(clip, carrier, frame).heading;
-  return chest < 0 ? hips : hips + 0.5 * wrapped(ground_frame(clip, chest, frame).heading - hips);
-}
+// The joints that tell how a character faces.
+struct Facing {
+  int carrier = 0, chest = -1;
+  double twist = 0;  // of the chest against the hips in the reference pose, radians
+
+  // Reference poses that are twisted between hips and chest have motions turned by far more there
+  // than people can be.
+  Facing(const Clip& clip, int hips, int upper) : carrier(hips), chest(upper) {
+    if (chest < 0) return;
+    Vec2 sum = Vec2::Zero();
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      const double apart =
+          ground_frame(clip, chest, f).heading - ground_frame(clip, carrier, f).heading;
+      sum += Vec2(std::cos(apart), std::sin(apart));
+    }
+    const double mean = std::atan2(sum.y(), sum.x());
+    if (std::abs(mean) > kTwistedChest) twist = mean;
+  }
+
+  // Between hips and chest.
+  double operator()(const Clip& clip, int frame) const {
+    const double hips = ground_frame(clip, carrier, frame).heading;
+    if (chest < 0) return hips;
+    return hips + 0.5 * wrapped(ground_frame(clip, chest, frame).heading - hips - twist);
+  }
+};
 
 // Likewise, over the time up to `frame` or, with `step` 1, from there on, as far as the motion
 // goes.
-double steady_facing(const Clip& clip, int carrier, int chest, int frame, int step) {
+double steady_facing(const Clip& clip, const Facing& facing, int frame, int step) {
   const int ahead = step > 0 ? clip.frame_count() - 1 - frame : frame;
   const int count = 1 + std::min(ahead, static_cast<int>(std::lround(kTwoSteps * clip.rate)));
-  const double here = facing(clip, carrier, chest, frame);
+  const double here = facing(clip, frame);
   double turn = 0;  // from `here`
   std::array<double, 2> halves = {0, 0};
   for (int k = 0; k < count; ++k) {
-    turn += wrapped(facing(clip, carrier, chest, frame + step * k) - here - turn);
+    turn += wrapped(facing(clip, frame + step * k) - here - turn);
     halves[2 * k < count ? 0 : 1] += turn;
   }
   const int near = (count + 1) / 2;
@@ -102,10 +124,9 @@ Transform alignment(const Clip& first, int first_frame, const Clip& second, int 
   GroundFrame start = ground_frame(second, carrier, second_frame);
   const double other = smoother_step(
       (largest_difference(first, first_frame, second, second_frame) - kAlike) / (kOther - kAlike));
-  end.heading +=
-      other * wrapped(steady_facing(first, carrier, options.chest, first_frame, -1) - end.heading);
-  start.heading += other * wrapped(steady_facing(second, carrier, options.chest, second_frame, 1) -
-                                   start.heading);
+  const Facing facing(first, carrier, options.chest);
+  end.heading += other * wrapped(steady_facing(first, facing, first_frame, -1) - end.heading);
+  start.heading += other * wrapped(steady_facing(second, facing, second_frame, 1) - start.heading);
   Transform move = end.to_world() * start.to_world().inverse();
   if (options.match_height) {
     const auto c = static_cast<std::size_t>(carrier);

@@ -63,8 +63,8 @@ TEST(Join, GoesOnWhereTheFirstStandsAndFaces) {
   EXPECT_NEAR(joint_place(joined->clip, 31, 0).y(), joint_place(second, 1, 0).y(), 1e-6);
 }
 
-// Would fail if the hips' turn in one frame, in the middle of a step, became a turn of the way.
-TEST(Join, WhoWalksStraightGoesOnStraight) {
+// Hips and chest that turn against each other with each step.
+Clip straight_walk() {
   Clip walk;
   walk.skeleton = test::human_skeleton();
   walk.rate = 60;
@@ -86,6 +86,12 @@ TEST(Join, WhoWalksStraightGoesOnStraight) {
     local_to_world(walk.skeleton.parents, local, world);
     walk.set_pose(f, world);
   }
+  return walk;
+}
+
+// Would fail if the hips' turn in one frame, in the middle of a step, became a turn of the way.
+TEST(Join, WhoWalksStraightGoesOnStraight) {
+  const Clip walk = straight_walk();
   const int chest = walk.skeleton.find("Spine2");
   for (const int from : {20, 50, 66, 90}) {
     const auto joined =
@@ -94,6 +100,29 @@ TEST(Join, WhoWalksStraightGoesOnStraight) {
     const Vec3 way = joint_place(joined->clip, joined->clip.frame_count() - 1, 0) -
                      joint_place(joined->clip, joined->joint_frame + 10, 0);
     EXPECT_NEAR(std::atan2(way.x(), way.z()), 0, 0.04) << from;
+  }
+}
+
+// A reference pose whose chest is half round against its hips, as in ACCAD's files. Would fail if
+// the difference between both, now half round to the left and now to the right, told how one faces:
+// who walks would go on backwards.
+TEST(Join, AChestTwistedInTheReferencePoseTurnsNobody) {
+  Clip walk = straight_walk();
+  const int chest = walk.skeleton.find("Spine2");
+  ASSERT_GE(chest, 0);
+  const std::vector<std::uint8_t> above = subtree(walk.skeleton, chest);
+  for (std::size_t j = 0; j < above.size(); ++j) {
+    if (above[j] == 0) continue;
+    Quat& turned = walk.skeleton.reference[j].orientation;
+    turned = from_rotation_vector(Vec3(0, kPi, 0)) * turned;
+  }
+  for (int from = 0; from <= 120; from += 15) {
+    const auto joined =
+        join(walk, cut(walk, from, walk.frame_count() - 1), 0, {.blend = 0.2, .chest = chest});
+    ASSERT_TRUE(joined.ok());
+    for (int f = 0; f < joined->clip.frame_count(); ++f) {
+      EXPECT_LT(std::abs(ground_frame(joined->clip, 0, f).heading), 30 * kRadiansPerDegree) << f;
+    }
   }
 }
 
