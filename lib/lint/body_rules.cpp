@@ -60,6 +60,11 @@ void find_bones(const Series& series, MotionFaults& out) {
     float low = INFINITY, high = 0;  // square metres
   };
   std::vector<Bone> bones;
+  // Of what is no person: what moves most of the body against its root is no bone.
+  const auto moves_the_body = [&](int joint) {
+    return !roles && skeleton.parents[at(joint)] == 0 &&
+           2 * std::ranges::count(subtree(skeleton, joint), 1) > series.joints;
+  };
   for (int j = 0; j < series.joints; ++j) {
     const int parent = skeleton.parents[at(j)];
     if (parent < 0 || j == series.carrier || below[at(j)] == 0 || skeleton.end_sites[at(j)] != 0 ||
@@ -67,6 +72,7 @@ void find_bones(const Series& series, MotionFaults& out) {
          !(is_of_body(series.roles.roles[at(j)]) && is_of_body(series.roles.roles[at(parent)])))) {
       continue;
     }
+    if (moves_the_body(j)) continue;
     bones.push_back({j, parent});
   }
   for (int f = 0; f < series.frames; ++f) {

@@ -417,6 +417,32 @@ TEST(LintRules, ShortMotionsAndLoneJointsAreNoTrouble) {
   EXPECT_TRUE(faults_of(lone).findings.empty());
 }
 
+// An animal whose trunk moves against a root on the ground. Would fail if that way were a bone that
+// changes its length: a third of public clips of animals had that fault.
+TEST(LintRules, TheWayOfABodyAgainstItsRootIsNoBone) {
+  Clip animal;
+  const auto add = [&](const char* name, int parent, const Vec3& place) {
+    return animal.skeleton.add(name, parent, {place, Quat::Identity()});
+  };
+  add("ground", -1, Vec3::Zero());
+  const int trunk = add("barrel", 0, Vec3(0, 1, 0));
+  add("snout", trunk, Vec3(0, 1.2, 0.6));
+  add("brush", trunk, Vec3(0, 1, -0.7));
+  animal.rate = 30;
+  animal.resize(60);
+  for (int f = 0; f < 60; ++f) {
+    const Vec3 up(0, 0.2 * std::sin(0.3 * f), 0);
+    for (std::size_t j = 0; j < 4; ++j) {
+      const Vec3 place = animal.skeleton.reference[j].position + (j == 0 ? Vec3::Zero() : up);
+      animal.frame_positions(f)[j] = place.cast<float>();
+      animal.frame_orientations(f)[j].setIdentity();
+    }
+  }
+  EXPECT_EQ(find(faults_of(animal), Rule::bone_length, 30), nullptr);
+  for (int f = 20; f < 60; ++f) animal.frame_positions(f)[2] += Vec3f(0, 0.1F, 0);
+  EXPECT_NE(find(faults_of(animal), Rule::bone_length, 30), nullptr);
+}
+
 TEST(LintDuplicates, AreFoundUnderAnotherRatePlaceAndSize) {
   const auto signature = [](const Clip& clip) {
     return lint::signature_of(clip, find_roles(clip.skeleton));
