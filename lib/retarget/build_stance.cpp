@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/index.h"
+#include "math/euler.h"
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
 #include "retarget/pose_alignment.h"
@@ -60,6 +61,7 @@ class StanceBuilder {
     flatten(Role::left_foot, on_ground);
     flatten(Role::right_foot, on_ground);
     bend_toes(on_ground);
+    level_head();
     return std::move(pose_);
   }
 
@@ -321,6 +323,28 @@ class StanceBuilder {
       alike += expected.dot(frame * others);
     }
     return alike < 0 ? Vec3(-others) : others;
+  }
+
+  // Bones do not show how far a head nods. People who do not lie look ahead, on average.
+  void level_head() {
+    constexpr double kLies = 0.5;  // the trunk's rise
+    constexpr double kNods = 10 * kRadiansPerDegree;
+    const int head = roles_.joint(Role::head), hips = roles_.joint(Role::hips);
+    const int left = roles_.joint(Role::left_upper_leg),
+              right = roles_.joint(Role::right_upper_leg);
+    if (head < 0 || hips < 0 || left < 0 || right < 0) return;
+    Vec3 ahead = Vec3::Zero();
+    for (int f = 0; f < clip_.frame_count(); f += step_) {
+      const auto positions = clip_.frame_positions(f);
+      const Vec3 trunk = (positions[at(head)] - positions[at(hips)]).cast<double>();
+      if (trunk.stableNormalized().y() < kLies) continue;
+      const Vec3 across = (positions[at(left)] - positions[at(right)]).cast<double>();
+      const Quat heading = axis_rotation(Axis::y, std::atan2(-across.z(), across.x()));
+      const Quat now = clip_.frame_orientations(f)[at(head)].cast<double>().normalized();
+      ahead += heading.conjugate() * now * (pose_[at(head)].orientation.conjugate() * kForward);
+    }
+    const double nod = std::atan2(-ahead.y(), ahead.z());
+    if (ahead.z() > 0 && std::abs(nod) > kNods) turn(head, from_rotation_vector(nod * kLeft));
   }
 
   // From the pose that is built to a frame, of the hips.

@@ -790,5 +790,32 @@ TEST(Retarget, AFallAfterAWalkLeavesTheStance) {
   }
 }
 
+// A reference pose that does not stand and whose head nods, which no bone shows. Would fail if that
+// nod were how the head is held: all that is brought onto others hangs its head.
+TEST(Retarget, AHeadThatNodsInTheReferencePoseLooksAhead) {
+  const Skeleton human = human_skeleton();
+  Skeleton folded = human;
+  for (const char* name : {"LeftUpLeg", "RightUpLeg"}) {
+    folded = posed(folded, name, from_rotation_vector(Vec3(3, 0, 0)));
+  }
+  Clip walk = lively_clip(human, 60);
+  const auto head = at(human.find("Head"));
+  const auto looks_up = [&](const Skeleton& reference) {
+    walk.skeleton = reference;
+    const auto stance = retarget::find_stance(walk, find_roles(reference), std::nullopt);
+    EXPECT_TRUE(stance.ok());
+    double sum = 0;
+    for (int f = 0; f < walk.frame_count(); ++f) {
+      const Quat now = walk.frame_orientations(f)[head].cast<double>();
+      sum += (now * (stance->pose[head].orientation.conjugate() * Vec3::UnitZ())).y();
+    }
+    return sum / walk.frame_count();
+  };
+  EXPECT_NEAR(looks_up(folded), 0, 0.2);
+  for (const double nod : {-0.9, 0.9}) {
+    EXPECT_NEAR(looks_up(posed(folded, "Head", from_rotation_vector(Vec3(nod, 0, 0)))), 0, 0.2);
+  }
+}
+
 }  // namespace
 }  // namespace krok
