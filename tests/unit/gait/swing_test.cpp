@@ -38,7 +38,7 @@ FootPose pointing_foot(double time) {
 // foot stamps down in a frame or two, and the knee snaps straight.
 TEST(Swing, ToesAreRaisedByTheAnkleBeforeTheFoot) {
   const Leg leg = plain_leg();
-  const Ground level([](double, double) { return 0.0; });
+  const test::Ground level([](double, double) { return 0.0; });
   Swing swing(leg, kOff, kStrike, 0.16);
   Swing::Ends off, strike;
   off.spacing = strike.spacing = 0.01;
