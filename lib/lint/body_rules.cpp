@@ -61,9 +61,13 @@ void find_bones(const Series& series, MotionFaults& out) {
   };
   std::vector<Bone> bones;
   // Of what is no person: what moves most of the body against its root is no bone.
+  std::vector<int> carried(at(series.joints), 1);  // the joint itself and those below it
+  for (int j = series.joints - 1; j > 0; --j) {
+    const int parent = skeleton.parents[at(j)];
+    if (parent >= 0) carried[at(parent)] += carried[at(j)];
+  }
   const auto moves_the_body = [&](int joint) {
-    return !roles && skeleton.parents[at(joint)] == 0 &&
-           2 * std::ranges::count(subtree(skeleton, joint), 1) > series.joints;
+    return !roles && skeleton.parents[at(joint)] == 0 && 2 * carried[at(joint)] > series.joints;
   };
   for (int j = 0; j < series.joints; ++j) {
     const int parent = skeleton.parents[at(j)];

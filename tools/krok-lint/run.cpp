@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <tuple>
@@ -298,9 +299,13 @@ Result<int> run(const Options& options, ToolContext& context) {
   Json list = Json::array();
   for (const LintedFile* file : order) {
     context.print(console_text(*file, context.quiet));
-    if (context.verbose) {
-      context.diagnose_in(file->path, file->diagnostics);
-      for (const std::string& note : file->notes) context.log(file->path + ": " + note);
+    Diagnostics said;
+    std::ranges::copy_if(file->diagnostics, std::back_inserter(said), [&](const Diagnostic& one) {
+      return context.verbose || one.code == "clip-choice";  // the others are not judged
+    });
+    context.diagnose_in(file->path, said);
+    for (const std::string& note : file->notes) {
+      if (context.verbose) context.log(file->path + ": " + note);
     }
     list.push_back(json_of(*file));
   }

@@ -194,6 +194,20 @@ TEST_F(KrokLint, MeshesAreJudgedWithOrWithoutAMotion) {
   EXPECT_EQ(models.exit_code, 0) << models.out;
 }
 
+// Would fail if one of a file's animations were judged for all, without a word.
+TEST_F(KrokLint, WhichOfSeveralAnimationsIsJudgedIsSaid) {
+  GlbBuilder builder = rig();
+  auto second = builder.json["animations"][0];
+  second["name"] = "Second";
+  for (const int animations : {1, 2}) {
+    if (animations == 2) builder.json["animations"].push_back(second);
+    const auto bytes = builder.glb();
+    write_text("hero.glb", std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    const ToolRun run = run_here("krok-lint", {"hero.glb"});
+    EXPECT_EQ(run.err.find("[clip-choice]") != std::string::npos, animations == 2) << run.err;
+  }
+}
+
 // Would fail if the slow rule ran unasked, or were not found by its option.
 TEST_F(KrokLint, SelfIntersectionIsAskedFor) {
   Clip clip = write_walk(8);
