@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "ik/goal_motion.h"
-#include "roles/roles.h"
 #include "tools/cli/report.h"
 
 namespace krok::cli::ik {
@@ -25,21 +24,6 @@ std::string table(const Outcome& outcome);
 // A warning (ik-missed) for each goal that is missed in some frame, with the worst one and the
 // joint that holds it back; ik-never for goals that are active in no frame.
 Diagnostics missed_goals(const Outcome& outcome);
-
-// A humanoid's legs that no goal is for; `clip` shows how their knees bend.
-std::vector<krok::ik::HeldFoot> legs_without_goals(const Clip& clip, const RoleMap& roles,
-                                                   std::span<const krok::ik::KeyedGoal> goals);
-
-// Of a skeleton without legs that have roles: what ends on the ground in `clip` and hangs on no
-// goal's joint, each as a foot without a leg.
-std::vector<krok::ik::HeldFoot> ends_on_ground(const Clip& clip,
-                                               std::span<const krok::ik::KeyedGoal> goals);
-
-// The joint to shift for goals of the whole body: where legs and trunk part, or what carries that
-// joint at hardly any distance. Without legs the root, or the joint below it that is apart from the
-// ends on the ground.
-int moving_joint(const Clip& clip, const RoleMap& roles,
-                 std::span<const krok::ik::KeyedGoal> goals);
 
 // A warning (ik-feet) where goals of other limbs move a foot by more than 1 cm.
 Diagnostics moved_feet(const Outcome& outcome, std::span<const krok::ik::HeldFoot> legs);

@@ -23,6 +23,7 @@
 #include "ik/anatomical_limits.h"
 #include "ik/gaze.h"
 #include "ik/limits.h"
+#include "ik/whole_body.h"
 #include "retarget/stance.h"
 #include "roles/body_frame.h"
 #include "scene/frame_blocks.h"
@@ -427,7 +428,7 @@ Status Run::set_stiffness() {
   for (std::size_t j = 0; j < trunk.size(); ++j) {
     solver_.stiffness[j] = 1 - (1 - solver_.stiffness[j]) * (1 - trunk[j]);
   }
-  solver_.moving_joint = moving_joint(clip_, roles_, goals_);
+  solver_.moving_joint = krok::ik::moving_joint(clip_, roles_, goals_);
   // Of a root on the ground nothing is turned or shifted but for its own goals.
   for (int j = clip_.skeleton.parents[at(solver_.moving_joint)]; j >= 0;
        j = clip_.skeleton.parents[at(j)]) {
@@ -587,7 +588,8 @@ Result<int> Run::bring_about(const FrameSource& motion,
   how.jobs = context_.jobs;
   if (roles_.humanoid) how.upright = roles_.joints(Role::head);
   const bool has_legs = roles_.joint(Role::left_foot) >= 0 || roles_.joint(Role::right_foot) >= 0;
-  how.held = has_legs ? legs_without_goals(clip_, roles_, goals_) : ends_on_ground(clip_, goals_);
+  how.held = has_legs ? krok::ik::legs_without_goals(clip_, roles_, goals_)
+                      : krok::ik::ends_on_ground(clip_, goals_);
   const std::string& asked = options_.goals.empty() ? options_.input : options_.goals;
   auto made = krok::ik::apply_goals(motion, goals_, limits_, how);
   if (!made) return std::move(made).error().in_file(asked);
