@@ -209,10 +209,14 @@ class AxesFinder {
 
   // By how much mirroring turns the joint in its parent, both of the posture.
   double change(int joint, int other, const Quat& turn) const {
+    return angle_between(Quat::Identity(), change_by(joint, other, turn));
+  }
+  // What leads back, in the joint's axes.
+  Quat change_by(int joint, int other, const Quat& turn) const {
     const int parent = skeleton_.parents[at(joint)], source = skeleton_.parents[at(other)];
     const Quat before = pose_[at(parent)].orientation.conjugate() * pose_[at(joint)].orientation;
     const Quat theirs = pose_[at(source)].orientation.conjugate() * pose_[at(other)].orientation;
-    return angle_between(before, found_[at(parent)].conjugate() * image(theirs) * turn);
+    return (found_[at(parent)].conjugate() * image(theirs) * turn).conjugate() * before;
   }
 
   // The axes that the nearest joint of the middle below, whose bones leave nothing open, has.
@@ -231,7 +235,8 @@ class AxesFinder {
 
   // For a joint of the middle with a single bone: some reference poses are twisted between hips and
   // chest, and say nothing. Mirrored, people stand about as before: of `usual` and the axes of the
-  // joints above and below, those which turn the joint least in its parent.
+  // joints above and below, those which turn the joint least in its parent; where these turn it
+  // far, `usual` turned about the bone.
   Quat by_posture(int joint, const Correlation& correlation, const Quat& usual) const {
     std::vector<Quat> turns;
     const auto consider = [&](const Quat& turn) {
@@ -239,7 +244,21 @@ class AxesFinder {
     };
     consider(found_[at(skeleton_.parents[at(joint)])]);
     if (const auto found = below(joint)) consider(*found);
-    return least_changed(joint, joint, usual, std::move(turns));
+    const Quat chosen = least_changed(joint, joint, usual, std::move(turns));
+    const bool of_body = pairs_.in_body.empty() || pairs_.in_body[at(joint)] != 0;
+    if (chosen.coeffs() != usual.coeffs() || !of_body) return chosen;
+    // The bone alone says nothing of the twist about it: half round, or else whatever it is.
+    const Quat fitted = correlation.turn(usual);
+    const auto twisted = [&](double angle) {
+      return Quat(fitted * Quat(Eigen::AngleAxisd(angle, correlation.own())));
+    };
+    const Quat left = change_by(joint, joint, fitted);
+    const double twist = 2 * std::atan2(left.vec().dot(correlation.own()), left.w());
+    for (const double angle : {kPi, twist}) {
+      const Quat turn = least_changed(joint, joint, fitted, {twisted(angle)});
+      if (turn.coeffs() != fitted.coeffs()) return turn;
+    }
+    return usual;
   }
 
   static Mat3 correlation_of(const Bones& bones) {
