@@ -32,6 +32,7 @@ void apply_rest_weights(Actor& actor);
 
 struct ActorOptions {
   std::string clip = {};            // animation of a scene, a name or number; empty: the best
+  bool every_clip = false;          // of scenes, without `clip`: all animations that move joints
   bool with_mesh = true;            // of scenes, not the skeleton alone
   bool with_materials = true;       // of scenes with a mesh
   bool with_morphs = false;         // keep morph targets; otherwise faces are at rest
@@ -49,5 +50,9 @@ struct ActorOptions {
 // Errors: those of open_motion(), open_character(), open_scene() and the conversion.
 Result<Actor> open_actor(const InputFile& file, Inputs& inputs, const ActorOptions& options = {});
 Result<Actor> open_actor(const std::string& path, Inputs& inputs, const ActorOptions& options = {});
+
+// All motions of a file: each animation of a scene that moves joints, with its name; the one of any
+// other file, without a name. Errors: those of open_motion().
+Result<std::vector<Actor::Motion>> open_motions(const InputFile& file, Inputs& inputs);
 
 }  // namespace krok::io

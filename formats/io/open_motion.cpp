@@ -36,20 +36,27 @@ MotionSummary summary_of(const FrameSource& frames, std::vector<std::string> con
           std::move(conversions), {}};
 }
 
-Result<Clip> read_scene_motion(const Format& format, const InputFile& file, Inputs& inputs,
-                               const MotionOptions& options) {
-  ActorOptions how;
-  how.with_mesh = false;
-  how.with_stretches = options.stretches != nullptr;
-  how.rest_frame_is_note = options.rest_frame_is_note;
-  auto actor = read_scene_actor(format, file, inputs, how);
+Result<std::vector<Actor::Motion>> read_scene_motions(const Format& format, const InputFile& file,
+                                                      Inputs& inputs, const ActorOptions& options) {
+  auto actor = read_scene_actor(format, file, inputs, options);
   if (!actor) return actor.error();
   if (actor->motions.empty()) {
     return Error("motion-missing", "the file has no animation",
                  "krok-import --save-character writes its skeleton and mesh")
         .in_file(file.path());
   }
-  Actor::Motion& motion = actor->motions.front();
+  return std::move(actor->motions);
+}
+
+Result<Clip> read_scene_motion(const Format& format, const InputFile& file, Inputs& inputs,
+                               const MotionOptions& options) {
+  ActorOptions how;
+  how.with_mesh = false;
+  how.with_stretches = options.stretches != nullptr;
+  how.rest_frame_is_note = options.rest_frame_is_note;
+  auto motions = read_scene_motions(format, file, inputs, how);
+  if (!motions) return motions.error();
+  Actor::Motion& motion = motions->front();
   if (options.stretches != nullptr) *options.stretches = std::move(motion.stretches);
   return std::move(motion.clip);
 }
@@ -109,6 +116,18 @@ Result<Clip> open_motion(const InputFile& file, Inputs& inputs, const MotionOpti
   if (options.rest_frame_is_note) rest_frame_as_note(capture.diagnostics);
   inputs.diagnose(capture.diagnostics);
   return std::move(capture.clip);
+}
+
+Result<std::vector<Actor::Motion>> open_motions(const InputFile& file, Inputs& inputs) {
+  const Format& format = format_of(file);
+  if (format.read_scene != nullptr) {
+    return read_scene_motions(format, file, inputs, {.every_clip = true, .with_mesh = false});
+  }
+  auto clip = open_motion(file, inputs);
+  if (!clip) return clip.error();
+  std::vector<Actor::Motion> motions(1);
+  motions[0].clip = *std::move(clip);
+  return motions;
 }
 
 Result<Clip> open_motion(const std::string& path, Inputs& inputs, const MotionOptions& options) {

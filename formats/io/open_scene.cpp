@@ -99,6 +99,17 @@ Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,
 
 namespace {
 
+// The animations that move joints.
+std::vector<int> moving(const nodes::Scene& scene, std::span<const int> joints) {
+  std::vector<int> animations;
+  for (std::size_t i = 0; i < scene.animations.size(); ++i) {
+    if (moved_count(scene, scene.animations[i], joints) > 0) {
+      animations.push_back(static_cast<int>(i));
+    }
+  }
+  return animations;
+}
+
 // The parts of a scene that are asked for; adds to `found` what is to be reported.
 Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Inputs& inputs,
                        const ActorOptions& options, Diagnostics& found) {
@@ -107,16 +118,19 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
   const auto rig = character::find_rig(scene, *evaluator, "", found);
   if (!rig) return rig.error();
   int animation = best_animation(scene, rig->joints.nodes).animation;
+  std::vector<int> animations;
+  if (options.every_clip && options.clip.empty()) animations = moving(scene, rig->joints.nodes);
   if (!options.clip.empty()) {
     const auto chosen = find_animation(scene, options.clip, path);
     if (!chosen) return chosen.error();
     animation = *chosen;
-  } else if (options.with_motions && animation >= 0) {
+  } else if (options.with_motions && !options.every_clip && animation >= 0) {
     const Diagnostics choice =
         describe_choice(scene, best_animation(scene, rig->joints.nodes), "clip-choice",
                         "krok-import with --clip NAME or NUMBER selects another", path);
     found.insert(found.end(), choice.begin(), choice.end());
   }
+  if (animations.empty() && animation >= 0) animations = {animation};
   const CaptureOptions how;
   const auto roles = roles_of(rig->skeleton, how);
   if (!roles) return roles.error();
@@ -146,16 +160,18 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
     if (!skeleton) return skeleton.error();
     actor.model.skeleton = *std::move(skeleton);
   }
-  if (!options.with_motions || animation < 0) return actor;
-  const auto sampling = character::choose_sampling(scene.animations[at(animation)], {}, found);
-  if (!sampling) return sampling.error();
-  Actor::Motion& motion = actor.motions.emplace_back();
-  auto clip = character::make_motion(*evaluator, *rig, *roles, *place, animation, *sampling,
-                                     inputs.jobs, inputs.progress, found,
-                                     options.with_stretches ? &motion.stretches : nullptr);
-  if (!clip) return clip.error();
-  motion.name = animation_name(scene, at(animation));
-  motion.clip = *std::move(clip);
+  if (!options.with_motions) return actor;
+  for (const int one : animations) {
+    const auto sampling = character::choose_sampling(scene.animations[at(one)], {}, found);
+    if (!sampling) return sampling.error();
+    Actor::Motion& motion = actor.motions.emplace_back();
+    auto clip = character::make_motion(*evaluator, *rig, *roles, *place, one, *sampling,
+                                       inputs.jobs, inputs.progress, found,
+                                       options.with_stretches ? &motion.stretches : nullptr);
+    if (!clip) return clip.error();
+    motion.name = animation_name(scene, at(one));
+    motion.clip = *std::move(clip);
+  }
   return actor;
 }
 

@@ -19,8 +19,9 @@ using krok::lint::Finding;
 
 constexpr double kNear = 0.25;  // seconds
 
-std::string stem_of(const std::string& path) {
-  return to_utf8(std::filesystem::path(path).stem().string());
+std::string stem_of(const LintedFile& file) {
+  const std::string stem = to_utf8(std::filesystem::path(file.path).stem().string());
+  return stem + (file.animation.empty() ? "" : ": " + file.animation);
 }
 
 bool overlap(double from, double to, double other_from, double other_to) {
@@ -41,8 +42,8 @@ Status check_rule(const std::string& id, const std::string& path) {
       .in_file(path);
 }
 
-std::string fingerprint_of(const std::string& path, std::string_view rule, int number) {
-  const std::string text = fmt::format("{}|{}|{}", stem_of(path), rule, number);
+std::string fingerprint_of(const LintedFile& file, std::string_view rule, int number) {
+  const std::string text = fmt::format("{}|{}|{}", stem_of(file), rule, number);
   return hex(xxh3(std::as_bytes(std::span(text))));
 }
 
@@ -52,8 +53,7 @@ std::vector<std::string> fingerprints_of(const LintedFile& file) {
     const auto before = std::ranges::count_if(file.findings, [&](const Finding& other) {
       return other.rule == finding.rule && other.first < finding.first;
     });
-    prints.push_back(
-        fingerprint_of(file.path, facts_of(finding.rule).id, static_cast<int>(before)));
+    prints.push_back(fingerprint_of(file, facts_of(finding.rule).id, static_cast<int>(before)));
   }
   return prints;
 }
@@ -62,7 +62,7 @@ std::vector<lint_files::KnownFault> known_faults(const std::vector<LintedFile>& 
   std::vector<lint_files::KnownFault> known;
   for (const LintedFile& file : files) {
     for (const Finding& finding : file.findings) {
-      known.push_back({stem_of(file.path), std::string(facts_of(finding.rule).id),
+      known.push_back({stem_of(file), std::string(facts_of(finding.rule).id),
                        file.joint_of(finding), file.seconds(finding.first),
                        file.seconds(finding.last)});
     }
@@ -71,7 +71,7 @@ std::vector<lint_files::KnownFault> known_faults(const std::vector<LintedFile>& 
 }
 
 void leave_out_known(const std::vector<lint_files::KnownFault>& known, LintedFile& file) {
-  const std::string stem = stem_of(file.path);
+  const std::string stem = stem_of(file);
   file.known += std::erase_if(file.findings, [&](const Finding& finding) {
     return std::ranges::any_of(known, [&](const lint_files::KnownFault& fault) {
       return fault.file == stem && fault.rule == facts_of(finding.rule).id &&

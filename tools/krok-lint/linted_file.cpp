@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <tuple>
 
@@ -32,8 +33,8 @@ using krok::lint::Finding;
 // Files that are open at once.
 constexpr std::size_t kOpenFiles = 64;
 
-bool is_named_loop(const std::string& path) {
-  const std::string name = ascii_lower(name_of_input(path));
+bool is_named_loop(const LintedFile& file) {
+  const std::string name = ascii_lower(name_of_input(file.path) + " " + file.animation);
   return name.find("loop") != std::string::npos || name.find("cycle") != std::string::npos;
 }
 
@@ -164,39 +165,56 @@ void add_self_intersections(const Clip& clip, const RoleMap& roles,
   }
 }
 
-void lint_file(const InputFile& input, const Options& options, const io::FindRoles& find_roles,
+void lint_clip(const Clip& clip, const Options& options, const io::FindRoles& find_roles,
                const krok::lint::MotionOptions& how, LintedFile& file) {
-  const auto kind = registry::identify(input.path(), input.bytes());
-  if (kind == registry::Kind::model || kind == registry::Kind::character) {
-    return lint_model(input, how.settings, file);
-  }
-  io::PlainInputs inputs;
-  inputs.jobs = 1;
-  const auto clip = io::open_motion(input, inputs);
-  file.diagnostics = std::move(inputs.diagnostics);
-  const bool has_mesh = lint_scene(input, how.settings, file);
-  if (!clip && has_mesh) return;
-  if (!clip) {
-    file.error = clip.error();
-    return;
-  }
-  file.joints = clip->skeleton.names;
-  file.rate = clip->rate, file.frames = clip->frame_count();
-  const auto roles = find_roles(clip->skeleton);
+  file.joints = clip.skeleton.names;
+  file.rate = clip.rate, file.frames = clip.frame_count();
+  const auto roles = find_roles(clip.skeleton);
   if (!roles) {
     file.error = roles.error();
     return;
   }
-  auto faults = faults_of(*clip, *roles, file.path, options, how);
+  auto faults = faults_of(clip, *roles, file, options, how);
   file.findings.insert(file.findings.end(), std::make_move_iterator(faults.findings.begin()),
                        std::make_move_iterator(faults.findings.end()));
   file.notes = std::move(faults.notes);
   if (how.settings.has(krok::lint::Rule::self_intersection)) {
-    add_self_intersections(*clip, *roles, how.settings, file);
+    add_self_intersections(clip, *roles, how.settings, file);
   }
   if (how.settings.has(krok::lint::Rule::duplicate)) {
-    file.signature = krok::lint::signature_of(*clip, *roles);
+    file.signature = krok::lint::signature_of(clip, *roles);
   }
+}
+
+// One element, and one for each animation where there are several.
+std::vector<LintedFile> lint_file(const InputFile& input, const Options& options,
+                                  const io::FindRoles& find_roles,
+                                  const krok::lint::MotionOptions& how) {
+  std::vector<LintedFile> files(1);
+  files[0].path = input.path();
+  const auto kind = registry::identify(input.path(), input.bytes());
+  if (kind == registry::Kind::model || kind == registry::Kind::character) {
+    lint_model(input, how.settings, files[0]);
+    return files;
+  }
+  io::PlainInputs inputs;
+  inputs.jobs = 1;
+  const auto motions = io::open_motions(input, inputs);
+  files[0].diagnostics = std::move(inputs.diagnostics);
+  const bool has_mesh = lint_scene(input, how.settings, files[0]);
+  if (!motions && has_mesh) return files;
+  if (!motions) {
+    files[0].error = motions.error();
+  } else if (motions->size() == 1) {
+    lint_clip(motions->front().clip, options, find_roles, how, files[0]);
+  } else {
+    for (const Actor::Motion& motion : *motions) {
+      LintedFile& file = files.emplace_back();
+      file.path = input.path(), file.animation = motion.name;
+      lint_clip(motion.clip, options, find_roles, how, file);
+    }
+  }
+  return files;
 }
 
 void add_duplicates(const krok::lint::Settings& settings, std::vector<LintedFile>& files) {
@@ -207,12 +225,12 @@ void add_duplicates(const krok::lint::Settings& settings, std::vector<LintedFile
   for (const auto& [first, second] :
        krok::lint::find_duplicates(signatures, degrees * kRadiansPerDegree)) {
     LintedFile& file = files[at(second)];
-    if (file.path == files[at(first)].path) continue;
+    if (file.name() == files[at(first)].name()) continue;
     Finding finding;
     finding.rule = Rule::duplicate;
     finding.last = std::max(0, file.frames - 1);
     finding.value = 1;
-    finding.detail = "the same motion as " + to_utf8(files[at(first)].path);
+    finding.detail = "the same motion as " + files[at(first)].name();
     file.findings.push_back(std::move(finding));
   }
 }
@@ -221,6 +239,10 @@ void add_duplicates(const krok::lint::Settings& settings, std::vector<LintedFile
 
 std::string LintedFile::joint_of(const Finding& finding) const {
   return finding.joint < 0 ? finding.mesh : joints[at(finding.joint)];
+}
+
+std::string LintedFile::name() const {
+  return to_utf8(path) + (animation.empty() ? "" : ": " + animation);
 }
 
 std::string quantity_text(double value, const std::string& unit) {
@@ -259,10 +281,10 @@ krok::lint::MotionOptions judging(const Options& options, const krok::lint::Sett
   return how;
 }
 
-krok::lint::MotionFaults faults_of(const Clip& clip, const RoleMap& roles, const std::string& path,
+krok::lint::MotionFaults faults_of(const Clip& clip, const RoleMap& roles, const LintedFile& file,
                                    const Options& options, const krok::lint::MotionOptions& how) {
   krok::lint::MotionOptions mine = how;
-  mine.is_loop = options.loops || is_named_loop(path);
+  mine.is_loop = options.loops || is_named_loop(file);
   // Feet of a motion in place slide as fast as it would travel.
   const auto moving = travelling(clip, carrying_joint(roles));
   return krok::lint::lint_motion(moving ? *moving : clip, roles, mine);
@@ -275,28 +297,31 @@ std::vector<LintedFile> lint_all(const Options& options, const krok::lint::Motio
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 512 << 20);
   mallopt(M_TOP_PAD, 16 << 20);
-  std::vector<LintedFile> files(options.inputs.size());
-  context.progress->begin("looking for faults", files.size());
-  for (std::size_t begin = 0; begin < files.size(); begin += kOpenFiles) {
-    const std::size_t count = std::min(kOpenFiles, files.size() - begin);
+  const std::size_t total = options.inputs.size();
+  std::vector<LintedFile> files;
+  context.progress->begin("looking for faults", total);
+  for (std::size_t begin = 0; begin < total; begin += kOpenFiles) {
+    const std::size_t count = std::min(kOpenFiles, total - begin);
     std::vector<std::optional<InputFile>> inputs(count);
+    std::vector<std::vector<LintedFile>> found(count);
     for (std::size_t i = 0; i < count; ++i) {
-      LintedFile& file = files[begin + i];
-      file.path = options.inputs[begin + i];
-      auto input = context.open_input(file.path);
+      const std::string& path = options.inputs[begin + i];
+      auto input = context.open_input(path);
       if (input) {
         inputs[i] = *std::move(input);
       } else {
-        file.error = input.error();
+        LintedFile& file = found[i].emplace_back();
+        file.path = path, file.error = input.error();
       }
     }
     parallel_for(count, 1, context.jobs, [&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) {
-        if (inputs[i]) lint_file(*inputs[i], options, find_roles, how, files[begin + i]);
+        if (inputs[i]) found[i] = lint_file(*inputs[i], options, find_roles, how);
         inputs[i].reset();
         context.progress->advance(1);
       }
     });
+    for (auto& of_file : found) std::ranges::move(of_file, std::back_inserter(files));
   }
   context.progress->end();
   if (how.settings.has(krok::lint::Rule::duplicate)) add_duplicates(how.settings, files);

@@ -18,9 +18,11 @@
 
 namespace krok::cli::lint {
 
-// What was found in one input.
+// What was found in one input, or in one of its animations: a file with several has an element of
+// its own for its meshes, and one for each animation after it.
 struct LintedFile {
   std::string path;
+  std::string animation;                      // empty for the only one
   std::optional<Error> error;                 // why it cannot be read
   std::vector<krok::lint::Finding> findings;  // the worst first
   std::vector<std::string> notes;
@@ -34,6 +36,8 @@ struct LintedFile {
   // The joint's name, "hips" for the path of the body, empty for the whole body.
   std::string joint_of(const krok::lint::Finding& finding) const;
   double seconds(int frame) const { return frame / rate; }
+  // "hero.glb: Run", for people.
+  std::string name() const;
 };
 
 // "0.063 m", with the unit that reads best: "63 mm".
@@ -45,8 +49,8 @@ std::string text_of(const krok::lint::Finding& finding, const LintedFile& file);
 krok::lint::MotionOptions judging(const Options& options, const krok::lint::Settings& settings,
                                   const Terrain* ground);
 
-// Faults of the motion that is or will be in the file `path`, whose name may call it a loop.
-krok::lint::MotionFaults faults_of(const Clip& clip, const RoleMap& roles, const std::string& path,
+// Faults of the motion of `file`, whose names may call it a loop.
+krok::lint::MotionFaults faults_of(const Clip& clip, const RoleMap& roles, const LintedFile& file,
                                    const Options& options, const krok::lint::MotionOptions& how);
 
 // Reads and judges all inputs, on the context's threads, in order.
@@ -55,9 +59,9 @@ std::vector<LintedFile> lint_all(const Options& options, const krok::lint::Motio
 
 // Which faults do not count: those of a baseline and suppressed ones.
 
-// A fault's identity: the file's name without folder and ending, the rule, and the fault's number
-// among those of the rule in order of time. Sixteen hexadecimal digits.
-std::string fingerprint_of(const std::string& path, std::string_view rule, int number);
+// A fault's identity: the file's name without folder and ending, with the animation, the rule, and
+// the fault's number among those of the rule in order of time. Sixteen hexadecimal digits.
+std::string fingerprint_of(const LintedFile& file, std::string_view rule, int number);
 // Those of a file's findings, in their order.
 std::vector<std::string> fingerprints_of(const LintedFile& file);
 

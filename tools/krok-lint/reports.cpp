@@ -27,8 +27,8 @@ using krok::lint::Rule;
 
 constexpr std::size_t kMaxSarifResults = 25'000;  // GitHub's limit for a run
 
-std::string shown_path(const LintedFile& file) {
-  return printable(to_utf8(file.path));
+std::string shown_name(const LintedFile& file) {
+  return printable(file.name());
 }
 
 // Meshes have their faults at any time.
@@ -91,7 +91,7 @@ Result<std::string> strip_of(const LintedFile& file, const Finding& finding, Too
   // Its warnings are known from the first reading.
   OneOfMany messages;
   ToolContext own = context.beside(messages, context.jobs);
-  auto actors = read_actors({file.path}, {BodyChoice::none, SkinMethod::linear, ""}, own);
+  auto actors = read_actors({file.path}, {.body = BodyChoice::none, .clip = file.animation}, own);
   if (!actors) return actors.error();
   const MovingActor& actor = actors->front();
   const auto times = moments_of(finding, file);
@@ -136,7 +136,7 @@ std::string console_text(const LintedFile& file, bool errors_only) {
     const std::string& place = file.error->where.file;
     const bool is_other = !place.empty() && place != file.path;
     return fmt::format(
-        "{}: error: {} [unreadable]\n{}", shown_path(file),
+        "{}: error: {} [unreadable]\n{}", shown_name(file),
         is_other ? printable(base_name(place)) + " has a fault" : printable(file.error->message),
         is_other ? to_text(*file.error) + "\n" : "");
   }
@@ -144,7 +144,7 @@ std::string console_text(const LintedFile& file, bool errors_only) {
   for (const Finding& finding : file.findings) {
     const auto& facts = facts_of(finding.rule);
     if (errors_only && facts.severity != Severity::error) continue;
-    text += fmt::format("{}: {}{}: {} [{}]\n", shown_path(file), when(finding, file),
+    text += fmt::format("{}: {}{}: {} [{}]\n", shown_name(file), when(finding, file),
                         severity_name(facts.severity), text_of(finding, file), facts.id);
   }
   return text;
@@ -152,10 +152,11 @@ std::string console_text(const LintedFile& file, bool errors_only) {
 
 std::string table_of(LintedFiles files) {
   std::string text =
-      "file,rule,kind,severity,time [s],frame,joint,joints,value,limit,unit,from [s],to [s],"
+      "file,animation,rule,kind,severity,time [s],frame,joint,joints,value,limit,unit,from [s],to "
+      "[s],"
       "detail\n";
   for (const LintedFile* file : files) {
-    const std::string path = csv::field(to_utf8(file->path));
+    const std::string path = csv::field(to_utf8(file->path)) + "," + csv::field(file->animation);
     if (file->error) {
       text +=
           fmt::format("{},unreadable,,error,,,,,,,,,,{}\n", path, csv::field(file->error->message));
@@ -174,6 +175,7 @@ std::string table_of(LintedFiles files) {
 
 Json json_of(const LintedFile& file) {
   Json json = {{"path", to_utf8(file.path)}};
+  if (!file.animation.empty()) json["animation"] = file.animation;
   if (file.error) {
     json["error"] = {{"code", file.error->code}, {"message", file.error->message}};
     return json;
@@ -221,15 +223,16 @@ std::string sarif_of(LintedFiles files, const std::string& version) {
     };
     if (file->error) {
       add(sarif_result(*file, "unreadable", Severity::error, file->error->message,
-                       fingerprint_of(file->path, "unreadable", 0)));
+                       fingerprint_of(*file, "unreadable", 0)));
     }
     const auto prints = fingerprints_of(*file);
+    const std::string of_animation = file->animation.empty() ? "" : file->animation + ": ";
     for (std::size_t i = 0; i < file->findings.size(); ++i) {
       const Finding& f = file->findings[i];
       const auto& facts = facts_of(f.rule);
       add(sarif_result(*file, facts.id, facts.severity,
-                       fmt::format("{}. {}{}{}", facts.meaning, f.mesh.empty() ? "At " : "",
-                                   when(f, *file), text_of(f, *file)),
+                       fmt::format("{}. {}{}{}{}", facts.meaning, of_animation,
+                                   f.mesh.empty() ? "At " : "", when(f, *file), text_of(f, *file)),
                        prints[i]));
     }
   }
@@ -247,7 +250,7 @@ std::string junit_of(LintedFiles files) {
   std::string suites;
   std::size_t tests = 0, failures = 0, errors = 0;
   for (const LintedFile* file : files) {
-    const std::string path = to_markup(to_utf8(file->path));
+    const std::string path = to_markup(file->name());
     if (file->error) {
       suites += fmt::format(
           "  <testsuite name=\"{0}\" tests=\"1\" failures=\"0\" errors=\"1\">\n"
@@ -293,10 +296,11 @@ std::string junit_of(LintedFiles files) {
 
 Result<std::string> player_of(const LintedFile& file) {
   io::PlainInputs inputs;
-  const auto actor = io::open_actor(file.path, inputs);
+  const auto actor = io::open_actor(file.path, inputs, {.clip = file.animation});
   if (!actor) return actor.error();
   draw::ViewedMotion motion;
   motion.name = to_utf8(name_of_input(file.path));
+  if (!file.animation.empty()) motion.name += ": " + file.animation;
   motion.clip = &actor->motions.front().clip;
   if (actor->has_mesh()) motion.body = &actor->model, motion.materials = actor->materials;
   draw::ViewerPage page;
@@ -307,17 +311,18 @@ Result<std::string> player_of(const LintedFile& file) {
 
 Result<std::string> page_of(LintedFiles files, const PlayerLinks& players, ToolContext& context) {
   std::string body;
-  std::size_t strips = 0, faulty = 0;
+  std::size_t strips = 0, faulty = 0, motions = 0;
   for (const LintedFile* file : files) {
+    motions += file->frames > 0 || file->error ? 1 : 0;
     if (file->error) {
-      body += fmt::format("<h2>{}</h2><p class=\"error\">{}</p>\n", to_markup(to_utf8(file->path)),
+      body += fmt::format("<h2>{}</h2><p class=\"error\">{}</p>\n", to_markup(file->name()),
                           to_markup(file->error->message));
       continue;
     }
     if (file->findings.empty()) continue;
-    ++faulty;
+    faulty += file->frames > 0 ? 1 : 0;
     const Finding& worst = file->findings.front();
-    body += fmt::format("<h2>{}</h2>\n", to_markup(to_utf8(file->path)));
+    body += fmt::format("<h2>{}</h2>\n", to_markup(file->name()));
     if (strips < kMaxStrips && file->frames > 0) {
       const auto strip = strip_of(*file, worst, context);
       if (!strip) return strip.error();
@@ -349,7 +354,7 @@ Result<std::string> page_of(LintedFiles files, const PlayerLinks& players, ToolC
       "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width\"><title>Faults of motions</title>"
       "<style>{}</style><main><h1>{} of {} motions have faults</h1>\n{}</main></html>\n",
-      kStyle, faulty, files.size(), body);
+      kStyle, faulty, motions, body);
 }
 
 }  // namespace krok::cli::lint

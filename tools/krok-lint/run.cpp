@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <set>
 #include <tuple>
@@ -60,6 +59,13 @@ std::optional<Repair> with_planted_feet(const LintedFile& file, const Clip& clip
                                                       readable(1e3 * planted->drift_after, 3))};
 }
 
+// Of a file made for a motion, without ending.
+std::string name_for(const LintedFile& file) {
+  std::string name = std::filesystem::path(file.path).stem().string();
+  if (!file.animation.empty()) name += "_" + file_name_of(file.animation);
+  return name;
+}
+
 struct Mended {
   std::vector<std::string> done, left_out;
   std::size_t faults_before = 0, faults_left = 0;  // accepted ones, too
@@ -69,7 +75,7 @@ struct Mended {
 Mended mend(const LintedFile& file, const RoleMap& roles, const Options& options,
             const krok::lint::MotionOptions& how, int jobs, Clip& clip) {
   const auto count = [&](const Clip& of) {
-    return faults_of(of, roles, file.path, options, how).findings.size();
+    return faults_of(of, roles, file, options, how).findings.size();
   };
   Mended mended;
   mended.faults_before = mended.faults_left = count(clip);
@@ -104,26 +110,27 @@ Status fix_all(const Options& options, const krok::lint::MotionOptions& how,
   for (const LintedFile& file : files) {
     if (file.error || !can_be_mended(file)) continue;
     io::PlainInputs inputs;
-    auto clip = io::open_motion(file.path, inputs);
-    if (!clip) return clip.error();
-    const auto roles = find_roles(clip->skeleton);
+    auto actor = io::open_actor(file.path, inputs, {.clip = file.animation, .with_mesh = false});
+    if (!actor) return actor.error();
+    Clip& clip = actor->motions.front().clip;
+    const auto roles = find_roles(clip.skeleton);
     if (!roles) return roles.error();
-    const Mended mended = mend(file, *roles, options, how, context.jobs, *clip);
+    const Mended mended = mend(file, *roles, options, how, context.jobs, clip);
     std::string left_out;
     for (const std::string& step : mended.left_out) left_out += "; left out: " + step;
     if (mended.done.empty()) {
-      if (!left_out.empty()) context.log(file.path + ": nothing mended" + left_out);
+      if (!left_out.empty()) context.log(file.name() + ": nothing mended" + left_out);
       continue;
     }
-    const std::string name = std::filesystem::path(file.path).stem().string() + ".anim";
+    const std::string name = name_for(file) + ".anim";
     const std::string path = (std::filesystem::path(options.fix) / name).string();
     if (!names.insert(name).second) {
       return Error("lint-fix", fmt::format("two motions would be written to {}", path),
                    "mend them one folder at a time");
     }
-    clip->provenance = context.provenance();
+    clip.provenance = context.provenance();
     const Status status =
-        outputs.add(path, [&](OutputFile& out) { return anim::write(*clip, {}, out); });
+        outputs.add(path, [&](OutputFile& out) { return anim::write(clip, {}, out); });
     if (!status) return status;
     const std::string done = fmt::format("{}", fmt::join(mended.done, "; "));
     context.log(fmt::format("{}: {}; {} left of {}{}", path, done,
@@ -156,12 +163,14 @@ std::vector<const LintedFile*> worst_first(const std::vector<LintedFile>& files)
 }
 
 struct Counts {
-  std::size_t unreadable = 0, faulty = 0, errors = 0, warnings = 0, known = 0, suppressed = 0;
+  std::size_t files = 0, animations = 0, unreadable = 0, faulty = 0, errors = 0, warnings = 0,
+              known = 0, suppressed = 0;
 };
 
 Counts counts_of(const std::vector<LintedFile>& files) {
   Counts counts;
   for (const LintedFile& file : files) {
+    (file.animation.empty() ? counts.files : counts.animations) += 1;
     counts.unreadable += file.error ? 1 : 0;
     counts.known += file.known, counts.suppressed += file.suppressed;
     counts.faulty += file.findings.empty() ? 0 : 1;
@@ -220,7 +229,7 @@ Status save_players(const Options& options, LintedFiles order, PlayerLinks& play
   for (const LintedFile* file : order) {
     if (file->error || file->findings.empty() || file->frames == 0) continue;
     if (players.size() == kMaxPages) break;
-    const std::string stem = fs::path(file->path).stem().string();
+    const std::string stem = name_for(*file);
     std::string name = stem;
     for (int number = 2; !names.insert(name).second; ++number) {
       name = fmt::format("{}_{}", stem, number);
@@ -269,10 +278,11 @@ Status write_reports(const Options& options, const std::vector<LintedFile>& file
   return {};
 }
 
-std::string summary_of(const std::vector<LintedFile>& files, const Counts& counts) {
-  std::string line =
-      fmt::format("{}, {} with faults: {}, {}", counted(files.size(), "file"), counts.faulty,
-                  counted(counts.errors, "error"), counted(counts.warnings, "warning"));
+std::string summary_of(const Counts& counts) {
+  std::string line = counted(counts.files, "file");
+  if (counts.animations > 0) line += " with " + counted(counts.animations, "animation");
+  line += fmt::format(", {} with faults: {}, {}", counts.faulty, counted(counts.errors, "error"),
+                      counted(counts.warnings, "warning"));
   if (counts.unreadable > 0) line += fmt::format("; {} unreadable", counts.unreadable);
   if (counts.known > 0) line += fmt::format("; {} known", counts.known);
   if (counts.suppressed > 0) line += fmt::format("; {} suppressed", counts.suppressed);
@@ -299,13 +309,9 @@ Result<int> run(const Options& options, ToolContext& context) {
   Json list = Json::array();
   for (const LintedFile* file : order) {
     context.print(console_text(*file, context.quiet));
-    Diagnostics said;
-    std::ranges::copy_if(file->diagnostics, std::back_inserter(said), [&](const Diagnostic& one) {
-      return context.verbose || one.code == "clip-choice";  // the others are not judged
-    });
-    context.diagnose_in(file->path, said);
-    for (const std::string& note : file->notes) {
-      if (context.verbose) context.log(file->path + ": " + note);
+    if (context.verbose) {
+      context.diagnose_in(file->path, file->diagnostics);
+      for (const std::string& note : file->notes) context.log(file->name() + ": " + note);
     }
     list.push_back(json_of(*file));
   }
@@ -322,7 +328,7 @@ Result<int> run(const Options& options, ToolContext& context) {
       return status.error();
     }
   }
-  context.log(summary_of(files, counts));
+  context.log(summary_of(counts));
   if (counts.unreadable == files.size()) return kExitTrouble;
   if (counts.unreadable > 0) return kExitPartly;
   return counts.faulty > 0 ? kExitNo : kExitDone;

@@ -138,7 +138,7 @@ TEST_F(KrokLint, ReportsAreWhatOtherProgramsRead) {
   const std::string junit = text_of("out.xml");
   EXPECT_THAT(junit, HasSubstr("failures=\"1\" errors=\"1\""));
   EXPECT_THAT(junit, HasSubstr("name=\"pop\"><failure type=\"error\""));
-  EXPECT_THAT(text_of("out.csv"), HasSubstr("spi ked.anim,pop,spike,error,2,120,LeftForeArm,1,"));
+  EXPECT_THAT(text_of("out.csv"), HasSubstr("spi ked.anim,,pop,spike,error,2,120,LeftForeArm,1,"));
 }
 
 // Would fail if repairs were kept that mend nothing: here a small spike, which is no fault, beside
@@ -194,18 +194,29 @@ TEST_F(KrokLint, MeshesAreJudgedWithOrWithoutAMotion) {
   EXPECT_EQ(models.exit_code, 0) << models.out;
 }
 
-// Would fail if one of a file's animations were judged for all, without a word.
-TEST_F(KrokLint, WhichOfSeveralAnimationsIsJudgedIsSaid) {
-  GlbBuilder builder = rig();
-  auto second = builder.json["animations"][0];
-  second["name"] = "Second";
-  for (const int animations : {1, 2}) {
-    if (animations == 2) builder.json["animations"].push_back(second);
-    const auto bytes = builder.glb();
-    write_text("hero.glb", std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-    const ToolRun run = run_here("krok-lint", {"hero.glb"});
-    EXPECT_EQ(run.err.find("[clip-choice]") != std::string::npos, animations == 2) << run.err;
-  }
+// Would fail if one of a file's animations were judged for all, or mended for another.
+TEST_F(KrokLint, EachAnimationOfAFileIsJudged) {
+  write_spiked("spiked.anim");
+  ASSERT_EQ(run_here("krok-body", {"walk.anim", "-o", "body.model"}).exit_code, 0);
+  ASSERT_EQ(
+      run_here("krok-skin", {"body.model", "walk.anim", "spiked.anim", "-o", "both.glb"}).exit_code,
+      0);
+  const std::string pop = "both.glb: spiked: 2.00 s: error: LeftForeArm, spike";
+  const ToolRun run = run_here(
+      "krok-lint", {"both.glb", "--only", "pop", "--table", "t.csv", "--save-baseline",
+                    "known.json", "--fix", "mended", "--html", "t.html", "--save-pages", "pages"});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_THAT(run.out, StartsWith(pop));
+  EXPECT_THAT(run.out, Not(HasSubstr("both.glb: walk:")));
+  EXPECT_THAT(run.err, HasSubstr("1 file with 2 animations, 1 with faults"));
+  EXPECT_THAT(text_of("t.csv"), HasSubstr("both.glb,spiked,pop,"));
+  EXPECT_THAT(text_of("t.html"), HasSubstr("href=\"pages/both_spiked.html#t=2.0000"));
+  EXPECT_EQ(run_here("krok-lint", {"mended/both_spiked.anim", "--only", "pop"}).exit_code, 0);
+  const std::vector<std::string> known = {"both.glb", "--only", "pop", "--baseline", "known.json"};
+  EXPECT_EQ(run_here("krok-lint", known).exit_code, 0);
+  const ToolRun same = run_here("krok-lint", {"both.glb", "walk.anim", "--only", "duplicate"});
+  EXPECT_THAT(same.out, HasSubstr("walk.anim: 0.00 s: warning: body: the same motion as both.glb: "
+                                  "walk [duplicate]"));
 }
 
 // Would fail if the slow rule ran unasked, or were not found by its option.
