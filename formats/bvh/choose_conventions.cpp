@@ -228,7 +228,7 @@ class ConventionChooser {
         "use --angles radians if they are");
   }
 
-  // The unit, if this project wrote the file.
+  // The unit, if this project wrote the file; then the axes are Krok's.
   std::optional<Unit> mark() const {
     const std::size_t end_of_number =
         file_.header.frame_time_offset + file_.header.frame_time_text.size();
@@ -237,13 +237,15 @@ class ConventionChooser {
     return marked_unit(after.substr(0, after.find('\n')));
   }
 
-  // Axes are detected all the same: a reference pose that lies is turned up, whoever wrote it.
   void take_mark(Conventions& conventions) const {
     const auto unit = mark();
     if (!unit) return;
+    conventions = {};
     conventions.unit = *unit;
-    conventions.unit_confidence = Confidence::certain;
-    conventions.unit_reason = "marked in the file by krok-export";
+    conventions.unit_confidence = conventions.up_confidence = conventions.forward_confidence =
+        Confidence::certain;
+    conventions.unit_reason = conventions.up_reason = conventions.forward_reason =
+        "marked in the file by krok-export";
   }
 
   // Unit and axes, from the options or else detected from the data.

@@ -58,9 +58,9 @@ Result<RowIndex> index_rows_with_care(std::string_view text, const MotionHeader&
                                       const Hierarchy& hierarchy, const std::string& file_name,
                                       const ReadOptions& options, Diagnostics& diagnostics);
 
-// BVH has no place for the unit of length. What this project writes has it in blanks after the
-// Frame Time, which readers skip: a tab, a space, the unit in three blanks (a tab is a one) and a
-// tab.
+// BVH has no place for the unit of length. What this project writes, always in Krok's axes, has it
+// in blanks after the Frame Time, which readers skip: a tab, a space, the unit in three blanks (a
+// tab is a one) and a tab.
 
 // Empty for units without a mark: all but m, dm, cm, mm, in, ft and cmu.
 std::string unit_mark(double metres);

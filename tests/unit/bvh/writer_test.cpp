@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "math/quaternion.h"
+#include "support/human_skeleton.h"
 #include "unit/bvh/bvh_text.h"
 
 namespace krok::bvh {
@@ -206,6 +207,20 @@ TEST(BvhWriter, TheUnitIsMarked) {
     ReadOptions given = upright;
     given.unit = Unit{0.5, "given"};
     EXPECT_EQ(read_ok(written(clip, options), given).conventions.unit.metres, 0.5);
+  }
+}
+
+// Would fail if the way back detected axes: a body whose reference pose faces aside or lies on its
+// back came back turned.
+TEST(BvhWriter, AxesComeBackWhateverTheReferencePose) {
+  for (const Vec3& turn : {Vec3(0, kPi / 2, 0), Vec3(0, 0.8, 0), Vec3(-kPi / 2, 0, 0)}) {
+    Clip clip;
+    clip.skeleton = test::human_skeleton();
+    const Quat turned = from_rotation_vector(turn);
+    for (Transform& joint : clip.skeleton.reference) joint.position = turned * joint.position;
+    clip.resize(3);
+    for (int f = 0; f < 3; ++f) clip.set_pose(f, clip.skeleton.reference);
+    expect_same_motion(clip, read_ok(written(clip), ReadOptions()).clip, 1e-5f);
   }
 }
 
