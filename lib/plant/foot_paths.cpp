@@ -359,6 +359,15 @@ constexpr double kBehind = kPi / 6;
 constexpr double kGivesWay = 0.25;     // of the captured flexion
 constexpr double kTurnsWithin = 0.05;  // seconds
 
+// 1 for a foot below its hip, which a lower pelvis brings nearer; 0 for one beside or above it, as
+// in a cartwheel.
+double below_hip(const Vec3& from_hip) {
+  constexpr double kBeside = 0.4, kBelow = 0.7;  // cosines of the angle from the vertical
+  const double down = -from_hip.y() / std::max(from_hip.norm(), 1e-9);
+  const double u = std::clamp((down - kBeside) / (kBelow - kBeside), 0.0, 1.0);
+  return u * u * (3 - 2 * u);
+}
+
 // A leg in one frame, as captured but for the pelvis.
 struct LegNow {
   Transform upper, lower, foot;
@@ -375,7 +384,14 @@ struct LegNow {
     thigh = (lower.position - upper.position).norm();
     shank = (foot.position - lower.position).norm();
     reach = (foot.position - upper.position).norm();
+    // A foot in the air is not worth a pelvis that goes down or a leg that is stretched.
+    const Vec3 wanted = goal - upper.position;
+    const double too_far = wanted.norm() - longest();
+    if (too_far > 0) goal -= (1 - below_hip(wanted)) * too_far * wanted.normalized();
   }
+
+  // From hip to ankle, metres: as captured, or of a leg that is nearly straight.
+  double longest() const { return std::max(reach, two_bone_reach(thigh, shank, kNearlyStraight)); }
 };
 
 // Metres by which the hip must be lowered for the ankle to be within `reach` of it, >= 0; if the
@@ -513,9 +529,7 @@ std::vector<double> lowering(const Clip& clip, const PlantedBody& body,
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
     for (std::size_t f = 0; f < frames; ++f) {
       const LegNow now(clip, static_cast<int>(f), body.legs[i], paths[i], 0);
-      const double longest =
-          std::max(now.reach, two_bone_reach(now.thigh, now.shank, kNearlyStraight));
-      needs[f] = std::max(needs[f], drop_for(now.goal - now.upper.position, longest));
+      needs[f] = std::max(needs[f], drop_for(now.goal - now.upper.position, now.longest()));
     }
   }
   // A little more than needed: a leg at the limit of its reach for a frame bends there least of

@@ -14,6 +14,7 @@
 #include "motion/ground_frame.h"
 #include "plant/foot_paths_internal.h"
 #include "samples/generator/gesture.h"
+#include "support/human_skeleton.h"
 #include "support/planted_measures.h"
 #include "unit/contacts/events.h"
 
@@ -358,6 +359,33 @@ TEST(PlantFeet, PelvisIsLoweredBeforeALegIsStretched) {
   const auto measures =
       test::measure(input, walk.clip, find_roles(input.skeleton), feet.stays, feet.clip);
   EXPECT_LT(measures.stretch, 5e-6);
+}
+
+// A cartwheel: a leg that is level or up, and its foot corrected away from the hip. Would fail if
+// the pelvis went down for it, which brings no such foot nearer: hands went 11 cm into the ground.
+TEST(PlantFeet, PelvisIsNotLoweredForAFootInTheAir) {
+  Clip clip;
+  clip.skeleton = test::human_skeleton();
+  clip.resize(3);
+  const RoleMap roles = find_roles(clip.skeleton);
+  const auto body = plant::find_body(clip, roles);
+  ASSERT_TRUE(body.ok());
+  const int thigh = roles.joint(Role::left_upper_leg);
+  const auto lowered = [&](double degrees) {
+    std::vector<plant::FootPath> paths(body->legs.size());
+    for (auto& path : paths) path.turn = path.shift = std::vector<Vec3>(3, Vec3::Zero());
+    for (int f = 0; f < 3; ++f) {
+      clip.set_pose(f, clip.skeleton.reference);
+      turn_below(thigh, f, from_rotation_vector(Vec3(0, 0, degrees * kRadiansPerDegree)), clip);
+      const Vec3 leg = test::joint_of(clip, f, body->legs[0].foot).position -
+                       test::joint_of(clip, f, thigh).position;
+      paths[0].shift[static_cast<std::size_t>(f)] = 0.02 * leg.normalized();
+    }
+    return std::ranges::max(plant::lowering(clip, *body, paths));
+  };
+  EXPECT_NEAR(lowered(20), 0.02 / std::cos(20 * kRadiansPerDegree), 0.01);
+  for (const double degrees : {70, 80, 88, 92, 120, 180})
+    EXPECT_LT(lowered(degrees), 1e-6) << degrees;
 }
 
 // A rest pose before the capture stands elsewhere; drawn there, the foot would tear the leg.
