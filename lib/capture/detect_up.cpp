@@ -105,6 +105,12 @@ class UpScores {
            found.hips >= kMinHips;
   }
 
+  // Roughly: one who lies has hands and feet below the markers' plane.
+  bool near_the_ground(Direction d) const {
+    constexpr double kNear = 0.1, kKeeps = 0.1;
+    return heights_ && std::abs(heights(d).lowest) <= kNear && heights(d).spread < kKeeps;
+  }
+
  private:
   // Weights. Ground outweighs a body that is upright elsewhere, since it may lie; a character that
   // travels along an axis outweighs both; a reference pose alone does not.
@@ -178,7 +184,9 @@ Confidence confidence_of(const Evidence& evidence, const UpVotes& votes, const U
     const auto trunk = body_axis(evidence.reference, evidence.marks);  // all there is without feet
     const bool agrees =
         !evidence.marks.feet_known() && trunk && nearest_axis(*trunk).direction == up;
-    const bool shown = agrees || scores.on_the_ground(up) || travels_level(scores, up, {});
+    const Direction other = up == Direction::plus_y ? Direction::plus_z : Direction::plus_y;
+    const bool grounded = scores.on_the_ground(up) && !scores.near_the_ground(other);
+    const bool shown = agrees || grounded || travels_level(scores, up, {});
     return shown && scores.margin() > kClear ? Confidence::likely : Confidence::guess;
   }
   const Direction other = reference->direction;

@@ -311,6 +311,21 @@ TEST(DetectConventions, NothingIsCertainWhereTheReferencePoseDoesNotStand) {
   EXPECT_EQ(found.up_confidence, Confidence::likely) << found.up_reason;
 }
 
+// Somebody lies still, the feet at the origin and the hands a little in the ground. Would fail if he
+// were taken for one who stands there, without a warning.
+TEST(DetectConventions, WhoLiesStillWithFeetAtTheOriginMayLie) {
+  const Skeleton upright = person(1, Direction::plus_y, Direction::plus_z);
+  const Quat prone = axis_rotation(Axis::x, kPi / 2);
+  std::vector<Vec3> samples;
+  for (int frame = 0; frame < 3; ++frame) {
+    for (const Vec3& joint : sample_of(upright, prone)) {
+      samples.push_back(joint + Vec3(0, 0.05, 0.94));
+    }
+  }
+  const Conventions found = detect(folded_person(), samples);
+  EXPECT_EQ(found.up_confidence, Confidence::guess) << found.up_reason;
+}
+
 // The scale of a skeleton may be any: only the units that most files have are certain by height.
 TEST(DetectConventions, ARareUnitIsNotCertainByHeightAlone) {
   for (const char* name : {"ft", "dm", "in"}) {
