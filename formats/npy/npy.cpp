@@ -349,12 +349,6 @@ Array array_of(std::span<const std::int32_t> values, std::vector<std::size_t> sh
   return make_array(Element::integer, values, std::move(shape));
 }
 
-Array array_over(std::span<const float> values, std::vector<std::size_t> shape) {
-  Array array = array_of(std::span<const float>(), std::move(shape));
-  array.elsewhere = std::as_bytes(values);
-  return array;
-}
-
 Array array_of_flags(std::span<const std::uint8_t> values, std::vector<std::size_t> shape) {
   return make_array(Element::boolean, values, std::move(shape));
 }
@@ -390,37 +384,44 @@ std::string start_of(const Array& array) {
   return start + header;
 }
 
-std::span<const std::byte> bytes_of(const Array& array) {
-  return array.elsewhere.empty() ? array.data : array.elsewhere;
+std::vector<zip::FileToPack> files_of(std::span<const std::pair<std::string, Array>> arrays) {
+  std::vector<zip::FileToPack> files;
+  for (const auto& [name, array] : arrays) {
+    const std::string start = start_of(array);
+    const std::size_t size = start.size() + array.item_size * array.count();
+    files.push_back(
+        {name + ".npy", size, [start, &array, done = std::size_t{0}](auto bytes) mutable {
+           const auto head = std::as_bytes(std::span(start)).subspan(std::min(done, start.size()));
+           const std::size_t before = std::min(bytes.size(), head.size());
+           std::ranges::copy(head.first(before), bytes.begin());
+           const auto rest = bytes.subspan(before);
+           const std::size_t from = done + before - start.size();  // of the data
+           done += bytes.size();
+           if (array.read && !rest.empty()) return array.read(rest);
+           if (!rest.empty()) std::copy_n(&array.data[from], rest.size(), rest.begin());
+           return Status();
+         }});
+  }
+  return files;
 }
 
 }  // namespace
 
 std::vector<std::byte> write(const Array& array) {
   const std::string start = start_of(array);
-  const auto header = std::as_bytes(std::span(start)), bytes = bytes_of(array);
+  const auto header = std::as_bytes(std::span(start));
   std::vector<std::byte> file(header.begin(), header.end());
-  file.insert(file.end(), bytes.begin(), bytes.end());
+  file.insert(file.end(), array.data.begin(), array.data.end());
   return file;
 }
 
 Result<std::vector<std::byte>> write(
     std::span<const std::pair<std::string, Array>> names_and_arrays) {
-  std::vector<std::pair<std::string, std::vector<std::byte>>> files;
-  for (const auto& [name, array] : names_and_arrays)
-    files.emplace_back(name + ".npy", write(array));
-  return zip::pack(files);
+  return zip::pack(files_of(names_and_arrays));
 }
 
 Status write(std::span<const std::pair<std::string, Array>> names_and_arrays, OutputFile& file) {
-  std::vector<std::string> starts;
-  for (const auto& [name, array] : names_and_arrays) starts.push_back(start_of(array));
-  std::vector<zip::FileInParts> files;
-  for (std::size_t i = 0; i < starts.size(); ++i) {
-    const auto& [name, array] = names_and_arrays[i];
-    files.push_back({name + ".npy", {std::as_bytes(std::span(starts[i])), bytes_of(array)}});
-  }
-  return zip::pack(files, file);
+  return zip::pack(files_of(names_and_arrays), file);
 }
 
 }  // namespace krok::npy

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -28,8 +29,8 @@ struct Array {
   bool column_major = false;       // "fortran_order"
   std::vector<std::size_t> shape;  // empty for a single value
   std::vector<std::byte> data;     // item_size * count() bytes
-  // Of an array to be written, in place of `data`: bytes that are kept elsewhere.
-  std::span<const std::byte> elsewhere;
+  // Of an array that is packed, in place of `data`: gives the next bytes, as many as are asked for.
+  std::function<Status(std::span<std::byte> bytes)> read;
 
   std::size_t count() const;
   bool is_number() const { return element != Element::text && element != Element::bytes; }
@@ -72,8 +73,6 @@ class Arrays {
 Array array_of(std::span<const float> values, std::vector<std::size_t> shape);
 Array array_of(std::span<const double> values, std::vector<std::size_t> shape);
 Array array_of(std::span<const std::int32_t> values, std::vector<std::size_t> shape);
-// The same without a copy of `values`.
-Array array_over(std::span<const float> values, std::vector<std::size_t> shape);
 Array array_of_flags(std::span<const std::uint8_t> values, std::vector<std::size_t> shape);
 Array array_of_texts(std::span<const std::string> texts);
 

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "core/index.h"
 #include "formats/npy/array_motion_internal.h"
 #include "math/quaternion.h"
+#include "scene/frame_blocks.h"
 
 namespace krok::npy {
 
@@ -143,21 +145,48 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
 
 namespace {
 
-// Those of positions and quaternions are over the clip, whose quaternions are turned to one
-// hemisphere.
-std::vector<std::pair<std::string, Array>> arrays_of(Clip& clip,
-                                                     std::span<const Contact> contacts) {
+// Gives the positions of a motion frame by frame, or its quaternions, turned to one hemisphere.
+std::function<Status(std::span<std::byte>)> values_of(const FrameSource& source, int jobs,
+                                                      bool turns) {
+  constexpr int kFrames = 4096;
+  return [=, &source, block = Clip(), before = std::vector<Quatf>(), next = 0,
+          used = std::size_t{0}](std::span<std::byte> bytes) mutable -> Status {
+    while (!bytes.empty()) {
+      const auto values = turns ? std::as_bytes(std::span(block.orientations))
+                                : std::as_bytes(std::span(block.positions));
+      if (used == values.size()) {
+        const int count = std::min(kFrames, source.frame_count - next);
+        auto read = load(part_of(source, next, count), jobs);
+        if (!read) return read.error();
+        block = *std::move(read);
+        next += count, used = 0;
+        if (source.release) source.release(next);
+        before.resize(source.skeleton.names.size(), Quatf(1, 0, 0, 0));
+        for (int f = 0; f < count && turns; ++f) {
+          const auto pose = block.frame_orientations(f);
+          for (std::size_t j = 0; j < pose.size(); ++j) {
+            if (pose[j].dot(before[j]) < 0) pose[j].coeffs() *= -1;
+            before[j] = pose[j];
+          }
+        }
+        continue;
+      }
+      const std::size_t count = std::min(bytes.size(), values.size() - used);
+      std::ranges::copy(values.subspan(used, count), bytes.begin());
+      used += count, bytes = bytes.subspan(count);
+    }
+    return {};
+  };
+}
+
+std::vector<std::pair<std::string, Array>> arrays_of(const FrameSource& clip,
+                                                     std::span<const Contact> contacts, int jobs) {
   const std::size_t joints = clip.skeleton.names.size();
-  const auto frames = at(clip.frame_count());
-  for (std::size_t i = 0; i < clip.orientations.size(); ++i) {
-    Quatf& turn = clip.orientations[i];
-    if ((i < joints ? turn.w() : turn.dot(clip.orientations[i - joints])) < 0) turn.coeffs() *= -1;
-  }
+  const auto frames = at(clip.frame_count);
   static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Quatf) == 4 * sizeof(float));
-  const std::span places(reinterpret_cast<const float*>(clip.positions.data()),
-                         3 * clip.positions.size());
-  const std::span turns(reinterpret_cast<const float*>(clip.orientations.data()),
-                        4 * clip.orientations.size());
+  Array places = array_of(std::span<const float>(), {frames, joints, 3});
+  Array turns = array_of(std::span<const float>(), {frames, joints, 4});
+  places.read = values_of(clip, jobs, false), turns.read = values_of(clip, jobs, true);
   std::vector<double> rest_places, rest_turns;
   for (const Transform& joint : clip.skeleton.reference) {
     rest_places.insert(rest_places.end(), joint.position.data(), joint.position.data() + 3);
@@ -180,8 +209,8 @@ std::vector<std::pair<std::string, Array>> arrays_of(Clip& clip,
   }
   const std::vector<std::int32_t> parents(clip.skeleton.parents.begin(),
                                           clip.skeleton.parents.end());
-  return {{"positions", array_over(places, {frames, joints, 3})},
-          {"quaternions", array_over(turns, {frames, joints, 4})},
+  return {{"positions", std::move(places)},
+          {"quaternions", std::move(turns)},
           {"names", array_of_texts(clip.skeleton.names)},
           {"parents", array_of(parents, {joints})},
           {"end_sites", array_of_flags(clip.skeleton.end_sites, {joints})},
@@ -194,12 +223,14 @@ std::vector<std::pair<std::string, Array>> arrays_of(Clip& clip,
 
 }  // namespace
 
-Result<std::vector<std::byte>> write_motion(Clip clip, std::span<const Contact> contacts) {
-  return write(arrays_of(clip, contacts));
+Result<std::vector<std::byte>> write_motion(const FrameSource& source,
+                                            std::span<const Contact> contacts) {
+  return write(arrays_of(source, contacts, 1));
 }
 
-Status write_motion(Clip clip, std::span<const Contact> contacts, OutputFile& file) {
-  return write(arrays_of(clip, contacts), file);
+Status write_motion(const FrameSource& source, std::span<const Contact> contacts, int jobs,
+                    OutputFile& file) {
+  return write(arrays_of(source, contacts, jobs), file);
 }
 
 }  // namespace krok::npy

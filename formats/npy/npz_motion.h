@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "core/result.h"
-#include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/motion_keys.h"
 
 // Writes a motion as arrays that numpy.load reads: positions, quaternions (x, y, z, w), names,
@@ -16,9 +16,12 @@
 namespace krok::npy {
 
 // `contacts`: empty for none. Quaternions of a joint stay in one hemisphere from frame to frame.
-// Code: zip-damaged.
-Result<std::vector<std::byte>> write_motion(Clip clip, std::span<const Contact> contacts);
-// The same, written as it is packed. Errors are those of `file` as well.
-Status write_motion(Clip clip, std::span<const Contact> contacts, OutputFile& file);
+// The frames are read twice. Codes: zip-damaged, and those of the source.
+Result<std::vector<std::byte>> write_motion(const FrameSource& source,
+                                            std::span<const Contact> contacts);
+// The same, written as it is packed, so that memory does not grow with the number of frames (unless
+// the output cannot be rewritten). Errors are those of `file` as well.
+Status write_motion(const FrameSource& source, std::span<const Contact> contacts, int jobs,
+                    OutputFile& file);
 
 }  // namespace krok::npy

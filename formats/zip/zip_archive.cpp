@@ -139,7 +139,44 @@ zip_int64_t run_command(void* state, void* data, zip_uint64_t length, zip_source
   }
 }
 
-Status pack(std::span<const FileInParts> files, const WriteAt& write_at) {
+// A file that libzip packs.
+struct Entry {
+  const FileToPack& file;
+  Status& status;  // of reading, of all files
+  std::uint64_t done = 0;
+  zip_error_t error{};
+};
+
+zip_int64_t read_command(void* state, void* data, zip_uint64_t length, zip_source_cmd_t command) {
+  Entry& entry = *static_cast<Entry*>(state);
+  switch (command) {
+    case ZIP_SOURCE_SUPPORTS:
+      return ZIP_SOURCE_SUPPORTS_READABLE;
+    case ZIP_SOURCE_STAT: {
+      auto& facts = *static_cast<zip_stat_t*>(data);
+      zip_stat_init(&facts);
+      facts.size = entry.file.size;
+      facts.valid |= ZIP_STAT_SIZE;
+      return sizeof(zip_stat_t);
+    }
+    case ZIP_SOURCE_ERROR:
+      return zip_error_to_data(&entry.error, data, length);
+    case ZIP_SOURCE_READ: {
+      const std::uint64_t count = std::min(length, entry.file.size - entry.done);
+      if (count > 0) entry.status = entry.file.read({static_cast<std::byte*>(data), count});
+      if (!entry.status) {
+        zip_error_set(&entry.error, ZIP_ER_READ, 0);
+        return -1;
+      }
+      entry.done += count;
+      return static_cast<zip_int64_t>(count);
+    }
+    default:
+      return 0;
+  }
+}
+
+Status pack(std::span<const FileToPack> files, const WriteAt& write_at) {
   constexpr zip_uint16_t kFirstDate = 1 << 5 | 1;  // 1980-01-01
   zip_error_t error;
   zip_error_init(&error);
@@ -151,17 +188,13 @@ Status pack(std::span<const FileInParts> files, const WriteAt& write_at) {
     return damaged("the ZIP archive cannot be written");
   }
   bool good = true;
-  for (const auto& [name, parts] : files) {
-    std::vector<zip_buffer_fragment_t> fragments;
-    for (const auto part : parts) {
-      // libzip only reads them.
-      auto* const bytes = const_cast<std::byte*>(part.data());
-      fragments.push_back({reinterpret_cast<zip_uint8_t*>(bytes), part.size()});
-    }
+  std::vector<Entry> entries;
+  entries.reserve(files.size());  // libzip keeps their addresses
+  for (const FileToPack& file : files) {
     zip_source_t* source =
-        zip_source_buffer_fragment(archive, fragments.data(), fragments.size(), 0);
+        zip_source_function(archive, read_command, &entries.emplace_back(file, state.status));
     const zip_int64_t place =
-        source == nullptr ? -1 : zip_file_add(archive, name.c_str(), source, ZIP_FL_ENC_UTF_8);
+        source == nullptr ? -1 : zip_file_add(archive, file.name.c_str(), source, ZIP_FL_ENC_UTF_8);
     good = good && place >= 0 &&
            zip_file_set_dostime(archive, static_cast<zip_uint64_t>(place), 0, kFirstDate, 0) == 0;
   }
@@ -173,12 +206,9 @@ Status pack(std::span<const FileInParts> files, const WriteAt& write_at) {
 
 }  // namespace
 
-Result<std::vector<std::byte>> pack(
-    std::span<const std::pair<std::string, std::vector<std::byte>>> files) {
-  std::vector<FileInParts> parts;
-  for (const auto& [name, bytes] : files) parts.push_back({name, {bytes}});
+Result<std::vector<std::byte>> pack(std::span<const FileToPack> files) {
   std::vector<std::byte> packed;
-  const Status status = pack(parts, [&](std::uint64_t offset, std::span<const std::byte> bytes) {
+  const Status status = pack(files, [&](std::uint64_t offset, std::span<const std::byte> bytes) {
     packed.resize(std::max(packed.size(), offset + bytes.size()));
     std::ranges::copy(bytes, packed.begin() + static_cast<std::ptrdiff_t>(offset));
     return Status();
@@ -187,7 +217,7 @@ Result<std::vector<std::byte>> pack(
   return packed;
 }
 
-Status pack(std::span<const FileInParts> files, OutputFile& file) {
+Status pack(std::span<const FileToPack> files, OutputFile& file) {
   std::vector<std::byte> kept;  // of a stream, which cannot be written but in order
   const Status status = pack(files, [&](std::uint64_t offset, std::span<const std::byte> bytes) {
     if (!file.can_overwrite()) {

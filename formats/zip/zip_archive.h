@@ -2,10 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/file.h"
@@ -39,17 +39,17 @@ class Archive {
   std::vector<std::string> names_;
 };
 
-// The bytes of an archive of files, by path and content; the same for the same files, as all have
-// the date of 1980-01-01. Code: zip-damaged if libzip fails.
-Result<std::vector<std::byte>> pack(
-    std::span<const std::pair<std::string, std::vector<std::byte>>> files);
-
-// A file whose bytes are elsewhere, in parts that follow each other.
-struct FileInParts {
+// A file whose bytes are made as they are packed.
+struct FileToPack {
   std::string name;
-  std::vector<std::span<const std::byte>> parts;
+  std::uint64_t size = 0;
+  std::function<Status(std::span<std::byte> bytes)> read;  // gives the next bytes, as many
 };
+
+// The bytes of an archive of files; the same for the same files, as all have the date of
+// 1980-01-01. Errors are those of reading, and zip-damaged if libzip fails.
+Result<std::vector<std::byte>> pack(std::span<const FileToPack> files);
 // The same, written as it is packed. Errors are those of `file` as well.
-Status pack(std::span<const FileInParts> files, OutputFile& file);
+Status pack(std::span<const FileToPack> files, OutputFile& file);
 
 }  // namespace krok::zip

@@ -17,7 +17,7 @@ constexpr float kHeld = 0.052F;  // 3 degrees, as a distance of unit vectors
 
 }  // namespace
 
-Signature signature_of(const Clip& clip, const RoleMap& roles) {
+Signature signature_of(const FrameSource& motion, const RoleMap& roles) {
   std::vector<std::pair<int, int>> bones;
   for (std::size_t side = 0; side < 2; ++side) {
     const auto add = [&](Role upper, Role lower) {
@@ -28,26 +28,30 @@ Signature signature_of(const Clip& clip, const RoleMap& roles) {
     add(kArmRoles[side].upper, kArmRoles[side].lower);
     add(kArmRoles[side].lower, kArmRoles[side].hand);
   }
-  const int hips = roles.joint(Role::hips), frames = clip.frame_count();
+  const int hips = roles.joint(Role::hips), frames = motion.frame_count;
   std::erase_if(bones, [](const auto& bone) { return bone.first < 0 || bone.second < 0; });
-  Signature signature{clip.duration(), {}};
+  Signature signature{motion.duration(), {}};
   if (hips < 0 || bones.size() < 4 || frames < 3) return signature;
   // The hips' frame differs between exporters of one capture; that of the reference pose does not.
-  const Quatf reference = clip.skeleton.reference[at(hips)].orientation.cast<float>();
+  const Quatf reference = motion.skeleton.reference[at(hips)].orientation.cast<float>();
   // Times from the beginning, by a power of two of seconds: a frame more or less at the end, as
   // other rates have it, moves none of them.
   const double step = std::exp2(std::floor(std::log2(signature.duration / kMoments)));
+  const std::size_t joints = motion.skeleton.names.size();
+  std::vector<Vec3f> places(2 * joints);
+  std::vector<Quatf> turns(2 * joints);
   for (int m = 0; m * step <= signature.duration; ++m) {
-    const double place = std::min<double>(m * step * clip.rate, frames - 1);
+    const double place = std::min<double>(m * step * motion.rate, frames - 1);
     const int first = std::min(frames - 2, static_cast<int>(place));
     const auto share = static_cast<float>(place - first);
-    const auto direction = [&](int frame, const std::pair<int, int>& bone) {
-      const auto places = clip.frame_positions(frame);
-      const Quatf turn = clip.frame_orientations(frame)[at(hips)] * reference.conjugate();
-      return Vec3f(turn.conjugate() * (places[at(bone.second)] - places[at(bone.first)]));
+    if (!motion.read(first, 2, places, turns)) return {};
+    const auto direction = [&](std::size_t frame, const std::pair<int, int>& bone) {
+      const Vec3f* const at_frame = &places[frame * joints];
+      const Quatf turn = turns[frame * joints + at(hips)] * reference.conjugate();
+      return Vec3f(turn.conjugate() * (at_frame[bone.second] - at_frame[bone.first]));
     };
     for (const auto& bone : bones) {
-      const Vec3f mixed = (1 - share) * direction(first, bone) + share * direction(first + 1, bone);
+      const Vec3f mixed = (1 - share) * direction(0, bone) + share * direction(1, bone);
       signature.directions.push_back(mixed.normalized());
     }
   }

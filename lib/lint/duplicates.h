@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "roles/roles.h"
-#include "scene/clip.h"
+#include "scene/frame_source.h"
 
 // Finds motions that are the same under two names.
 
@@ -19,8 +19,8 @@ struct Signature {
 };
 
 // Empty without the limbs' roles, for fewer than three frames, and for a pose that is held (within
-// 3 degrees): many takes have the same one.
-Signature signature_of(const Clip& clip, const RoleMap& roles);
+// 3 degrees): many takes have the same one. So it is where frames cannot be read.
+Signature signature_of(const FrameSource& motion, const RoleMap& roles);
 
 // Pairs (earlier, later) of the same motion: durations agree within 2 %, and no direction differs
 // by more than `radians`. Each motion is paired with the first one that it repeats.

@@ -132,7 +132,7 @@ void write_seeds(const std::string& folder) {
   seeds.written("pc2", "wobble.pc2", [&](OutputFile& file) {
     return pc2::write(model, test::wobble(model, 3), {}, file);
   });
-  if (const auto arrays = npy::write_motion(clip, {}); arrays) {
+  if (const auto arrays = npy::write_motion(frames_of(clip), {}); arrays) {
     seeds.put("arrays", "clip.npz",
               std::string(reinterpret_cast<const char*>(arrays->data()), arrays->size()));
   }

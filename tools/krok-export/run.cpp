@@ -8,7 +8,9 @@
 #include <set>
 
 #include "capture/conventions.h"
+#include "contacts/long_take.h"
 #include "core/numbers.h"
+#include "core/parallel.h"
 #include "core/quantity.h"
 #include "core/result.h"
 #include "core/text.h"
@@ -324,14 +326,56 @@ Status write_table(ExportFormat format, const Clip& clip, const Options& options
   });
 }
 
-// With the contacts of the sidecar or those detected; none for a skeleton without legs.
-Status write_arrays(Clip clip, const Options& options, ToolContext& context) {
-  auto contacts = contacts_of(options, clip, context);
-  if (!contacts && contacts.error().code != "contacts-feet") return contacts.error();
-  const auto found = contacts ? *std::move(contacts) : std::vector<Contact>();
-  return write_output(context, context.output, [&](OutputFile& file) {
-    return npy::write_motion(std::move(clip), found, file);
-  });
+// The same of a long take, as krok-keys detects them in parts.
+Result<std::vector<Contact>> contacts_in_parts(const Options& options, const FrameSource& frames,
+                                               ToolContext& context) {
+  auto keys = read_keys_beside(options.input, frames, context);
+  if (!keys) return keys.error();
+  if (*keys) return std::move((*keys)->keys.contacts);
+  const auto find_roles = io::open_role_map(options.map, context);
+  if (!find_roles) return find_roles.error();
+  const auto roles = (*find_roles)(frames.skeleton);
+  if (!roles) return roles.error();
+  auto take =
+      find_in_long_take(frames, *roles, context.jobs, context.progress, {.contacts_alone = true});
+  if (!take) return take.error();
+  context.diagnose_in(options.input, take->warnings);
+  return std::move(take->keys.contacts);
+}
+
+// Arrays of numpy, with the contacts of the sidecar or those detected; none for a skeleton without
+// legs. A long take is not held in memory.
+Result<io::MotionSummary> export_npz(const Options& options, ToolContext& context) {
+  const auto input = context.open_long_input(options.input);
+  if (!input) return input.error();
+  const io::ChecksumAtEnd checksum(*input, context);
+  std::optional<OutputSet> outputs;
+  const auto write = [&](const FrameSource& frames, Result<std::vector<Contact>> contacts) {
+    if (!contacts && contacts.error().code != "contacts-feet") return Status(contacts.error());
+    const auto found = contacts ? *std::move(contacts) : std::vector<Contact>();
+    outputs.emplace(context);
+    return outputs->add(context.output, [&](OutputFile& file) {
+      return npy::write_motion(frames, found, thread_count(context.jobs), file);
+    });
+  };
+  std::function<Provenance()> provenance;
+  auto facts = io::stream_motion(
+      *input, context,
+      [&](const FrameSource& frames) -> Status {
+        if (frames.skeleton.empty()) return empty_error(options.input);
+        // Contacts of a motion in place are found in the motion as it travels.
+        if (input->bytes().size() >= kLongTake && !provenance().removed_root_motion) {
+          return write(frames, contacts_in_parts(options, frames, context));
+        }
+        auto clip = load(frames, context.jobs);
+        if (!clip) return clip.error();
+        clip->provenance = provenance();
+        return write(frames_of(*clip), contacts_of(options, *clip, context));
+      },
+      {.provenance = &provenance});
+  if (!facts) return facts;
+  if (Status status = outputs->finish(); !status) return status.error();
+  return facts;
 }
 
 // The place of the root at rest moves nothing, so it is left out, but another reference pose comes
@@ -372,10 +416,7 @@ Result<io::MotionSummary> export_others(ExportFormat format, const Options& opti
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);
   io::MotionSummary facts = facts_of(*clip);
-  const Status status = format == ExportFormat::npz
-                            ? write_arrays(*std::move(clip), options, context)
-                            : write_table(format, *clip, options, context);
-  if (!status) return status.error();
+  if (Status status = write_table(format, *clip, options, context); !status) return status.error();
   return facts;
 }
 
@@ -414,6 +455,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto motion = is_glb || *format == ExportFormat::gltf
                           ? export_gltf(is_glb, options, context, reduction)
                       : *format == ExportFormat::bvh ? export_bvh(options, context)
+                      : *format == ExportFormat::npz ? export_npz(options, context)
                                                      : export_others(*format, options, context);
   if (!motion) return motion.error();
   Json columns = std::move(context.report.result["columns"]);

@@ -290,13 +290,11 @@ Status write_results(const Options& options, const Clip& clip, const RoleMap& ro
   return outputs.finish();
 }
 
-// A file of this size is searched in parts, unless all of it is needed for more.
-constexpr std::size_t kLongFile = std::size_t{64} << 20;
-
+// Unless all of it is needed for more.
 bool is_long_take(const Options& options, const InputFile& file, const ToolContext& context) {
   const std::string& path =
       context.output.empty() ? keys_sidecar_path(options.input()) : context.output;
-  return file.bytes().size() >= kLongFile && options.find != Find::none && options.keys.empty() &&
+  return file.bytes().size() >= kLongTake && options.find != Find::none && options.keys.empty() &&
          options.changes.empty() && options.plot.empty() &&
          (options.discard_edits || !stands(path));
 }

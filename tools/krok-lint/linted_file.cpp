@@ -17,12 +17,14 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
+#include "lint/long_take.h"
 #include "lint/mesh_rules.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
 #include "nodes/evaluate.h"
 #include "ragdoll/overlaps.h"
 #include "tools/cli/file_name.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::lint {
 
@@ -139,14 +141,14 @@ void lint_model(const InputFile& input, const krok::lint::Settings& settings, Li
 // By bodies of people's proportions on the bones: clothes, and what hands hold, are no part of
 // them.
 void add_self_intersections(const Clip& clip, const RoleMap& roles,
-                            const krok::lint::Settings& settings, LintedFile& file) {
+                            const krok::lint::Settings& settings, krok::lint::MotionFaults& out) {
   if (!roles.humanoid) {
-    file.notes.push_back("self-intersection: only of humanoids");
+    out.notes.emplace_back("self-intersection: only of humanoids");
     return;
   }
   const auto bodies = ragdoll::make_bodies(clip.skeleton, roles);
   if (!bodies) {
-    file.notes.push_back("self-intersection: " + bodies.error().message);
+    out.notes.push_back("self-intersection: " + bodies.error().message);
     return;
   }
   const double limit = settings.threshold(krok::lint::Rule::self_intersection) *
@@ -161,29 +163,68 @@ void add_self_intersections(const Clip& clip, const RoleMap& roles,
     finding.worst = overlap.worst;
     finding.value = overlap.depth, finding.threshold = limit, finding.unit = "m";
     finding.detail = to_utf8(second.name) + " in " + to_utf8(first.name);
-    file.findings.push_back(std::move(finding));
+    out.findings.push_back(std::move(finding));
   }
+}
+
+krok::lint::MotionOptions options_for(const LintedFile& file, const Options& options,
+                                      const krok::lint::MotionOptions& how) {
+  krok::lint::MotionOptions mine = how;
+  mine.is_loop = options.loops || is_named_loop(file);
+  return mine;
+}
+
+// `whole` is all of the motion, or null for a long take, which is judged in parts.
+Status lint_frames(const FrameSource& motion, const Clip* whole,
+                   const std::optional<RootMotion>& removed, const Options& options,
+                   const io::FindRoles& find_roles, const krok::lint::MotionOptions& how,
+                   LintedFile& file) {
+  file.joints = motion.skeleton.names;
+  file.rate = motion.rate, file.frames = motion.frame_count;
+  const auto roles = find_roles(motion.skeleton);
+  if (!roles) return roles.error();
+  const auto judge = [&](const Clip& clip, const krok::lint::MotionOptions& mine) {
+    auto found = removed ? krok::lint::lint_motion(
+                               carried_along(clip, carrying_joint(*roles), *removed), *roles, mine)
+                         : krok::lint::lint_motion(clip, *roles, mine);
+    if (mine.settings.has(krok::lint::Rule::self_intersection)) {
+      add_self_intersections(clip, *roles, mine.settings, found);
+    }
+    return found;
+  };
+  const auto mine = options_for(file, options, how);
+  auto faults = whole != nullptr ? Result(judge(*whole, mine))
+                                 : krok::lint::lint_long_take(motion, mine, 1, judge);
+  if (!faults) return faults.error();
+  file.findings.insert(file.findings.end(), std::make_move_iterator(faults->findings.begin()),
+                       std::make_move_iterator(faults->findings.end()));
+  file.notes = std::move(faults->notes);
+  if (how.settings.has(krok::lint::Rule::duplicate)) {
+    file.signature = krok::lint::signature_of(motion, *roles);
+  }
+  return {};
 }
 
 void lint_clip(const Clip& clip, const Options& options, const io::FindRoles& find_roles,
                const krok::lint::MotionOptions& how, LintedFile& file) {
-  file.joints = clip.skeleton.names;
-  file.rate = clip.rate, file.frames = clip.frame_count();
-  const auto roles = find_roles(clip.skeleton);
-  if (!roles) {
-    file.error = roles.error();
-    return;
-  }
-  auto faults = faults_of(clip, *roles, file, options, how);
-  file.findings.insert(file.findings.end(), std::make_move_iterator(faults.findings.begin()),
-                       std::make_move_iterator(faults.findings.end()));
-  file.notes = std::move(faults.notes);
-  if (how.settings.has(krok::lint::Rule::self_intersection)) {
-    add_self_intersections(clip, *roles, how.settings, file);
-  }
-  if (how.settings.has(krok::lint::Rule::duplicate)) {
-    file.signature = krok::lint::signature_of(clip, *roles);
-  }
+  const Status status = lint_frames(frames_of(clip), &clip, clip.provenance.removed_root_motion,
+                                    options, find_roles, how, file);
+  if (!status) file.error = status.error();
+}
+
+void lint_long(const InputFile& input, const Options& options, const io::FindRoles& find_roles,
+               const krok::lint::MotionOptions& how, LintedFile& file) {
+  io::PlainInputs inputs;
+  inputs.jobs = 1;
+  std::function<Provenance()> provenance;
+  const auto use = [&](const FrameSource& frames) {
+    file.findings.clear();
+    return lint_frames(frames, nullptr, provenance().removed_root_motion, options, find_roles, how,
+                       file);
+  };
+  const auto read = io::stream_motion(input, inputs, use, {.provenance = &provenance});
+  file.diagnostics = std::move(inputs.diagnostics);
+  if (!read) file.error = read.error();
 }
 
 // One element, and one for each animation where there are several.
@@ -195,6 +236,10 @@ std::vector<LintedFile> lint_file(const InputFile& input, const Options& options
   const auto kind = registry::identify(input.path(), input.bytes());
   if (kind == registry::Kind::model || kind == registry::Kind::character) {
     lint_model(input, how.settings, files[0]);
+    return files;
+  }
+  if (input.bytes().size() >= kLongTake && !io::is_scene(kind)) {
+    lint_long(input, options, find_roles, how, files[0]);
     return files;
   }
   io::PlainInputs inputs;
@@ -283,11 +328,9 @@ krok::lint::MotionOptions judging(const Options& options, const krok::lint::Sett
 
 krok::lint::MotionFaults faults_of(const Clip& clip, const RoleMap& roles, const LintedFile& file,
                                    const Options& options, const krok::lint::MotionOptions& how) {
-  krok::lint::MotionOptions mine = how;
-  mine.is_loop = options.loops || is_named_loop(file);
   // Feet of a motion in place slide as fast as it would travel.
   const auto moving = travelling(clip, carrying_joint(roles));
-  return krok::lint::lint_motion(moving ? *moving : clip, roles, mine);
+  return krok::lint::lint_motion(moving ? *moving : clip, roles, options_for(file, options, how));
 }
 
 std::vector<LintedFile> lint_all(const Options& options, const krok::lint::MotionOptions& how,

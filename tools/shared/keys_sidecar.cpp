@@ -21,20 +21,23 @@ namespace {
 
 constexpr double kFar = 0.05;  // metres; feet in contact slide by less
 
-// Where the motion, which has frames, has the contact's joint halfway through.
-Vec3 joint_in_contact(const Clip& clip, const Contact& contact) {
-  const double middle = 0.5 * (contact.start + contact.end) * clip.rate;
-  const auto frame =
-      static_cast<int>(std::clamp<double>(std::lround(middle), 0, clip.frame_count() - 1));
-  return clip.frame_positions(frame)[static_cast<std::size_t>(contact.joint)].cast<double>();
+// The frame halfway through a contact, of a motion that has frames.
+int frame_of(const Contact& contact, double rate, int frames) {
+  const double middle = 0.5 * (contact.start + contact.end) * rate;
+  return static_cast<int>(std::clamp<double>(std::lround(middle), 0, frames - 1));
 }
 
 // The median distance, in metres, of the contacts' places from where the motion has their joints;
-// 0 without contacts.
-double distance_of_contacts(const MotionKeys& keys, const Clip& clip) {
+// 0 without contacts. What cannot be read is an error where all frames are.
+double distance_of_contacts(const MotionKeys& keys, const FrameSource& motion) {
+  std::vector<Vec3f> places(motion.skeleton.names.size());
+  std::vector<Quatf> turns(places.size());
   std::vector<double> distances;
   for (const Contact& contact : keys.contacts) {
-    distances.push_back((joint_in_contact(clip, contact) - contact.place).norm());
+    const int frame = frame_of(contact, motion.rate, motion.frame_count);
+    if (!motion.read(frame, 1, places, turns)) continue;
+    const Vec3 place = places[static_cast<std::size_t>(contact.joint)].cast<double>();
+    distances.push_back((place - contact.place).norm());
   }
   if (distances.empty()) return 0;
   const auto half = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
@@ -43,13 +46,13 @@ double distance_of_contacts(const MotionKeys& keys, const Clip& clip) {
 }
 
 // How it shows that keys were made for another motion; nothing if it does not.
-std::string sign_of_another_motion(const krok::keys::Sidecar& sidecar, const Clip& clip) {
+std::string sign_of_another_motion(const krok::keys::Sidecar& sidecar, const FrameSource& motion) {
   // Half a frame: more than rounding errors, less than any cut.
-  if (sidecar.duration > 0 && std::abs(sidecar.duration - clip.duration()) > 0.5 / clip.rate) {
+  if (sidecar.duration > 0 && std::abs(sidecar.duration - motion.duration()) > 0.5 / motion.rate) {
     return fmt::format("made for a motion of {} s, but this one has {} s",
-                       readable(sidecar.duration), readable(clip.duration()));
+                       readable(sidecar.duration), readable(motion.duration()));
   }
-  const double away = clip.frame_count() > 0 ? distance_of_contacts(sidecar.keys, clip) : 0;
+  const double away = motion.frame_count > 0 ? distance_of_contacts(sidecar.keys, motion) : 0;
   if (away <= kFar) return {};
   return fmt::format("made for another motion: its contacts are {:.0f} mm (median) from the joints",
                      1e3 * away);
@@ -62,18 +65,18 @@ std::string keys_sidecar_path(const std::string& motion_path) {
   return std::filesystem::path(motion_path).replace_extension(".keys.json").string();
 }
 
-Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
+Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const FrameSource& motion,
                                            ToolContext& context) {
   const auto input = context.open_input(path);
   if (!input) return input.error();
-  auto sidecar = krok::keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
+  auto sidecar = krok::keys::read_sidecar(input->text(), path, motion.skeleton, motion.duration());
   if (!sidecar && sidecar.error().code == "json-syntax" && sidecar.error().hint.empty()) {
     Error error = std::move(sidecar).error();
     error.hint = "krok-keys writes the contacts of a motion, NAME.keys.json beside NAME.anim";
     return error;
   }
   if (!sidecar) return sidecar;
-  if (std::string sign = sign_of_another_motion(*sidecar, clip); !sign.empty()) {
+  if (std::string sign = sign_of_another_motion(*sidecar, motion); !sign.empty()) {
     context.diagnose_in(path, {make_warning("keys-stale", std::move(sign),
                                             "if the motion was changed, run krok-keys again")});
   }
@@ -81,7 +84,7 @@ Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& 
 }
 
 Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
-                                                            const Clip& clip,
+                                                            const FrameSource& motion,
                                                             ToolContext& context) {
   const std::string path = keys_sidecar_path(motion_path);
   if (path.empty()) return std::optional<krok::keys::Sidecar>();
@@ -90,14 +93,14 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
   if (!std::filesystem::exists(path, ignored)) return std::optional<krok::keys::Sidecar>();
   const auto input = context.open_input(path);
   if (!input) return input.error();
-  auto sidecar = krok::keys::read_sidecar(input->text(), path, clip.skeleton, clip.duration());
-  const std::string sign = sidecar ? sign_of_another_motion(*sidecar, clip) : std::string();
+  auto sidecar = krok::keys::read_sidecar(input->text(), path, motion.skeleton, motion.duration());
+  const std::string sign = sidecar ? sign_of_another_motion(*sidecar, motion) : std::string();
   if (sidecar && sign.empty()) return std::optional<krok::keys::Sidecar>(std::move(*sidecar));
   const bool stale =
       sidecar || sidecar.error().code == "keys-joint" || sidecar.error().code == "keys-time";
   if (!stale) return std::move(sidecar).error();
   if (krok::keys::has_edits(input->text())) {
-    auto edited = read_keys_file(path, clip, context);
+    auto edited = read_keys_file(path, motion, context);
     if (!edited) return std::move(edited).error();
     return std::optional<krok::keys::Sidecar>(std::move(*edited));
   }
@@ -128,7 +131,10 @@ Result<MotionKeys> find_keys(const std::string& path, const Clip& clip, const Ro
 
 void place_contacts(const Clip& clip, std::span<Contact> contacts) {
   if (clip.frame_count() == 0) return;
-  for (Contact& contact : contacts) contact.place = joint_in_contact(clip, contact);
+  for (Contact& contact : contacts) {
+    const auto places = clip.frame_positions(frame_of(contact, clip.rate, clip.frame_count()));
+    contact.place = places[static_cast<std::size_t>(contact.joint)].cast<double>();
+  }
 }
 
 Json to_json(std::span<const Keytime> keytimes) {

@@ -9,6 +9,7 @@
 #include "formats/keys/keys.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/motion_keys.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
@@ -17,20 +18,33 @@
 
 namespace krok::cli {
 
+// Bytes of a file whose steps are found in parts, find_in_long_take().
+inline constexpr std::size_t kLongTake = std::size_t{64} << 20;
+
 // "takes/walk.keys.json" for "takes/walk.anim". Empty for standard input.
 std::string keys_sidecar_path(const std::string& motion_path);
 
 // Reads the file `path`, opened by context.open_input. Warns (code keys-stale) if the file was made
 // for a motion of another duration, or if its contacts are elsewhere than the motion's joints (the
 // median by over 50 mm).
-Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
+Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const FrameSource& motion,
                                            ToolContext& context);
+inline Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const Clip& clip,
+                                                  ToolContext& context) {
+  return read_keys_file(path, frames_of(clip), context);
+}
 
 // Reads the sidecar of a motion read from `motion_path`; empty if there is none, and with a warning
 // (keys-stale) if it was made for another motion (see read_keys_file(), or other joints, or times
 // outside the motion) and was not edited by hand. One that was is used, or an error.
 Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
-                                                            const Clip& clip, ToolContext& context);
+                                                            const FrameSource& motion,
+                                                            ToolContext& context);
+inline Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& motion_path,
+                                                                   const Clip& clip,
+                                                                   ToolContext& context) {
+  return read_keys_beside(motion_path, frames_of(clip), context);
+}
 
 // Detects contacts and keytimes as krok-keys does, with warnings for doubtful results; in a motion
 // in place, while it travels as it did before. Warnings name `path`, the motion's. Code:

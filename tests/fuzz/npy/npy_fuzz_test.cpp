@@ -51,7 +51,7 @@ TEST(NpyFuzz, motion) {
   for (krok::Quatf& q : clip.orientations) q.setIdentity();
   for (krok::Vec3f& p : clip.positions) p.setOnes();
   const krok::Contact contact{.joint = 1};
-  const auto file = krok::npy::write_motion(clip, std::span(&contact, 1));
+  const auto file = krok::npy::write_motion(frames_of(clip), std::span(&contact, 1));
   ASSERT_TRUE(file.ok());
   const auto read = krok::npy::read(*file, "a.npz");
   ASSERT_TRUE(read.ok()) << read.error().message;

@@ -445,7 +445,7 @@ TEST(LintRules, TheWayOfABodyAgainstItsRootIsNoBone) {
 
 TEST(LintDuplicates, AreFoundUnderAnotherRatePlaceAndSize) {
   const auto signature = [](const Clip& clip) {
-    return lint::signature_of(clip, find_roles(clip.skeleton));
+    return lint::signature_of(frames_of(clip), find_roles(clip.skeleton));
   };
   WalkOptions slower;
   slower.steps = 10;

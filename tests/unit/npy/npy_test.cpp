@@ -99,8 +99,13 @@ TEST(Npy, a_bomb_is_refused) {
   const std::string data(std::size_t{40} << 20, '\0');
   const std::string file = npy_file(header_of("|u1", "(41943040,)"), data);
   const auto inside = bytes_of(file);
-  const auto packed = krok::zip::pack(
-      std::vector{std::pair("positions.npy"s, std::vector(inside.begin(), inside.end()))});
+  const krok::zip::FileToPack bomb = {
+      "positions.npy", inside.size(), [&inside, done = std::size_t{0}](auto bytes) mutable {
+        std::ranges::copy(inside.subspan(done, bytes.size()), bytes.begin());
+        done += bytes.size();
+        return krok::Status();
+      }};
+  const auto packed = krok::zip::pack(std::span(&bomb, 1));
   ASSERT_TRUE(packed.ok());
   ASSERT_LT(packed->size(), 100U << 10);
   EXPECT_EQ(krok::registry::kind_of_content(*packed), krok::registry::Kind::npz);
