@@ -200,7 +200,9 @@ std::vector<std::pair<std::string, Array>> arrays_of(const FrameSource& clip,
   for (const Contact& contact : contacts) {
     const auto column =
         static_cast<std::size_t>(std::distance(touching.begin(), touching.find(contact.joint)));
-    for (std::size_t f = 0; f < frames; ++f) {
+    const auto first = static_cast<std::size_t>(std::max(0.0, contact.start * clip.rate));
+    const auto last = static_cast<std::size_t>(std::max(0.0, contact.end * clip.rate + 2));
+    for (std::size_t f = first; f < std::min(frames, last); ++f) {
       const double time = static_cast<double>(f) / clip.rate;
       // Times in sidecars are whole microseconds.
       if (time < contact.start - 1e-6 || time > contact.end + 1e-6) continue;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "core/index.h"
@@ -188,7 +190,17 @@ class Blender {
         contact_joints_.clear();
         return;
       }
-      for (const Contact& contact : input.keys->contacts) contact_joints_.insert(contact.joint);
+      auto& spans = spans_.emplace_back();
+      std::vector<Contact> contacts = input.keys->contacts;
+      std::ranges::stable_sort(contacts, {}, &Contact::start);
+      for (const Contact& contact : contacts) {
+        contact_joints_.insert(contact.joint);
+        auto& of_joint = spans[contact.joint];
+        if (of_joint.empty() || contact.start > of_joint.back().second) {
+          of_joint.emplace_back(contact.start, contact.end);
+        }
+        of_joint.back().second = std::max(of_joint.back().second, contact.end);
+      }
     }
   }
 
@@ -299,7 +311,7 @@ class Blender {
         const double share = weight(m, frame);
         if (share == 0) continue;
         const double from = blended_.times[m][at(frame - 1)], to = blended_.times[m][at(frame)];
-        if (touches(*inputs_[m].keys, joint, 0.5 * (from + to))) stands += share;
+        if (touches(m, joint, 0.5 * (from + to))) stands += share;
         const Vec3 slide = motions_[m].position(joint, to) - motions_[m].position(joint, from);
         slides += share * (axis_rotation(Axis::y, -motions_[m].place(from).heading) * slide);
       }
@@ -313,10 +325,12 @@ class Blender {
     return result;
   }
 
-  static bool touches(const MotionKeys& keys, int joint, double time) {
-    return std::ranges::any_of(keys.contacts, [&](const Contact& contact) {
-      return contact.joint == joint && contact.start <= time && time <= contact.end;
-    });
+  bool touches(std::size_t motion, int joint, double time) const {
+    const auto spans = spans_[motion].find(joint);
+    if (spans == spans_[motion].end()) return false;
+    const auto after =
+        std::ranges::upper_bound(spans->second, time, {}, &std::pair<double, double>::first);
+    return after != spans->second.begin() && time <= std::prev(after)->second;
   }
 
   void find_spread() {
@@ -357,7 +371,7 @@ class Blender {
       for (int f = 0; f <= frames(); ++f) {
         double stands = 0;
         for (std::size_t m = 0; f < frames() && m < motions_.size(); ++m) {
-          if (touches(*inputs_[m].keys, joint, blended_.times[m][at(f)])) stands += weight(m, f);
+          if (touches(m, joint, blended_.times[m][at(f)])) stands += weight(m, f);
         }
         if (stands > 0.5) {
           if (begin < 0) begin = f;
@@ -383,6 +397,8 @@ class Blender {
   const BlendTime& time_;
   std::vector<GroundedClip> motions_;
   std::set<int> contact_joints_;
+  // Of each motion the seconds in which a joint is in contact, apart and in order.
+  std::vector<std::map<int, std::vector<std::pair<double, double>>>> spans_;
   Blended blended_;
 };
 

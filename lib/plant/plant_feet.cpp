@@ -467,15 +467,19 @@ void measure_stances(const RoleMap& roles, PlantedFeet& planted) {
   const std::vector<Keytime> keytimes = find_gait(planted.clip, roles, *found).keytimes;
   int all = 0, held = 0;
   for (const FootSide side : {FootSide::left, FootSide::right}) {
+    std::vector<std::uint8_t> holds(static_cast<std::size_t>(planted.clip.frame_count()), 0);
+    for (const auto* stays : {&planted.stays, &planted.rolls}) {
+      for (const FixedStay& stay : *stays) {
+        if (stay.point.side != side) continue;
+        const int end = std::min(stay.last + 1, planted.clip.frame_count());
+        std::fill(holds.begin() + stay.first, holds.begin() + std::max(stay.first, end), 1);
+      }
+    }
     for (const StanceTimes& stance : stance_times(keytimes, side)) {
       const int last = static_cast<int>(std::floor(stance.off * planted.clip.rate));
       for (int f = static_cast<int>(std::ceil(stance.strike * planted.clip.rate)); f <= last; ++f) {
         ++all;
-        const auto holds = [&](const FixedStay& stay) {
-          return stay.point.side == side && stay.first <= f && f <= stay.last;
-        };
-        held +=
-            std::ranges::any_of(planted.stays, holds) || std::ranges::any_of(planted.rolls, holds);
+        held += holds[static_cast<std::size_t>(f)];
       }
     }
   }

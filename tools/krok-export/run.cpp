@@ -181,13 +181,15 @@ csv::SeriesTable contact_series(const Clip& clip, std::span<const Contact> conta
     names.push_back(clip.skeleton.names[static_cast<std::size_t>(joint)]);
   }
   csv::SeriesTable table = table_of(clip, "joint", std::move(names), {"contact"});
-  for (int f = 0; f < table.frames; ++f) {
-    const double time = f / clip.rate;
-    for (const int joint : touching) {
-      const bool down = std::ranges::any_of(contacts, [&](const Contact& contact) {
-        return contact.joint == joint && contact.start <= time && time <= contact.end;
-      });
-      table.values.push_back(down ? 1.0F : 0.0F);
+  table.values.assign(static_cast<std::size_t>(table.frames) * touching.size(), 0.0F);
+  for (const Contact& contact : contacts) {
+    const auto column = std::distance(touching.begin(), touching.find(contact.joint));
+    for (int f = static_cast<int>(std::max(0.0, contact.start * clip.rate)); f < table.frames;
+         ++f) {
+      if (f / clip.rate > contact.end) break;
+      if (f / clip.rate < contact.start) continue;
+      table.values[static_cast<std::size_t>(f) * touching.size() +
+                   static_cast<std::size_t>(column)] = 1;
     }
   }
   return table;

@@ -69,6 +69,19 @@ TEST(Blend, KeytimesAreWeightedSums) {
   EXPECT_FALSE(result.keys.contacts.empty());
 }
 
+// Would fail if the contact that begins last were the only one that is looked at.
+TEST(Blend, AContactInsideALongerOneDoesNotEndIt) {
+  KeyedWalk walk = keyed_walk(quick_walk());
+  const double rate = walk.clip.rate;
+  walk.keys.contacts = {{2, 10 / rate, 50 / rate, {}}, {2, 20 / rate, 30 / rate, {}}};
+  const std::vector<BlendInput> inputs = {input_of(walk, WeightCurve::constant(0.5)),
+                                          input_of(walk, WeightCurve::constant(0.5))};
+  const Blended result = blended(inputs, keytimes_of(inputs));
+  ASSERT_EQ(result.keys.contacts.size(), 1U);
+  EXPECT_NEAR(result.keys.contacts[0].start, 10 / rate, 1e-9);
+  EXPECT_NEAR(result.keys.contacts[0].end, 50 / rate, 1e-9);
+}
+
 TEST(Blend, FeetSlideLessWithTheWarpAndLeastWhenPinned) {
   const KeyedWalk slow = keyed_walk(slow_walk()), quick = keyed_walk(quick_walk());
   const std::vector<BlendInput> inputs = {input_of(slow, WeightCurve::constant(0.5)),
