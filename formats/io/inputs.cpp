@@ -1,6 +1,28 @@
 #include "formats/io/inputs.h"
 
+#include <filesystem>
+
+#include "formats/io/open_scene.h"
+
 namespace krok::io {
+
+Address address_of(const std::string& path) {
+  std::error_code unknown;
+  for (std::size_t mark = path.find('#'); mark != std::string::npos;
+       mark = path.find('#', mark + 1)) {
+    const std::string file = path.substr(0, mark);
+    if (!is_scene(registry::kind_of_name(file)) || std::filesystem::exists(path, unknown)) continue;
+    if (std::filesystem::exists(file, unknown)) return {file, path.substr(mark + 1)};
+  }
+  return {path, {}};
+}
+
+Result<InputFile> open_address(const std::string& path) {
+  Address address = address_of(path);
+  auto file = InputFile::open(address.file);
+  if (file) file->choose_part(std::move(address.animation));
+  return file;
+}
 
 Inputs::~Inputs() = default;
 
@@ -16,7 +38,7 @@ void Inputs::diagnose_in(const std::string& path, const Diagnostics& diagnostics
 }
 
 Result<InputFile> PlainInputs::open_input(const std::string& path) {
-  return InputFile::open(path);
+  return open_address(path);
 }
 
 void PlainInputs::diagnose(Diagnostic diagnostic) {

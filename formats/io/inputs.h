@@ -11,6 +11,16 @@ namespace krok::io {
 
 class Takes;
 
+// Where motions are read, FILE#ANIMATION is one animation of a scene: its name, the end of it
+// behind a |, or its number. A file of that whole name comes first.
+struct Address {
+  std::string file, animation;  // the path itself and nothing, unless it is such an address
+};
+Address address_of(const std::string& path);
+
+// The file of an address, whose part() is the animation. Codes: those of InputFile::open().
+Result<InputFile> open_address(const std::string& path);
+
 // Where readers get their files from and report to. A reader may need more than the file it was
 // given: the ASF of an AMC, the buffers of a glTF, the model of a character. It opens all of them
 // here, so that a caller knows what a result depends on. A program that only wants the data uses

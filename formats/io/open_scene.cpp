@@ -125,9 +125,11 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
     if (!chosen) return chosen.error();
     animation = *chosen;
   } else if (options.with_motions && !options.every_clip && animation >= 0) {
-    const Diagnostics choice =
-        describe_choice(scene, best_animation(scene, rig->joints.nodes), "clip-choice",
-                        "krok-import with --clip NAME or NUMBER selects another", path);
+    const Diagnostics choice = describe_choice(
+        scene, best_animation(scene, rig->joints.nodes), "clip-choice",
+        "FILE#NAME, or FILE#NUMBER, is another: give it in quotes; krok-import FILE "
+        "--out-dir DIR writes a motion for each",
+        path);
     found.insert(found.end(), choice.begin(), choice.end());
   }
   if (animations.empty() && animation >= 0) animations = {animation};
@@ -193,11 +195,24 @@ void warn_of_stillness(const nodes::Scene& scene, Diagnostics& found) {
   }
 }
 
+// The scene of a file, of whose animations its part alone is kept.
+Result<nodes::Scene> read_scene(const Format& format, const InputFile& file, Inputs& inputs,
+                                bool with_materials) {
+  auto scene = format.read_scene(file, inputs, with_materials);
+  if (!scene || file.part().empty()) return scene;
+  const auto chosen = find_animation(*scene, file.part(), file.path());
+  if (!chosen) return chosen.error();
+  nodes::Animation only = std::move(scene->animations[at(*chosen)]);
+  scene->animations.clear();
+  scene->animations.push_back(std::move(only));
+  return scene;
+}
+
 }  // namespace
 
 Result<Actor> read_scene_actor(const Format& format, const InputFile& file, Inputs& inputs,
                                const ActorOptions& options) {
-  const auto scene = format.read_scene(file, inputs, options.with_mesh && options.with_materials);
+  const auto scene = read_scene(format, file, inputs, options.with_mesh && options.with_materials);
   if (!scene) return scene.error();
   Diagnostics found = scene->diagnostics;
   auto actor = actor_of(*scene, file.path(), inputs, options, found);
@@ -218,7 +233,48 @@ Result<nodes::Scene> open_scene(const InputFile& file, Inputs& inputs, bool with
     return Error("scene-kind", "is not a scene: glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE or MD5")
         .in_file(file.path());
   }
-  return format.read_scene(file, inputs, with_materials);
+  return read_scene(format, file, inputs, with_materials);
+}
+
+namespace {
+
+// Whether a look at the bytes shows that a file has one animation at most: reading some of these
+// formats takes long.
+bool has_one_animation(std::string_view text) {
+  // The names of a binary FBX file's animations end so (type and class of objects).
+  constexpr std::string_view kOfFbx("\0\1AnimStack", 11);
+  if (!text.starts_with("Kaydara FBX Binary")) return false;
+  const std::size_t first = text.find(kOfFbx);
+  return first == std::string_view::npos || text.find(kOfFbx, first + 1) == std::string_view::npos;
+}
+
+}  // namespace
+
+std::vector<std::string> addresses_in(const std::string& path, const GivenLimits& limits) {
+  PlainInputs inputs;
+  inputs.limits = limits;
+  inputs.jobs = 1;
+  const auto file = InputFile::open(path);
+  if (!file) return {path};
+  const Format& format = format_of(*file);
+  if (format.read_scene == nullptr || has_one_animation(file->text())) return {path};
+  const auto scene = read_scene(format, *file, inputs, false);
+  if (!scene || scene->animations.size() < 2) return {path};
+  const auto evaluator = nodes::Evaluator::create(*scene);
+  if (!evaluator) return {path};
+  const auto rig = character::find_rig(*scene, *evaluator, "", inputs.diagnostics);
+  if (!rig) return {path};
+  const std::vector<int> animations = moving(*scene, rig->joints.nodes);
+  if (animations.size() < 2) return {path};
+  std::vector<std::string> addresses;
+  for (const int animation : animations) {
+    std::string name = animation_name(*scene, at(animation));
+    name.erase(0, name.rfind('|') + 1);  // npos + 1 is 0
+    const auto found = find_animation(*scene, name, path);
+    const bool plain = found && *found == animation && name.find('/') == std::string::npos;
+    addresses.push_back(path + "#" + (plain ? name : std::to_string(animation)));
+  }
+  return addresses;
 }
 
 }  // namespace krok::io

@@ -35,6 +35,10 @@ class InputFile {
   std::string_view text() const;
   const std::string& path() const { return path_; }
 
+  // Which of the file's contents is meant, by name; empty: all, or what a reader takes by itself.
+  const std::string& part() const { return part_; }
+  void choose_part(std::string part) { part_ = std::move(part); }
+
   // The XXH3 checksum of the bytes. A mapped file is not held in memory as a whole.
   std::uint64_t checksum() const;
 
@@ -45,7 +49,7 @@ class InputFile {
  private:
   struct Content;
   InputFile(std::string path, std::unique_ptr<Content> content);
-  std::string path_;
+  std::string path_, part_;
   std::unique_ptr<Content> content_;
 };
 

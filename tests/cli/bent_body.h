@@ -25,7 +25,7 @@ class BentBody : public CliTest {
     ToolOptions here;
     here.folder = folder_.string();
     const ToolRun run = run_tool(name, arguments, here);
-    EXPECT_EQ(run.exit_code, expected) << name << ' ' << run.err;
+    EXPECT_EQ(run.exit_code, expected) << name << " " << run.out << run.err;
     return run;
   }
 

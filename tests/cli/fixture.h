@@ -35,6 +35,16 @@ class CliTest : public FolderTest {
     return run_tool(tool, std::move(arguments), options);
   }
 
+  // Makes a BVH file that Krok wrote one of another program, whose unit and axes are detected.
+  void take_mark_from(const std::string& name) const {
+    std::string text = get(path(name));
+    const std::size_t time = text.find("Frame Time");
+    const std::size_t end = text.find('\n', time);
+    const std::size_t last = text.find_last_not_of(" \t", end - 1);
+    text.erase(last + 1, end - last - 1);
+    put(name, text);
+  }
+
   // A chain of three joints that swings, metres, y-up. `third_value` replaces the third number of
   // the second row.
   static std::string capture(int frames, const std::string& third_value = "0") {

@@ -336,7 +336,7 @@ class Batch {
 
     const std::string digest = made_with(file, list_, line_.fixed_positionals, context);
     if (!line_.force) {
-      if (auto record = journal_->unchanged(file.key, digest, file.input)) {
+      if (auto record = journal_->unchanged(file.key, digest, io::address_of(file.input).file)) {
         return note_unchanged(file, std::move(*record), outcome);
       }
     }
@@ -360,8 +360,8 @@ class Batch {
     outcome.state = FileState::done;
     note_report(file, outcome);
     outcome.unforeseen = std::move(outcome.run.held_paths);
-    auto record = journal_record(line_.out_dir, file.key, digest, file.input, context.report,
-                                 places_of(outcome));
+    auto record = journal_record(line_.out_dir, file.key, digest, io::address_of(file.input).file,
+                                 context.report, places_of(outcome));
     // Outputs that are gone or not regular files cannot be checked by later runs.
     if (!record) return;
     if (outcome.run.held_files.empty()) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "formats/io/inputs.h"
 #include "tools/cli/paths.h"
 
 namespace krok::cli::batch {
@@ -26,7 +27,7 @@ class Check {
     std::vector<std::optional<FileNumber>> inputs(count), outputs(count);
     parallel_for(count, 64, line_.jobs, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        inputs[i] = file_number(list_.files[i].input);
+        inputs[i] = file_number(io::address_of(list_.files[i].input).file);
         outputs[i] = file_number(list_.files[i].output);
       }
     });

@@ -12,6 +12,8 @@
 #include "core/hash.h"
 #include "core/numbers.h"
 #include "core/text.h"
+#include "formats/io/open_scene.h"
+#include "tools/cli/file_name.h"
 #include "tools/cli/folder_inputs.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/paths.h"
@@ -122,13 +124,16 @@ class Lister {
     }
     std::unordered_set<std::string> known;
     for (const std::string& argument : line_.inputs) {
-      for (Found& found : find(argument)) {
-        std::string absolute = absolute_path(found.input);
-        if (!known.insert(absolute).second) continue;
-        absolute_.push_back(std::move(absolute));
-        list_.files.push_back(
-            {std::move(found.input), {}, {}, {}, *set, {}, found.base.has_value()});
-        bases_.push_back(std::move(found.base));
+      for (const Found& found : find(argument)) {
+        std::vector<std::string> inputs = {found.input};
+        if (sets_.all()[*set].each_animation) inputs = io::addresses_in(inputs[0], line_.limits());
+        for (std::string& input : inputs) {
+          std::string absolute = absolute_path(input);
+          if (!known.insert(absolute).second) continue;
+          absolute_.push_back(std::move(absolute));
+          list_.files.push_back({std::move(input), {}, {}, {}, *set, {}, found.base.has_value()});
+          bases_.push_back(found.base);
+        }
       }
     }
   }
@@ -155,7 +160,7 @@ class Lister {
       base = fixed_part(argument);
       if (paths) leave_out_results(base, *paths);
       nothing = "no file matches this pattern";
-    } else if (fs::exists(argument, missing)) {
+    } else if (fs::exists(io::address_of(argument).file, missing)) {
       return {{argument, std::nullopt}};
     } else {
       const bool may_be_result = line_.inputs.size() == 2 && argument == line_.inputs.back();
@@ -191,7 +196,10 @@ class Lister {
   // With --keep-going a missing file fails when its turn comes.
   void check_exists(const ManifestWord& input) {
     std::error_code missing;
-    if (line_.keep_going || input.text == "-" || fs::exists(input.text, missing)) return;
+    if (line_.keep_going || input.text == "-" ||
+        fs::exists(io::address_of(input.text).file, missing)) {
+      return;
+    }
     const bool blanks = input.text.find(' ') != std::string::npos;
     Error error("file-missing", fmt::format("no such file: {}", shown(input.text)),
                 blanks ? "separate input, output and options by tabs, not blanks"
@@ -281,7 +289,7 @@ class Lister {
       error.where = file.line;
       return fail(std::move(error));
     }
-    file.name = fs::path(absolute.substr(folder.size())).replace_extension().string();
+    file.name = path_without_ending(absolute).substr(folder.size());
     file.key = file.name + *ending;
   }
 

@@ -44,6 +44,7 @@ Result<OptionSet> OptionSets::parse(const std::vector<std::string>& words) const
     if (Status status = spec.check(); !status) return status.error();
   }
   set.ending = spec.batch->ending();
+  if (spec.batch->each_animation) set.each_animation = spec.batch->each_animation();
   return set;
 }
 

@@ -18,6 +18,7 @@ namespace krok::cli::batch {
 struct OptionSet {
   std::vector<GivenOption> options;
   Result<std::string> ending = std::string();  // suffix of output names, or why it is unknown
+  bool each_animation = true;                  // of an input is a file
 };
 
 // The options of the command line merged with those of manifest lines, which override them. Each

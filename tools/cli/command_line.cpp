@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 
 #include "core/glob.h"
 #include "core/text.h"
+#include "formats/io/open_scene.h"
 #include "tools/cli/folder_inputs.h"
 #include "tools/cli/option_kinds.h"
 
@@ -202,13 +205,18 @@ Status CommandLine::check_use_of_batch_options() const {
 Status CommandLine::open_folders() {
   left_out.clear();
   if (form_ != Form::single || spec_.folder_endings.empty()) return {};
+  const bool each = spec_.each_animation && spec_.each_animation(output);
   for (CLI::Option* option : app_.get_options()) {
     if (!option->get_positional() || option->get_items_expected_max() < 2) continue;
     std::vector<std::string> files;
+    const auto add = [&](const std::string& path) {
+      if (!each) return files.push_back(path);
+      std::ranges::copy(io::addresses_in(path, limits()), std::back_inserter(files));
+    };
     for (const std::string& value : option->results()) {
       std::error_code unknown;
       if (value == "-" || !std::filesystem::is_directory(value, unknown)) {
-        files.push_back(value);
+        add(value);
         continue;
       }
       auto found = find_files_below(value);
@@ -221,7 +229,7 @@ Status CommandLine::open_folders() {
                      fmt::format("the folder has no {} file", either_of(spec_.folder_endings)))
             .in_file(value);
       }
-      files.insert(files.end(), found->begin(), found->end());
+      std::ranges::for_each(*found, add);
     }
     if (files == option->results()) continue;
     option->clear();

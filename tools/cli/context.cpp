@@ -6,6 +6,7 @@
 
 #include "core/hash.h"
 #include "core/text.h"
+#include "formats/io/inputs.h"
 #include "tools/cli/console_progress.h"
 #include "tools/cli/json.h"
 #include "tools/cli/paths.h"
@@ -99,7 +100,8 @@ Result<InputFile> ToolContext::open_input(const std::string& path) {
   return file;
 }
 
-Result<InputFile> ToolContext::open_long_input(const std::string& path) {
+Result<InputFile> ToolContext::open_long_input(const std::string& address) {
+  const std::string path = io::address_of(address).file;
   const auto replaces = [&](const std::string& destination) {
     return same_file(path, destination);
   };
@@ -114,7 +116,7 @@ Result<InputFile> ToolContext::open_long_input(const std::string& path) {
                    "use a file for the other input");
     }
   }
-  auto file = InputFile::open(path);
+  auto file = io::open_address(address);
   if (file) report.inputs.push_back({path, ""});
   return file;
 }

@@ -7,7 +7,9 @@
 #include <system_error>
 
 #include "core/file.h"
+#include "core/numbers.h"
 #include "core/text.h"
+#include "formats/io/inputs.h"
 
 namespace krok::cli {
 
@@ -42,15 +44,23 @@ std::string beside(const std::string& path, const std::string& ending) {
   std::error_code unknown;
   const bool folder = std::filesystem::is_directory(result, unknown);
   if (path == "-" || !result.has_filename() || result.filename() == ".") return {};
-  if (!folder) result.replace_extension();
-  return result.string() + ending;
+  return (folder ? result.string() : path_without_ending(result.string())) + ending;
 }
 
 std::string name_of_input(const std::string& path) {
   return path == "-" ? "standard input" : base_name(path);
 }
 
+std::string path_without_ending(const std::string& path) {
+  const auto [file, animation] = io::address_of(path);
+  const std::string stem = std::filesystem::path(file).replace_extension().string();
+  return animation.empty() ? stem : stem + "_" + file_name_of(animation);
+}
+
 std::string clip_name_of(const std::string& path) {
+  const std::string animation = io::address_of(path).animation;
+  if (!animation.empty() && !parse_integer(animation)) return to_utf8(animation);
+  if (!animation.empty()) return to_utf8(base_name(path_without_ending(path)));
   const std::string name = base_name(path);
   const std::string stem = name.substr(0, name.size() - extension(path).size());
   return path == "-" || stem.empty() ? "motion" : to_utf8(stem);

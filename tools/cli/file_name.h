@@ -16,10 +16,15 @@ std::string uri_of(const std::string& path);
 // folder "takes/"; empty for "-".
 std::string beside(const std::string& path, const std::string& ending);
 
+// The path without its ending, for the names of what is made of a motion: "takes/walk" for
+// "takes/walk.bvh", "takes/hero_Run" for the animation "takes/hero.glb#Run".
+std::string path_without_ending(const std::string& path);
+
 // Display name of an input: the base name, "walk.bvh", or "standard input" for "-".
 std::string name_of_input(const std::string& path);
 
-// The name of a motion in a file of several: "walk" for "takes/walk.anim", "motion" for "-". UTF-8.
+// The name of a motion in a file of several: "walk" for "takes/walk.anim", "Run" for
+// "hero.glb#Run", "motion" for "-". UTF-8.
 std::string clip_name_of(const std::string& path);
 
 // "walk=takes/a.anim": the file takes/a.anim, to be called walk. Without a name, or for a file

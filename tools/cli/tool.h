@@ -171,6 +171,8 @@ struct ToolSpec {
     // Suffix of output names that replaces the input's extension, ".anim" or "_{clip}.anim". Called
     // after the options are parsed; an Error (code usage) if they do not determine it.
     std::function<Result<std::string>()> ending;
+    // Whether each animation of an input is a file of the batch. None: yes.
+    std::function<bool()> each_animation = {};
   };
   std::string name;     // "krok-import"
   std::string summary;  // in a line of 75 characters, no full stop; krok --help has it, too
@@ -193,6 +195,9 @@ struct ToolSpec {
   // In a list of inputs, and without a Batch, a folder stands for all its files with one of these
   // endings, sub-folders included. None: it is a file that cannot be read.
   std::vector<std::string> folder_endings;
+  // Where a folder stands for its files: whether each animation of a file is an input of its own
+  // (FILE#ANIMATION), for this output. Called after the options are parsed. None: no.
+  std::function<bool(const std::string& output)> each_animation;
 
   // Adds the tool's own options and positionals.
   std::function<void(CommandOptions&)> declare;

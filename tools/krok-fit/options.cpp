@@ -82,6 +82,7 @@ ToolSpec make_spec() {
       "it makes correctives, morph targets by pose, which krok-skin adds.";
   spec.inputs = "LIBRARY.json|IN...";
   spec.folder_endings = io::motion_endings();
+  spec.each_animation = [](const std::string&) { return true; };
   spec.examples = {
       {"krok-fit walks/ -o walking.steps",
        "the steps of all walks in a folder, by their length and turn"},

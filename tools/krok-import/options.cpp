@@ -191,8 +191,15 @@ ToolSpec make_spec() {
       {"krok-import captures --out-dir motions --keep-going",
        "all captures in a folder; run again, it processes only new, changed and failed files"}};
   // Only files with motion; an Acclaim skeleton or an MD5 mesh is read with the motion beside it.
-  spec.batch = {io::foreign_motion_endings(), [options]() -> Result<std::string> {
+  spec.batch = {io::foreign_motion_endings(),
+                [options]() -> Result<std::string> {
                   return std::string(options->clip == "all" ? "_{clip}.anim" : ".anim");
+                },
+                // What is not of one animation would be written for each.
+                [options] {
+                  const Options& o = *options;
+                  return o.clip.empty() && o.model.empty() && o.character.empty() &&
+                         o.cam.empty() && o.morphs.empty() && o.weights.empty();
                 }};
   return spec;
 }

@@ -276,7 +276,8 @@ ToolSpec make_spec() {
   spec.default_output = [options] {
     return options->sheet.wanted() ? "" : beside(options->inputs.front(), ".svg");
   };
-  spec.batch = {io::motion_endings(), always(".svg")};
+  spec.batch = {io::motion_endings(), always(".svg"),
+                [options] { return options->sheet.clip.empty(); }};
   return spec;
 }
 

@@ -149,7 +149,8 @@ ToolSpec make_spec() {
       {"krok-render captures --out-dir films --format webp --keep-going",
        "a film of each capture in a folder"}};
   spec.batch = {io::motion_endings(),
-                [options]() -> Result<std::string> { return ending_of(options->format); }};
+                [options]() -> Result<std::string> { return ending_of(options->format); },
+                [options] { return options->actors.clip.empty(); }};
   return spec;
 }
 

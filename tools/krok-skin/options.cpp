@@ -251,6 +251,13 @@ ToolSpec make_spec() {
       {"krok-skin body.model walk.anim --as baked -o baked.glb",
        "baked vertex animation, for viewers without skinning"},
       {"krok-skin body.model walk.anim -o walk.pc2", "a point cache for Blender or 3ds Max"}};
+  spec.each_animation = [options](const std::string& output) {
+    const Options& o = *options;
+    const As as = o.as == As::automatic && extension(output) == ".pc2" ? As::baked : o.as;
+    const bool of_each = o.weights.empty() || o.has_weights_by_clip();
+    return (as == As::automatic || as == As::rig || as == As::motion) && !o.from && !o.to &&
+           of_each;
+  };
   spec.batch = {io::motion_endings(), always(".glb")};
   return spec;
 }

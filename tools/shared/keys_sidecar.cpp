@@ -14,6 +14,7 @@
 #include "formats/io/open_motion.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
+#include "tools/cli/file_name.h"
 
 namespace krok::cli {
 
@@ -62,7 +63,7 @@ std::string sign_of_another_motion(const krok::keys::Sidecar& sidecar, const Fra
 
 std::string keys_sidecar_path(const std::string& motion_path) {
   if (motion_path == "-" || motion_path.empty()) return {};
-  return std::filesystem::path(motion_path).replace_extension(".keys.json").string();
+  return path_without_ending(motion_path) + ".keys.json";
 }
 
 Result<krok::keys::Sidecar> read_keys_file(const std::string& path, const FrameSource& motion,

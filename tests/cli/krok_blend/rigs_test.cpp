@@ -21,6 +21,7 @@ class RigsThroughTools : public CliTest {
                                           "--steps",         "6",  "-o",    path(name)};
       command.insert(command.end(), more.begin(), more.end());
       EXPECT_EQ(run(command).exit_code, 0);
+      take_mark_from(name);
     };
     walk("slow.bvh", {"--step-length", "50cm", "--turn", "8deg", "--noise-angle", "0.3deg"});
     walk("quick.bvh", {"--step-length", "80cm", "--cadence", "126"});

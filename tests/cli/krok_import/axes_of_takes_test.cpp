@@ -48,6 +48,7 @@ TEST_F(AxesOfTakes, MayComeFromAnotherTake) {
     const ToolRun run =
         run_here("krok-export", {name + ".anim", "-o", name + ".bvh", "--unit", "cm"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
+    take_mark_from(name + ".bvh");
   }
   const auto hips = static_cast<std::size_t>(roles.joint(Role::hips));
   const auto head = static_cast<std::size_t>(roles.joint(Role::head));

@@ -39,6 +39,7 @@ class RoleMapImport : public CliTest {
     ASSERT_TRUE(file.ok());
     ASSERT_TRUE(bvh::write(clip, {}, *file).ok());
     ASSERT_TRUE(file->commit().ok());
+    take_mark_from("walk.bvh");
 
     Json joints = Json::object();
     const std::pair<const char*, const char*> parts[] = {

@@ -149,5 +149,28 @@ TEST_F(SkinClips, ImagesShowAllClipsOrTheNamedOne) {
   EXPECT_TRUE(has_code(none.err, "clip-name")) << none.err;
 }
 
+// Would fail if a tool took one animation of a file for the whole of it where it makes one result
+// of many motions or a file of each, or if FILE#ANIMATION were another one, or of another file.
+TEST_F(SkinClips, EachAnimationOfAFileIsAMotion) {
+  tool("krok-skin", {"in.model", "in.anim", "run.anim", "-o", "hero.glb"});
+  tool("krok-skin", {"in.model", "hero.glb", "-o", "again.gltf"});
+  EXPECT_THAT(names(gltf("again.gltf")["animations"]), ElementsAre("in", "run"));
+  expect_same("hero.glb", "again.gltf");
+  tool("krok-edit", {"run.anim", "--turn", "10deg", "-o", "run_turned.anim"});
+  tool("krok-edit", {"hero.glb#run", "--turn", "10deg", "-o", "one.anim"});
+  expect_same("one.anim", "run_turned.anim");
+  tool("krok-edit", {"hero.glb#1", "--turn", "10deg", "-o", "second.anim"});
+  const ToolRun batch = tool("krok-edit", {"hero.glb", "--turn", "10deg", "--out-dir", "each"});
+  EXPECT_FALSE(has_code(batch.err, "clip-choice")) << batch.err;
+  tool("krok-diff", {"each/hero_run.anim", "second.anim"});
+  const ToolRun again = tool("krok-edit", {"hero.glb", "--turn", "10deg", "--out-dir", "each"});
+  EXPECT_THAT(again.err, HasSubstr("2 files, 2 unchanged"));
+  const ToolRun none = tool("krok-edit", {"hero.glb#walk", "--turn", "1deg", "-o", "x.anim"}, 2);
+  EXPECT_THAT(none.err, AllOf(HasSubstr("there is no animation walk"), HasSubstr("1 (run)")));
+  // A file of the whole name comes first.
+  std::filesystem::copy(path("run.anim"), path("hero.glb#in"));
+  tool("krok-diff", {"hero.glb#in", "run.anim"});
+}
+
 }  // namespace
 }  // namespace krok::test
