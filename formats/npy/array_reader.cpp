@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "capture/far_values.h"
 #include "core/index.h"
@@ -167,34 +168,56 @@ class Reader {
     return {};
   }
 
+  // Metres, +Y up, facing +Z: what the motion shows besides is a doubt.
+  void keep_own(Conventions& conventions) {
+    const Conventions seen = std::exchange(conventions, {});
+    conventions.unit_confidence = conventions.up_confidence = conventions.forward_confidence =
+        Confidence::certain;
+    conventions.unit_reason = conventions.up_reason = conventions.forward_reason =
+        "as krok-export writes arrays of these names";
+    // They are no evidence against what is given.
+    if (options_.up) conventions.up_confidence = Confidence::guess;
+    if (options_.forward) conventions.forward_confidence = Confidence::guess;
+    const auto doubt = [&](const char* option, const std::string& is, const std::string& shown,
+                           const std::string& why) {
+      report(Severity::warning, fmt::format("npy-{}", option),
+             fmt::format("{} is {}, as krok-export writes arrays of these names; the motion shows "
+                         "{}: {}",
+                         option, is, shown, why),
+             fmt::format("--{} {} if it is", option, shown));
+    };
+    if (!options_.unit && seen.unit_confidence == Confidence::certain && seen.unit.metres != 1) {
+      doubt("unit", "m", seen.unit.name, seen.unit_reason);
+    }
+    if (!options_.up && seen.up_confidence == Confidence::certain && seen.up != conventions.up) {
+      doubt("up", "y", std::string(direction_name(seen.up)), seen.up_reason);
+    }
+  }
+
   Status convert() {
     Conventions& conventions = capture_.conventions;
     const std::size_t joints = motion_.skeleton.names.size();
     const std::size_t frames = motion_.positions.size() / joints;
-    if (motion_.is_krok) {
-      conventions.unit_confidence = conventions.up_confidence = conventions.forward_confidence =
-          Confidence::certain;
-    } else {
-      std::vector<Vec3> samples;
-      const std::size_t count = std::min(frames, kMaxSamples);
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::size_t f = count < 2 ? 0 : i * (frames - 1) / (count - 1);
-        samples.insert(samples.end(), &motion_.positions[f * joints],
-                       &motion_.positions[f * joints] + joints);
-      }
-      conventions = detect_conventions(motion_.skeleton, motion_.roles, samples);
-      if (motion_.upright) {
-        conventions.forward = forward_below(conventions.up);
-        conventions.forward_confidence = Confidence::certain;
-        conventions.forward_reason = "the reference pose is made so";
-      }
-      apply_given(options_, conventions);
-      if (motion_.upright) {
-        conventions.reference_up = Direction::plus_y;
-        conventions.reference_forward = Direction::plus_z;
-      }
-      report_conventions(conventions, options_, "npy", file_.name, capture_.diagnostics);
+    std::vector<Vec3> samples;
+    const std::size_t count = std::min(frames, kMaxSamples);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t f = count < 2 ? 0 : i * (frames - 1) / (count - 1);
+      samples.insert(samples.end(), &motion_.positions[f * joints],
+                     &motion_.positions[f * joints] + joints);
     }
+    conventions = detect_conventions(motion_.skeleton, motion_.roles, samples);
+    if (motion_.is_krok) keep_own(conventions);
+    if (motion_.upright) {
+      conventions.forward = forward_below(conventions.up);
+      conventions.forward_confidence = Confidence::certain;
+      conventions.forward_reason = "the reference pose is made so";
+    }
+    apply_given(options_, conventions);
+    if (motion_.upright) {
+      conventions.reference_up = Direction::plus_y;
+      conventions.reference_forward = Direction::plus_z;
+    }
+    report_conventions(conventions, options_, "npy", file_.name, capture_.diagnostics);
     const auto conversion = Conversion::make(conventions);
     if (!conversion) return conversion.error();
     capture_.clip.provenance.conversions = describe_conversions(conventions, options_);

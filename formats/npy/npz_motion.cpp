@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/index.h"
+#include "core/numbers.h"
 #include "formats/npy/array_motion_internal.h"
 #include "math/quaternion.h"
 #include "scene/frame_blocks.h"
@@ -30,6 +31,51 @@ Result<std::vector<Quat>> quaternions_of(const std::vector<double>& values) {
     quaternions[i].coeffs() /= norm;
   }
   return quaternions;
+}
+
+// How much joints move in the frames of their parents as the quaternions have these, over the
+// bones' lengths: 0 for rigid bones. The median over joints.
+double looseness(const Skeleton& skeleton, const std::vector<double>& places,
+                 const std::vector<Quat>& turns) {
+  const std::size_t joints = skeleton.parents.size(), frames = turns.size() / joints;
+  const std::size_t step = std::max<std::size_t>(frames / 50, 1);
+  std::vector<double> all;
+  for (std::size_t j = 1; j < joints; ++j) {
+    const std::size_t parent = at(skeleton.parents[j]);
+    Vec3 first = Vec3::Zero();
+    double most = 0;
+    for (std::size_t f = 0; f < frames; f += step) {
+      const Vec3 bone = vector_at(places, f * joints + j) - vector_at(places, f * joints + parent);
+      const Vec3 offset = turns[f * joints + parent].conjugate() * bone;
+      if (f == 0) first = offset;
+      most = std::max(most, (offset - first).norm());
+    }
+    if (first.norm() > 1e-6) all.push_back(most / first.norm());
+  }
+  if (all.empty()) return 0;
+  std::ranges::nth_element(all, all.begin() + std::ssize(all) / 2);
+  return all[all.size() / 2];
+}
+
+// Quaternions of another order make bones that swing about.
+Status check_order(const Skeleton& skeleton, const std::vector<double>& places,
+                   const std::vector<Quat>& turns, Diagnostics& diagnostics) {
+  constexpr double kRigid = 0.05, kLoose = 0.2;
+  const double given = looseness(skeleton, places, turns);
+  if (given < kLoose) return {};
+  std::vector<Quat> w_first;
+  for (const Quat& q : turns) w_first.emplace_back(q.x(), q.y(), q.z(), q.w());
+  if (looseness(skeleton, places, w_first) < kRigid) {
+    return Error("npy-rotation", "the quaternions are w, x, y, z; x, y, z, w are needed",
+                 "numpy.roll(quaternions, -1, axis=-1) brings them into order");
+  }
+  diagnostics.push_back(make_warning(
+      "npy-rotation",
+      fmt::format("the positions do not follow the quaternions: half of the bones move by {}% of "
+                  "their length or more in the frames of their parents",
+                  readable(100 * given, 3)),
+      "they are x, y, z, w, joint to world"));
+  return {};
 }
 
 // Each run of frames in which a joint is down, at its mean place.
@@ -136,6 +182,9 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
   if (Status status = check(skeleton); !status) return status.error();
   auto orientations = quaternions_of(*turns);
   if (!orientations) return orientations.error();
+  if (Status status = check_order(skeleton, *places, *orientations, motion.diagnostics); !status) {
+    return status.error();
+  }
   motion.orientations = *std::move(orientations);
   motion.positions.resize(frames * joints);
   for (std::size_t i = 0; i < frames * joints; ++i) motion.positions[i] = vector_at(*places, i);

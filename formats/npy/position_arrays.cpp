@@ -68,7 +68,8 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
   const std::size_t columns = shape[shape.size() - 2], frames = shape[shape.size() - 3];
   auto arranged = skeleton_for(file, columns, motion.usual_rate, motion.diagnostics);
   if (!arranged) {
-    if (!skeletons_of_columns(frames).empty()) {
+    const auto& given = file.options.columns;
+    if (given ? at(given->columns()) == frames : !skeletons_of_columns(frames).empty()) {
       arranged.error().hint =
           fmt::format("joints before frames? numpy.swapaxes(a, {}, {}) exchanges them",
                       shape.size() - 3, shape.size() - 2);
@@ -189,6 +190,33 @@ Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string
   return motion;
 }
 
+namespace {
+
+// As the file's own arrays of names and parents have them.
+Result<PositionSkeleton> stated_columns(const ArrayFile& file, std::size_t columns) {
+  const auto names = file.arrays.read("names");
+  if (!names) return names.error();
+  const auto parents = file.numbers("parents", {columns});
+  if (!parents) return parents.error();
+  const std::vector<std::string> texts = names->texts();
+  if (texts.size() != columns) {
+    return Error("npy-shape",
+                 fmt::format("there are {} joints and {} names", columns, texts.size()));
+  }
+  PositionSkeleton skeleton;
+  for (std::size_t j = 0; j < columns; ++j) {
+    const double parent = (*parents)[j];
+    if (!(parent < static_cast<double>(columns))) {
+      return Error("npy-value", fmt::format("parents has {} for joint {}", parent, j));
+    }
+    skeleton.joints.push_back(
+        {.name = texts[j], .parent = parent < 0 ? "" : texts[static_cast<std::size_t>(parent)]});
+  }
+  return skeleton;
+}
+
+}  // namespace
+
 Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns,
                                       double& usual_rate, Diagnostics& diagnostics) {
   const std::vector<std::string_view> known = skeletons_of_columns(columns);
@@ -211,6 +239,11 @@ Result<ArrangedSkeleton> skeleton_for(const ArrayFile& file, std::size_t columns
     return arranged;
   }
   std::optional<PositionSkeleton> skeleton = file.options.columns;
+  if (!skeleton && file.arrays.has("names") && file.arrays.has("parents")) {
+    auto stated = stated_columns(file, columns);
+    if (!stated) return stated.error();
+    skeleton = *std::move(stated);
+  }
   if (!skeleton) {
     if (known.size() != 1) {
       return Error("npy-skeleton",

@@ -180,6 +180,13 @@ Result<ArrayMotion> read_smpl(const ArrayFile& file) {
   for (std::size_t j = 0; places && j < joints; ++j) {
     motion.skeleton.reference[j].position = (*places)[j];
   }
+  constexpr double kTwoTurns = 4 * kPi;
+  const double largest = std::ranges::max(poses->values, {}, [](double v) { return std::abs(v); });
+  if (std::abs(largest) > kTwoTurns) {
+    return Error("npy-rotation",
+                 fmt::format("a rotation vector has the value {}; radians are needed", largest),
+                 "degrees? then numpy.radians(poses)");
+  }
   std::vector<Quat> rotations;
   for (std::size_t i = 0; i < frames * joints; ++i) {
     rotations.push_back(from_rotation_vector(Vec3(&poses->values[3 * i])));

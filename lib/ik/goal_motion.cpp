@@ -44,6 +44,7 @@ class BlockSolver {
         joints_(parents_.size()) {
     motion_->goals.resize(goals.size());
     motion_->shifts.resize(parents_.size());
+    motion_->excesses.resize(options_.ranges.size());
   }
 
   const std::shared_ptr<GoalMotion>& motion() const { return motion_; }
@@ -133,6 +134,12 @@ class BlockSolver {
       const double moved = (made.frame_positions(f)[j] - given.clip.frame_positions(f)[j]).norm();
       if (moved > shift.distance) shift = {moved, given.first + f};
       const Quat was = relative(given.clip, f), now = relative(made, f);
+      if (!options_.ranges.empty() && now.coeffs() != was.coeffs()) {
+        const JointLimit& range = options_.ranges[j];
+        const double further = excess(range, now) - excess(range, was);
+        GoalMotion::Excess& largest = motion_->excesses[j];
+        if (further > largest.angle) largest = {further, given.first + f};
+      }
       const Quat before = std::exchange(joint.last_before, was);
       const Quat made_before = std::exchange(joint.last, now);
       if (given.first + f == 0) continue;

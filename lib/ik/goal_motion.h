@@ -77,6 +77,13 @@ struct GoalMotion {
     int frame = -1;
   };
   std::vector<Shift> shifts;
+  // How much further than the motion goals bring each joint beyond the ranges of the options,
+  // radians, and in which frame (-1: never). [joints]; empty without ranges.
+  struct Excess {
+    double angle = 0;
+    int frame = -1;
+  };
+  std::vector<Excess> excesses;
 };
 
 inline constexpr double kHeldWeight = 4;
@@ -96,6 +103,7 @@ struct GoalMotionOptions {
   // them. They count kHeldWeight times as much as goals do; knees bend as they did, and about their
   // usual axis where they are bent further.
   std::vector<HeldFoot> held;
+  Limits ranges;                 // of motion, to be measured, not kept; empty: none
   int jobs = 0;                  // for stretches of frames without goals between them
   Progress* progress = nullptr;  // may be null
 };

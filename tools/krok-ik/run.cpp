@@ -590,6 +590,9 @@ Result<int> Run::bring_about(const FrameSource& motion,
   const bool has_legs = roles_.joint(Role::left_foot) >= 0 || roles_.joint(Role::right_foot) >= 0;
   how.held = has_legs ? krok::ik::legs_without_goals(clip_, roles_, goals_)
                       : krok::ik::ends_on_ground(clip_, goals_);
+  if (limits_.empty() && roles_.humanoid) {
+    how.ranges = krok::ik::anatomical_limits(retarget::neutral_skeleton(clip_, roles_), roles_);
+  }
   const std::string& asked = options_.goals.empty() ? options_.input : options_.goals;
   auto made = krok::ik::apply_goals(motion, goals_, limits_, how);
   if (!made) return std::move(made).error().in_file(asked);
@@ -610,6 +613,7 @@ Result<int> Run::bring_about(const FrameSource& motion,
     context_.diagnose_in(options_.input, !has_legs && how.held.empty()
                                              ? moved_body(outcome)
                                              : moved_feet(outcome, how.held));
+    context_.diagnose_in(options_.input, beyond_ranges(outcome));
   };
   std::string chart;
   if (looks_with_eyes(options_) || !options_.plot.empty()) {

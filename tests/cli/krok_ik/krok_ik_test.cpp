@@ -74,6 +74,20 @@ TEST_F(KrokIk, CentimetresWithoutAUnitAreRefused) {
   EXPECT_THAT(look("head=0m,160m,300m@1s"), Not(HasSubstr("unit")));
 }
 
+// Would fail if a head that looks straight behind itself were written without a word, or if a look
+// ahead were blamed.
+TEST_F(KrokIk, WhatNobodyCanTurnToIsWarnedOf) {
+  const auto look = [&](const char* z, std::vector<std::string> more) {
+    more.insert(more.begin(), {"walk.anim", "--look-at", fmt::format("head=0.1m,1.5m,{}@1s", z),
+                               "-o", "out.anim"});
+    return ik(more).err;
+  };
+  EXPECT_THAT(look("-9m", {}),
+              AllOf(HasSubstr("beyond the range of people"), HasSubstr("[ik-range]")));
+  EXPECT_THAT(look("-9m", {"--limits", "auto"}), Not(HasSubstr("[ik-range]")));
+  EXPECT_THAT(look("9m", {}), Not(HasSubstr("[ik-range]")));
+}
+
 TEST_F(KrokIk, HeightsOfGoalsAreOverTheGround) {
   const auto run = ik({"walk.anim", "--reach", reach(Vec3(0, 0.1 - 0.2, 0.05)), "--fade", "200ms",
                        "--ground", "level:height=20cm", "-o", "out.anim", "--orientation", "xyzw"});
@@ -264,7 +278,7 @@ TEST_F(KrokIk, FeetStayAndAreWarnedOfWhereTheyCannot) {
     arguments.insert(arguments.end(), whole.begin(), whole.end());
     const auto bent = ik(arguments);
     ASSERT_EQ(bent.exit_code, 0) << bent.err;
-    EXPECT_THAT(bent.err, Not(HasSubstr("[ik-")));
+    EXPECT_THAT(bent.err, Not(HasSubstr("[ik-feet]")));
     const Clip out = read("out.anim");
     EXPECT_LT((place(out, 30, "LeftFoot") - place(biped, 30, "LeftFoot")).norm(), 1e-3);
     EXPECT_GT((place(out, 30, "LeftLeg") - place(biped, 30, "LeftLeg")).norm(), 1e-3);
@@ -299,7 +313,7 @@ TEST_F(KrokIk, ARootOnTheGroundStaysWhereThePelvisMoves) {
         ik({"rooted.anim", "--root-moves", "--reach",
             fmt::format("Hips={}m,{}m,{}m@30f", hips.x(), hips.y(), hips.z()), "-o", "out.anim"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_THAT(run.err, Not(HasSubstr("[ik-")));
+    EXPECT_THAT(run.err, Not(HasSubstr("[ik-feet]")));
     const Clip out = read("out.anim");
     EXPECT_LT((place(out, 30, "Hips") - hips).norm(), 1e-3);
     for (int f = 0; f < out.frame_count(); ++f) {

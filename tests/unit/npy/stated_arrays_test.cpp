@@ -1,0 +1,107 @@
+// Arrays that say what they are. If these fail, a motion in another unit, other axes or with
+// quaternions in another order comes in as it is, without a word.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "formats/npy/array_reader.h"
+#include "formats/npy/npy.h"
+#include "math/quaternion.h"
+#include "samples/generator/walk.h"
+
+namespace krok::npy {
+namespace {
+
+using Named = std::vector<std::pair<std::string, Array>>;
+
+// A walk, each place and each frame of a joint turned and scaled.
+struct Walk {
+  std::vector<double> places, quaternions, matrices;
+  Clip walk = samples::make_walk(samples::WalkOptions())->clip;
+
+  explicit Walk(const Quat& turn = Quat::Identity(), double scale = 1, bool w_first = false) {
+    for (std::size_t i = 0; i < walk.positions.size(); ++i) {
+      const Vec3 place = scale * (turn * walk.positions[i].cast<double>());
+      places.insert(places.end(), place.begin(), place.end());
+      const Quat q = (turn * walk.orientations[i].cast<double>()).normalized();
+      const Vec4 xyzw = q.coeffs(), wxyz(q.w(), q.x(), q.y(), q.z());
+      const Vec4& values = w_first ? wxyz : xyzw;
+      quaternions.insert(quaternions.end(), values.begin(), values.end());
+      const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> matrix = q.toRotationMatrix();
+      matrices.insert(matrices.end(), matrix.data(), matrix.data() + 9);
+    }
+  }
+
+  Named common() const {
+    const auto frames = static_cast<std::size_t>(walk.frame_count());
+    const std::size_t joints = walk.skeleton.names.size();
+    const std::vector<std::int32_t> parents(walk.skeleton.parents.begin(),
+                                            walk.skeleton.parents.end());
+    return {{"positions", array_of(places, {frames, joints, 3})},
+            {"names", array_of_texts(walk.skeleton.names)},
+            {"parents", array_of(parents, {joints})},
+            {"rate", array_of(std::span(&walk.rate, 1), {})}};
+  }
+  Result<Capture> read(const ReadOptions& options = {}) const {
+    Named all = common();
+    all.emplace_back("quaternions",
+                     array_of(quaternions, {all[0].second.shape[0], all[0].second.shape[1], 4}));
+    return npy::read(write(std::move(all)).value(), "walk.npz", options);
+  }
+};
+
+bool has(const Capture& capture, const std::string& code) {
+  return std::ranges::any_of(capture.diagnostics, [&](const Diagnostic& one) {
+    return one.code == code && one.severity == Severity::warning;
+  });
+}
+
+TEST(StatedArrays, WhatTheMotionShowsOtherwiseIsWarnedOfAndMayBeGiven) {
+  const auto plain = Walk().read();
+  ASSERT_TRUE(plain.ok()) << plain.error().message;
+  EXPECT_FALSE(has(*plain, "npy-up") || has(*plain, "npy-unit"));
+  const Walk centimetres(Quat::Identity(), 100);
+  EXPECT_TRUE(has(*centimetres.read(), "npy-unit"));
+  const Quat lies = from_rotation_vector(Vec3(kPi / 2, 0, 0));
+  const Walk z_up(lies);
+  EXPECT_TRUE(has(*z_up.read(), "npy-up"));
+  ReadOptions given;
+  given.up = Direction::plus_z, given.forward = Direction::minus_y;
+  const auto upright = z_up.read(given);
+  ASSERT_TRUE(upright.ok());
+  EXPECT_FALSE(has(*upright, "npy-up"));
+  for (std::size_t i = 0; i < plain->clip.positions.size(); ++i) {
+    ASSERT_LT((upright->clip.positions[i] - plain->clip.positions[i]).norm(), 1e-5F) << i;
+  }
+}
+
+TEST(StatedArrays, QuaternionsOfAnotherOrderAreRefused) {
+  const auto read = Walk(Quat::Identity(), 1, true).read();
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.error().code, "npy-rotation");
+  EXPECT_NE(read.error().hint.find("numpy.roll"), std::string::npos);
+}
+
+TEST(StatedArrays, NamesAndParentsOfTheFileAreTheSkeleton) {
+  const Walk arrays;
+  Named all = arrays.common();
+  const auto& shape = all[0].second.shape;
+  all.emplace_back("global_rot_mats", array_of(arrays.matrices, {shape[0], shape[1], 3, 3}));
+  const auto read = npy::read(write(std::move(all)).value(), "walk.npz");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->clip.skeleton.names, arrays.walk.skeleton.names);
+  for (std::size_t i = 0; i < arrays.walk.positions.size(); ++i) {
+    ASSERT_LT((read->clip.positions[i] - arrays.walk.positions[i]).norm(), 1e-4F) << i;
+  }
+}
+
+TEST(StatedArrays, PosesInDegreesAreRefused) {
+  const std::vector<double> poses(66, 40);
+  const auto read = npy::read(write(Named{{"poses", array_of(poses, {1, 66})}}).value(), "p.npz");
+  ASSERT_FALSE(read.ok());
+  EXPECT_NE(read.error().hint.find("numpy.radians"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace krok::npy
