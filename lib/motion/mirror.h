@@ -19,7 +19,10 @@ struct MirrorPairs {
   std::vector<int> partners;
   // [joints], 1 for joints that are a known part of the body; empty: all are. See mirror().
   std::vector<std::uint8_t> in_body;
-  double plane = 0;  // the character's plane of symmetry in the reference pose is x = `plane`
+  // The character's plane of symmetry in the reference pose, across.dot(place) = plane: x, unless
+  // the pose faces aside.
+  Vec3 across = Vec3::UnitX();
+  double plane = 0;
   int carrier = 0;   // what carrying_joint() gives
 
   std::vector<int> unpaired() const;

@@ -40,6 +40,9 @@ std::optional<std::vector<std::string>> other_side(std::vector<std::string> word
   return words;
 }
 
+// Sine of the angle from the plane of symmetry up to which a bone is one of the middle.
+constexpr double kSwung = 0.7;
+
 class PairFinder {
  public:
   PairFinder(const Skeleton& skeleton, const RoleMap& roles)
@@ -52,6 +55,7 @@ class PairFinder {
     pair(0, 0);
     pair_by_roles();
     pair_by_names();
+    find_across();
     find_plane();
     near_ = 0.02 * reference_extent(skeleton_);
     // Parents precede their children, so they are paired already.
@@ -100,6 +104,21 @@ class PairFinder {
     }
   }
 
+  // From the right to the left: along x, unless pairs lie far from it, as where the reference pose
+  // faces aside.
+  void find_across() {
+    constexpr double kAlongX = 0.87;  // cosine of 30 degrees
+    Vec3 sum = Vec3::Zero();
+    for (int j = 0; j < skeleton_.joint_count(); ++j) {
+      if (partner(j) <= j) continue;
+      const Vec3 apart =
+          skeleton_.reference[at(j)].position - skeleton_.reference[at(partner(j))].position;
+      sum += apart.dot(sum) < 0 ? Vec3(-apart) : apart;
+    }
+    const Vec3 across = sum.stableNormalized();
+    if (sum.norm() > 0 && std::abs(across.x()) < kAlongX) pairs_.across = across;
+  }
+
   void find_plane() {
     std::vector<double> middles;
     for (int j = 0; j < skeleton_.joint_count(); ++j) {
@@ -115,7 +134,7 @@ class PairFinder {
     // Makes the usual plane exactly 0 despite rounding of the offsets.
     if (std::abs(pairs_.plane) < 1e-6) pairs_.plane = 0;
   }
-  double x(int joint) const { return skeleton_.reference[at(joint)].position.x(); }
+  double x(int joint) const { return pairs_.across.dot(skeleton_.reference[at(joint)].position); }
 
   // A joint in the reference pose relative to its parent, so that asymmetric parents do not matter.
   Vec3 from_parent(int joint) const {
@@ -126,8 +145,8 @@ class PairFinder {
   // The joint of `among`, which is sorted by height, that is nearest to the mirror image of
   // `joint`, and nearer than `within`; of two equally near ones the first in the skeleton.
   int nearest(int joint, const std::vector<int>& among, double within) const {
-    Vec3 image = from_parent(joint);
-    image.x() = -image.x();
+    const Vec3 bone = from_parent(joint);
+    const Vec3 image = bone - 2 * pairs_.across.dot(bone) * pairs_.across;
     const auto height = [&](int j) { return from_parent(j).y(); };
     int best = MirrorPairs::kNone;
     for (auto k = std::ranges::lower_bound(among, image.y() - within, {}, height); k != among.end();
@@ -165,6 +184,14 @@ class PairFinder {
       const bool sided = other_side(name_tokens(skeleton_.names[at(j)])).has_value();
       if (open(j) && !sided && std::abs(x(j) - pairs_.plane) < 5 * near_) pair(j, j);
     }
+    // A tail or trunk that the reference pose swings to a side: nothing else can be its image.
+    std::vector<int> left;
+    for (const int j : children_[at(parent)]) {
+      if (open(j) && !other_side(name_tokens(skeleton_.names[at(j)]))) left.push_back(j);
+    }
+    if (left.size() != 1) return;
+    const Vec3 bone = from_parent(left[0]);
+    if (std::abs(pairs_.across.dot(bone)) < kSwung * bone.norm()) pair(left[0], left[0]);
   }
 
   void pair_children_of_sides(int left, int right) {

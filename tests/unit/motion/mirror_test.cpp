@@ -126,6 +126,24 @@ TEST(MirrorPairs, AHeadHeldAslantIsStillOfTheMiddle) {
                   mirror(test::swinging_clip(skeleton, 3, 30), pairs), pairs, 2e-6);
 }
 
+// Would fail if a tail that the reference pose swings to a side were no part of the middle, or if
+// pairs depended on which way the reference pose faces: both lost their motion.
+TEST(MirrorPairs, TailsAreOfTheMiddleWhicheverWayTheReferencePoseFaces) {
+  for (const double angle : {0.0, 0.4, kPi / 2, 2.5}) {
+    Skeleton skeleton = test::human_skeleton();
+    const Vec3 hips = skeleton.reference[0].position;
+    skeleton.add("Tail", 0, {hips + Vec3(0.05, 0, -0.1)});
+    skeleton.add("Tail1", skeleton.find("Tail"), {hips + Vec3(0.1, -0.1, -0.2)});
+    const MirrorPairs straight = find_mirror_pairs(skeleton, find_roles(skeleton));
+    EXPECT_TRUE(straight.unpaired().empty());
+    for (Transform& joint : skeleton.reference) {
+      joint.position = from_rotation_vector(Vec3(0, angle, 0)) * joint.position;
+    }
+    EXPECT_EQ(find_mirror_pairs(skeleton, find_roles(skeleton)).partners, straight.partners)
+        << angle;
+  }
+}
+
 TEST(Mirror, IsTheImageOfASymmetricActor) {
   const Clip clip = test::swinging_clip(test::human_skeleton(), 12, 30);
   const MirrorPairs pairs = pairs_of(clip.skeleton);
