@@ -308,6 +308,18 @@ class GroundRule {
     out_.findings.push_back(finding);
   }
 
+  // How deep a point is in the ground: beside a riser that is not far off, how deep it is before
+  // it.
+  double depth_of(const Vec3& place, double ground) const {
+    double depth = ground - place.y();
+    for (int k = 0; k < 8 && depth > limit_ && series_.options.ground; ++k) {
+      const double angle = k * kPi / 4;
+      const auto beside = ground_at(place + limit_ * Vec3(std::sin(angle), 0.0, std::cos(angle)));
+      if (beside) depth = std::min(depth, std::max(0.0, *beside - place.y()));
+    }
+    return depth;
+  }
+
   void find_sinking() {
     double deepest = 0;
     int first = 0, worst = 0, joint = -1, frames = 0;
@@ -317,10 +329,9 @@ class GroundRule {
       for (std::size_t t = 0; f < series_.frames && t < soles_.places.size(); ++t) {
         const Vec3& place = soles_.places[t][at(f)];
         const auto ground = ground_at(place);
-        if (ground && *ground - place.y() > deep) {
-          deep = *ground - place.y();
-          here = soles_.found.tracks[t].point.joint;
-        }
+        if (!ground || *ground - place.y() <= deep) continue;
+        const double depth = depth_of(place, *ground);
+        if (depth > deep) deep = depth, here = soles_.found.tracks[t].point.joint;
       }
       if (deep > limit_) {
         if (frames++ == 0) first = f;
@@ -367,24 +378,12 @@ class GroundRule {
         if (first < 0) first = f;
         if (over > highest) highest = over, worst = f;
       } else if (first >= 0) {
-        if (f - first >= shortest && fall(first, f - 1) < kMinFall) {
+        if (f - first >= shortest && series_.fall(first, f - 1) < kMinFall) {
           add("hovering", first, f - 1, worst, highest, limit_);
         }
         first = -1, highest = 0;
       }
     }
-  }
-
-  // The hips' mean acceleration downwards, metres per second squared.
-  double fall(int first, int last) const {
-    const auto height = [&](int f) {
-      return static_cast<double>(series_.clip.frame_positions(f)[at(series_.carrier)].y());
-    };
-    const int middle = (first + last) / 2, reach = std::min(middle - first, last - middle);
-    const double seconds = reach / series_.rate;
-    if (reach < 1) return 9.81;
-    const double sag = height(middle) - 0.5 * (height(middle - reach) + height(middle + reach));
-    return 2 * sag / (seconds * seconds) / series_.scale;
   }
 
   const Series& series_;

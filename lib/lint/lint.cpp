@@ -102,6 +102,17 @@ int Series::frames_in(double seconds, int at_least) const {
   return std::max(at_least, static_cast<int>(std::lround(seconds * rate)));
 }
 
+double Series::fall(int first, int last) const {
+  const auto height = [&](int f) {
+    return static_cast<double>(clip.frame_positions(f)[at(carrier)].y());
+  };
+  const int middle = (first + last) / 2, reach = std::min(middle - first, last - middle);
+  const double seconds = reach / rate;
+  if (reach < 1) return 9.81;
+  const double sag = height(middle) - 0.5 * (height(middle - reach) + height(middle + reach));
+  return 2 * sag / (seconds * seconds) / scale;
+}
+
 void merge_joints(std::vector<Finding>& findings, int near) {
   std::ranges::stable_sort(findings, {}, [](const Finding& f) {
     return std::tuple(static_cast<int>(f.rule), f.kind, f.first);

@@ -63,8 +63,9 @@ double legs_scale(const Skeleton& skeleton, const RoleMap& roles);
 //   noise makes them.
 // - foot-slide: how far the slowest point of the soles near the ground moves without a rest, and
 //   how far a foot moves in one contact (find_contacts()).
-// - frame-rate: repeated frames, and the duration of swings, about that of a pendulum whatever the
-//   speed (Mochon and McMahon, "Ballistic walking", J. Biomech. 13, 1980).
+// - frame-rate: repeated frames, how fast the hips fall in runs, and the duration of swings, about
+//   that of a pendulum whatever the speed (Mochon and McMahon, "Ballistic walking", J. Biomech. 13,
+//   1980).
 // - joint-limit: knees that bend forwards. Ranges of other joints depend on how a skeleton shares
 //   them and on its reference pose.
 MotionFaults lint_motion(const Clip& clip, const RoleMap& roles, const MotionOptions& options);

@@ -19,9 +19,9 @@ constexpr double kNoiseLike = -0.45;
 constexpr float kMoves = 2e-3F;          // rad a frame
 constexpr double kDeviations = 5;        // of the detail of a motion's windows
 constexpr double kFrozenLongest = 3600;  // seconds
-// Motions that are generated begin and end at rest, at a twentieth of the usual speed or less, and
+// Motions that are generated begin and end at rest, at a tenth of the usual speed or less, and
 // are eased out of it and into it for so long, seconds.
-constexpr float kRest = 0.05F;
+constexpr float kRest = 0.1F;
 constexpr double kEase = 0.75;
 
 // What a window of one joint shows; the windows overlap by half.
@@ -29,6 +29,7 @@ struct Detail {
   float noise = 0;        // rad, the standard deviation of each axis
   float correlation = 1;  // of successive accelerations
   float speed = 0;        // rad a frame, root mean square
+  float usual = 0;        // rad a frame, the median, which a jump leaves as it is
 };
 
 struct Windows {
@@ -80,13 +81,16 @@ void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, 
     detail.correlation = accelerations > 0 ? static_cast<float>(products / accelerations) : 1.0F;
     detail.speed = static_cast<float>(std::sqrt(squares / windows.length));
     if (detail.speed < still) continue;
-    const auto place = [&](std::size_t f) {
-      return sizes.noise.begin() + static_cast<std::ptrdiff_t>(f);
+    const auto middle_of = [&](const std::vector<float>& list, std::size_t from) {
+      sizes.sorted.assign(&list[from], &list[end - 1] + 1);
+      const auto middle =
+          sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
+      std::ranges::nth_element(sizes.sorted, middle);
+      return std::sqrt(*middle);
     };
-    sizes.sorted.assign(place(first + 3), place(end));
-    const auto middle = sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
-    std::ranges::nth_element(sizes.sorted, middle);
-    detail.noise = static_cast<float>(std::sqrt(*middle / kFourthDifference) / kMedianOfNorm);
+    detail.usual = middle_of(sizes.turn, first);
+    detail.noise = static_cast<float>(middle_of(sizes.noise, first + 3) /
+                                      (std::sqrt(kFourthDifference) * kMedianOfNorm));
   }
 }
 
@@ -116,7 +120,8 @@ class DetailOfBody {
   void add(std::span<const Detail> details) {
     for (std::size_t w = 0; w < details.size(); ++w) {
       if (details[w].speed < kMoves) continue;
-      ratios_[w].push_back(std::log(std::max(details[w].noise, 1e-7F) / details[w].speed));
+      const float speed = std::max(details[w].usual, kMoves);
+      ratios_[w].push_back(std::log(std::max(details[w].noise, 1e-7F) / speed));
     }
   }
   std::vector<double> medians() const {

@@ -27,6 +27,8 @@ struct Series {
   // twice the vector part of its quaternion, [frames]; the first is zero.
   std::vector<Vec3f> turns_of(int joint) const;
   int frames_in(double seconds, int at_least) const;
+  // The hips' mean acceleration downwards, metres per second squared of legs of 0.86 m.
+  double fall(int first, int last) const;
 
   bool has(Rule rule) const { return options.settings.has(rule); }
   double threshold(Rule rule) const { return options.settings.threshold(rule); }
