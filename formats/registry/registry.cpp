@@ -306,6 +306,8 @@ std::string advice(Kind found, Kind wanted) {
     return "it has no motion: give a .anim, a capture or glTF; krok-skin writes a mesh as glTF or "
            "OBJ";
   }
+  if (found == Kind::steps)
+    return "krok-walk makes motions with it: krok walk IN.steps --goal 0m,5m";
   if (is_of(found, Group::own)) return "perhaps two arguments are in the wrong order";
   return {};
 }

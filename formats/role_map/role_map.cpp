@@ -47,10 +47,29 @@ class Reader {
     }
     auto map = find_roles(skeleton_, given_);
     if (!map) return located(std::move(map).error(), *joints);
+    if (sides_differ(*map)) {
+      return json::error_at(text_, joints->offset, "role-map-sides",
+                            "left_upper_leg is on the side of right_upper_arm",
+                            "exchange left and right of the legs, or give those of the arms, too");
+    }
     return map;
   }
 
  private:
+  // Whether legs and arms are on different sides in the reference pose.
+  bool sides_differ(const RoleMap& map) const {
+    const auto across = [&](Role left, Role right) -> Vec3 {
+      const int a = map.joint(left), b = map.joint(right);
+      if (a < 0 || b < 0) return Vec3::Zero();
+      const auto place = [&](int joint) {
+        return skeleton_.reference[static_cast<std::size_t>(joint)].position;
+      };
+      return (place(a) - place(b)).stableNormalized();
+    };
+    return across(Role::left_upper_leg, Role::right_upper_leg)
+               .dot(across(Role::left_upper_arm, Role::right_upper_arm)) < -0.5;
+  }
+
   Status check_shape(const json::Value& root, const json::Value*& joints) const {
     if (root.kind != json::Value::Kind::object) {
       return json::error_at(text_, root.offset, "role-map-shape",

@@ -248,6 +248,10 @@ Error with_hint(Error error, const Options& options) {
   if (error.code.starts_with("walk-") && !options.prints.empty()) {
     error = std::move(error).in_file(options.prints);
   }
+  constexpr std::string_view kAdapt = ", or use --adapt";
+  if (const auto place = error.hint.find(kAdapt); options.adapt && place != std::string::npos) {
+    error.hint.erase(place, kAdapt.size());  // it was
+  }
   if (error.code == "walk-outside" && error.hint.find("--extrapolate") == std::string::npos) {
     error.hint += ", or --extrapolate";
   }

@@ -59,7 +59,13 @@ const Fault kFaults[] = {
      "role-twice", 2, 2, "'LeftForeArm'"},
     {"out_of_order",
      "{\"joints\": {\"LeftHand\": \"left_upper_arm\",\n \"LeftArm\": \"left_hand\"}}", "role-order",
-     2, 2, "'LeftHand' is left_upper_arm"}};
+     2, 2, "'LeftHand' is left_upper_arm"},
+    {"legs_exchanged",
+     "{\"joints\": {\"LeftUpLeg\": \"right_upper_leg\", \"RightUpLeg\": \"left_upper_leg\",\n"
+     "\"LeftLeg\": \"right_lower_leg\", \"RightLeg\": \"left_lower_leg\", \"LeftFoot\": "
+     "\"right_foot\", \"RightFoot\": \"left_foot\", \"LeftToeBase\": \"right_toes\", "
+     "\"RightToeBase\": \"left_toes\"}}",
+     "role-map-sides", 1, 12, "exchange left and right"}};
 
 INSTANTIATE_TEST_SUITE_P(Faults, RoleMapFault, testing::ValuesIn(kFaults),
                          [](const auto& test_case) { return std::string(test_case.param.name); });
