@@ -22,7 +22,8 @@ namespace krok::npy {
 
 namespace {
 
-constexpr double kFarOff = 0.02;  // metres, of joints with bones of constant length
+constexpr double kFarOff = 0.02;     // metres, of joints with bones of constant length
+constexpr double kNotNoise = 0.002;  // metres, where the places are free of noise
 
 constexpr double kDeep = 0.3;  // metres: deeper than a step goes
 constexpr std::size_t kMaxSamples = 200;
@@ -292,12 +293,13 @@ class Reader {
                          shown(names[j]), counted(glitches[j], "frame")));
       capture_.diagnostics.back().joint = names[j];
     }
-    if (found.rms > std::max(kFarOff, 3 * found.noise)) {
+    const bool clean = found.rms > kNotNoise && found.rms > 100 * found.noise;
+    if (clean || found.rms > std::max(kFarOff, 3 * found.noise)) {
       report(Severity::warning, "npy-fit",
              fmt::format("joints are {} mm from the file's (RMS), '{}' at most: {} mm in frame {}",
                          millimetres(found.rms), shown(names[at(found.largest_joint)]),
                          millimetres(found.largest), found.largest_frame),
-             "is --skeleton the right one?");
+             "is --skeleton the right one, each joint below the one it hangs on?");
     }
     if (found.length_variation > 0.1) {
       report(Severity::warning, "npy-bones",
