@@ -137,7 +137,9 @@ Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
       turn_joint = j;
     }
   }
-  const std::string hint = "build the model for this motion's skeleton";
+  const std::string hint =
+      "build the model for this motion's skeleton; arrays take one from krok-import --skeleton "
+      "FIRST.anim, and --retarget brings a person's motion onto the model's";
   Diagnostics result;
   if (largest_length > kPlaceTolerance) {
     const std::string& name = model.names[length_joint];
