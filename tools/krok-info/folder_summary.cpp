@@ -42,6 +42,8 @@ Row row_of(const Json& file) {
   if (file.contains("frames")) {
     row[2] = grouped(file["frames"].get<long long>());
     row[3] = readable(file["rate"].get<double>(), 4);
+  } else if (const auto count = value_or(file, "animations", Json::array()).size(); count > 0) {
+    row[2] = counted(count, "animation");
   }
   if (const double seconds = seconds_of(file); seconds > 0) row[4] = fmt::format("{:.2f}", seconds);
   if (file.contains("joints")) row[5] = std::to_string(file["joints"].get<int>());
@@ -70,10 +72,12 @@ std::string folder_summary(const Json& files) {
   std::set<std::string> skeletons;
   double seconds = 0;
   long long frames = 0;
+  std::size_t animations = 0;
   for (const Json& file : files) {
     rows.push_back(row_of(file));
     ++kinds[rows.back()[1]];
     seconds += seconds_of(file);
+    animations += value_or(file, "animations", Json::array()).size();
     if (file.contains("frames")) {
       frames += file["frames"].get<long long>();
       ++rates["at " + rows.back()[3] + " fps"];
@@ -99,6 +103,7 @@ std::string folder_summary(const Json& files) {
     text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
   }
   text += fmt::format("\n{}: {}\n", counted(files.size(), "file"), counts(kinds));
+  if (animations > 0) text += counted(animations, "animation") + " in scenes\n";
   if (!rates.empty()) {
     text += fmt::format("{} in {:.1f} s ({:.1f} min): {}\n", counted(frames, "frame"), seconds,
                         seconds / 60, counts(rates));
