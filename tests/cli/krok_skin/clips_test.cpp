@@ -165,10 +165,12 @@ TEST_F(SkinClips, EachAnimationOfAFileIsAMotion) {
   tool("krok-diff", {"each/hero_run.anim", "second.anim"});
   const ToolRun again = tool("krok-edit", {"hero.glb", "--turn", "10deg", "--out-dir", "each"});
   EXPECT_THAT(again.err, HasSubstr("2 files, 2 unchanged"));
-  std::filesystem::copy(path("hero.glb"), path("more/hero.glb"));
+  for (const char* name : {"a", "b", "c", "d"}) {
+    std::filesystem::copy(path("hero.glb"), path("more/" + std::string(name) + ".glb"));
+  }
   const ToolRun table = tool("krok-info", {"more"});
   EXPECT_THAT(table.out,
-              AllOf(HasSubstr("  2 animations  "), HasSubstr("\n2 animations in scenes")));
+              AllOf(HasSubstr("  2 animations  "), HasSubstr("\n8 animations in scenes")));
   const ToolRun none = tool("krok-edit", {"hero.glb#walk", "--turn", "1deg", "-o", "x.anim"}, 2);
   EXPECT_THAT(none.err, AllOf(HasSubstr("there is no animation walk"), HasSubstr("1 (run)")));
   // A file of the whole name comes first.
