@@ -16,6 +16,7 @@
 #include "motion/ground_frame.h"
 #include "motion/place.h"
 #include "motion/travel.h"
+#include "plant/long_take.h"
 #include "scene/frame_blocks.h"
 #include "tools/krok-edit/steps.h"
 #include "tools/shared/planting.h"
@@ -266,6 +267,25 @@ Status filter_jitter(const Options& options, ToolContext& context,
   return {};
 }
 
+// The feet are planted as frames are written.
+Status plant_frames(ToolContext& context, Edit& edit) {
+  const auto plant_part = [roles = edit.roles](const Clip& part, const auto& contacts) {
+    return cli::plant(part, roles, contacts);
+  };
+  auto planted =
+      plant_long_take(*edit.frames, edit.contacts, edit.clip.provenance.removed_root_motion,
+                      thread_count(context.jobs), plant_part);
+  edit.note("plant", {}, "");
+  edit.complete_note([done = std::move(planted.done), given = edit.contacts.has_value(), &context](
+                         Edit&, Json& metrics) {
+    const PlantedFeet all = done();
+    context.diagnose(all.warnings);
+    metrics.update(planting_json(all, given));
+    return planting_line(all);
+  });
+  return edit.take(std::move(planted.frames));
+}
+
 // A rest pose in front of the motion is no noise: the frames after it would be drawn towards it.
 Status warn_of_rest_frame(const Options& options, ToolContext& context, const Edit& edit) {
   constexpr int kExamined = 12;  // by find_rest_pose()
@@ -294,6 +314,7 @@ Status clean(const Options& options, ToolContext& context, Edit& edit) {
 
 Status plant(const Options& options, ToolContext& context, Edit& edit) {
   if (!options.plant) return {};
+  if (edit.frames) return plant_frames(context, edit);
   auto planted = cli::plant(edit.clip, edit.roles, edit.contacts);
   if (!planted) return planted.error();
   context.diagnose(planted->warnings);

@@ -139,7 +139,8 @@ Result<Edit> read_inputs(const InputFile& input, const Options& options, ToolCon
   if (!find_roles) return find_roles.error();
   if (Status status = find_carrier(*find_roles, edit); !status) return status.error();
   if (options.plant) {
-    auto contacts = read_planting_contacts(options.contacts, options.input, edit.clip, context);
+    auto contacts =
+        read_planting_contacts(options.contacts, options.input, frames_of(edit.clip), context);
     if (!contacts) return contacts.error();
     edit.contacts = std::move(*contacts);
   }
@@ -277,6 +278,11 @@ Result<int> edit_stream(const InputFile& input, const Options& options, ToolCont
     edit.clip.provenance = provenance();
     input_summary = summary_of(frames);
     if (Status status = find_carrier(*find_roles, edit); !status) return status;
+    if (options.plant) {
+      auto contacts = read_planting_contacts(options.contacts, options.input, frames, context);
+      if (!contacts) return contacts.error();
+      edit.contacts = *std::move(contacts);
+    }
     if (Status status = read_surroundings(options, context, edit); !status) return status;
     outputs.emplace(context);
     auto made = edit_one(options, std::move(edit), context.output, context, *outputs, complete);
@@ -310,12 +316,11 @@ Status Edit::take(Result<FrameSource> made) {
 }
 
 bool is_streamed(const Options& o) {
-  const bool cleans = o.plant || o.game_loop;
   const auto is_event = [](const std::optional<CutTime>& time) { return time && time->event; };
   const bool cuts =
       is_event(o.from) || is_event(o.to) || o.cycle != CycleFoot::none || !o.sequences.empty();
   const bool joins = o.interpolation.hermite || !o.append.empty() || o.loop || o.rounds;
-  return !cleans && !cuts && !joins;
+  return !o.game_loop && !cuts && !joins;
 }
 
 void Edit::note(const char* step, Json metrics, std::string line) {

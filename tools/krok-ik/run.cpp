@@ -454,7 +454,8 @@ Status Run::set_stiffness() {
 // The goals are for the motion with its feet planted.
 Status Run::plant_first() {
   if (!options_.plant) return {};
-  const auto contacts = read_planting_contacts(options_.contacts, options_.input, clip_, context_);
+  const auto contacts =
+      read_planting_contacts(options_.contacts, options_.input, frames_of(clip_), context_);
   if (!contacts) return contacts.error();
   auto planted = plant(clip_, roles_, *contacts);
   if (!planted) return std::move(planted).error().in_file(options_.input);

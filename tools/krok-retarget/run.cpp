@@ -156,7 +156,8 @@ Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
   if (!clip) return clip.error();
   const auto ground = options.ground.open(context);
   if (!ground) return ground.error();
-  const auto contacts = read_planting_contacts(options.contacts, options.input, source, context);
+  const auto contacts =
+      read_planting_contacts(options.contacts, options.input, frames_of(source), context);
   if (!contacts) return contacts.error();
   std::optional<std::span<const Contact>> given;
   if (*contacts) given = **contacts;

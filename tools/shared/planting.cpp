@@ -34,15 +34,15 @@ Json stay_json(const FixedStay& stay, const Clip& clip) {
 
 Result<std::optional<std::vector<Contact>>> read_planting_contacts(const std::string& contacts,
                                                                    const std::string& motion_path,
-                                                                   const Clip& clip,
+                                                                   const FrameSource& motion,
                                                                    ToolContext& context) {
   std::optional<krok::keys::Sidecar> sidecar;
   if (contacts == "auto") {
-    auto beside = read_keys_beside(motion_path, clip, context);
+    auto beside = read_keys_beside(motion_path, motion, context);
     if (!beside) return beside.error();
     sidecar = std::move(*beside);
   } else if (contacts != "find") {
-    auto file = read_keys_file(contacts, clip, context);
+    auto file = read_keys_file(contacts, motion, context);
     if (!file) return file.error();
     sidecar = std::move(*file);
   }

@@ -17,7 +17,7 @@ namespace krok::cli {
 
 // The contacts that --contacts asks for; none where they are to be found in the motion.
 Result<std::optional<std::vector<krok::Contact>>> read_planting_contacts(
-    const std::string& contacts, const std::string& motion_path, const Clip& clip,
+    const std::string& contacts, const std::string& motion_path, const FrameSource& motion,
     ToolContext& context);
 
 // plant_feet(), of a motion in place while it travels as it did before.

@@ -76,6 +76,19 @@ TEST_F(LongTake, LargeFilesAreReadInParts) {
   peak("krok-lint", "long.anim", {"--only", "frozen"});
 }
 
+// Would fail if feet were planted in all frames at once, or nothing of it were reported.
+TEST_F(LongTake, FeetArePlantedInParts) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  const Clip walk = write_walk(900);
+  data_ = 128 << 20;
+  peak("krok-edit", "walk.anim", {"--plant", "-o", "out.anim"});
+  const json result = json::parse(get(path("report.json")))["result"];
+  EXPECT_EQ(result["frames"], walk.frame_count());
+  EXPECT_GT(result["steps"][0]["stays"].size(), 1000U);
+  EXPECT_LT(result["steps"][0]["drift"], 0.002);
+  EXPECT_GT(result["steps"][0]["stance_share"], 0.5);
+}
+
 // Would fail if the ground's targets of all points were kept for all frames: 35 kB each.
 TEST_F(LongTake, SettlingKeepsAStretchAtATime) {
   if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
