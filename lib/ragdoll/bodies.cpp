@@ -13,6 +13,7 @@ namespace krok::ragdoll {
 
 namespace {
 
+constexpr const char* kHeadName = "head";
 constexpr double kInside = 0.9;  // share of the vertices that a shape reaches
 constexpr std::size_t kMinPoints = 12;
 constexpr double kAdult = 75;    // kg
@@ -49,6 +50,18 @@ void fit_capsule(const std::vector<Vec3>& points, Body& body) {
   shape.half_length = whole - shape.radius;
 }
 
+// A capsule about points beyond which there is no bone: as wide and as long as they are, where they
+// are.
+void fit_end(const std::vector<Vec3>& points, Body& body) {
+  Body box = body;
+  fit_box(points, box);
+  const Vec3 half = box.shape.half;
+  const double across = 0.5 * (half.x() + half.z());
+  body.shape.radius = across < half.y() ? across : half.mean();
+  body.shape.half_length = std::max(half.y() - across, 0.01 * body.shape.radius);
+  body.to_joint.position = box.to_joint.position;
+}
+
 // Brings the shapes to the sizes of the model's vertices: sides and radii, not where the bones
 // begin and end. Bodies with fewer than 12 vertices stay.
 void fit_shapes(const Model& model, std::vector<Body>& bodies) {
@@ -67,6 +80,8 @@ void fit_shapes(const Model& model, std::vector<Body>& bodies) {
     if (points[b].size() < kMinPoints) continue;
     if (bodies[b].shape.kind == Shape::Kind::box) {
       fit_box(points[b], bodies[b]);
+    } else if (bodies[b].name == kHeadName) {
+      fit_end(points[b], bodies[b]);
     } else {
       fit_capsule(points[b], bodies[b]);
     }
@@ -233,7 +248,7 @@ void BodyMaker::add_head() {
   shape.kind = Shape::Kind::capsule;
   shape.radius = radius;
   shape.half_length = 0.012 * stature_;
-  add("head", joint, shape, {base + 0.065 * stature_ * up, trunk_});
+  add(kHeadName, joint, shape, {base + 0.065 * stature_ * up, trunk_});
 }
 
 void BodyMaker::add_hand(std::string name, Role role, Role above) {

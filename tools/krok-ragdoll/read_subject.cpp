@@ -13,6 +13,7 @@
 #include "ik/anatomical_limits.h"
 #include "ragdoll/bodies.h"
 #include "retarget/stance.h"
+#include "skin/bind.h"
 #include "tools/cli/file_name.h"
 #include "tools/krok-ragdoll/follow.h"
 
@@ -108,6 +109,10 @@ Status SubjectReader::read_bodies() {
           .in_file(options_.model);
     }
     model = std::move(actor->model);
+    // Files that share joints need not have them in one order; make_bodies() says what else differs.
+    if (model->skeleton.names != neutral_.names) {
+      if (auto bound = bind_to(*model, neutral_)) model = *std::move(bound);
+    }
     how.model = &*model;
   }
   auto bodies = krok::ragdoll::make_bodies(neutral_, subject_.roles, how);

@@ -11,6 +11,7 @@
 #include "math/quaternion.h"
 #include "ragdoll/simulate.h"
 #include "roles/roles.h"
+#include "support/human_skeleton.h"
 
 namespace krok::ragdoll {
 namespace {
@@ -157,6 +158,29 @@ TEST(BoneBodies, FallsRestInFiveSecondsWithoutGaps) {
     }
     EXPECT_LT(after, 0.6 * before);
   }
+}
+
+// A head of 0.8 m on a body of 1.75 m, as cartoons have. Would fail if it kept an adult's size,
+// with which it fell half a metre into the ground.
+TEST(BonesOfPeople, AHeadIsAsLargeAsItsMesh) {
+  Model model;
+  model.skeleton = test::human_skeleton();
+  const int head = model.skeleton.find("Head");
+  const Vec3 middle =
+      model.skeleton.reference[static_cast<std::size_t>(head)].position + Vec3(0, 0.35, 0.05);
+  for (int i = 0; i < 2000; ++i) {  // even over a sphere, by the golden angle
+    const double y = 1 - 2 * (i + 0.5) / 2000, across = std::sqrt(1 - y * y);
+    const Vec3 out(across * std::cos(2.39996323 * i), y, across * std::sin(2.39996323 * i));
+    model.positions.emplace_back((middle + 0.4 * out).cast<float>());
+  }
+  model.influences_per_vertex = 1;
+  model.influence_joints.assign(model.positions.size(), static_cast<std::uint16_t>(head));
+  model.influence_weights.assign(model.positions.size(), 1);
+  BodyOptions options;
+  options.model = &model;
+  const auto bodies = make_bodies(model.skeleton, find_roles(model.skeleton), options);
+  ASSERT_TRUE(bodies.ok()) << bodies.error().message;
+  EXPECT_GT(covered_share(model, *bodies, 0.03), 0.99);
 }
 
 }  // namespace
