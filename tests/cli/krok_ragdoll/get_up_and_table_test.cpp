@@ -4,14 +4,17 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
 #include "core/file.h"
 #include "core/index.h"
 #include "formats/anim/anim.h"
+#include "formats/model/model_format.h"
 #include "samples/generator/rise.h"
 #include "samples/generator/walk.h"
+#include "skin/bind.h"
 #include "support/this_build.h"
 
 namespace krok::test {
@@ -175,6 +178,34 @@ TEST_F(RagdollFiles, SavedBodiesGiveTheSameFall) {
   put("bad.ragdoll.json", "{\"schema\": \"krok.ragdoll/1\",\n \"bodies\": []}");
   refused({"walk.anim", "--bodies", "bad.ragdoll.json", "-o", "c.anim"}, "bad.ragdoll.json:2:12",
           "ragdoll-value", "0 bodies");
+}
+
+// As a character and the motions made for it in another program have them. Would fail if bodies
+// were fitted to the vertices of other joints, or such a model were refused.
+TEST_F(RagdollFiles, JointsOfAModelMayBeInAnotherOrder) {
+  ASSERT_EQ(run_here("krok-body", {"walk.anim", "--detail", "low", "-o", "a.model"}).exit_code, 0);
+  const auto file = InputFile::open(path("a.model"));
+  auto model = model::read(file->bytes());
+  ASSERT_TRUE(model.ok());
+  // Children in the reverse order.
+  const Skeleton& skeleton = model->skeleton;
+  Skeleton other;
+  const std::function<void(int, int)> add = [&](int joint, int parent) {
+    const int self = other.add(skeleton.names[at(joint)], parent, skeleton.reference[at(joint)],
+                               skeleton.end_sites[at(joint)] != 0);
+    const auto below = skeleton.children()[at(joint)];
+    for (auto child = below.rbegin(); child != below.rend(); ++child) add(*child, self);
+  };
+  add(0, -1);
+  const auto bound = bind_to(*model, other);
+  auto out = OutputFile::create(path("b.model"));
+  ASSERT_TRUE(bound.ok() && model::write(*bound, {}, *out).ok() && out->commit().ok());
+  for (const char* name : {"a", "b"}) {
+    const auto run = fall({"walk.anim", "--at", "1s", "--duration", "1s", "--model",
+                           name + std::string(".model"), "-o", name + std::string(".anim")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  EXPECT_EQ(run_here("krok-diff", {"a.anim", "b.anim"}).exit_code, 0);
 }
 
 }  // namespace
