@@ -99,14 +99,18 @@ Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,
 
 namespace {
 
-// The animations that move joints.
+// The animations that move joints; none where each moves a few of many, as programs write one
+// motion with an animation for each joint.
 std::vector<int> moving(const nodes::Scene& scene, std::span<const int> joints) {
+  constexpr std::size_t kFewOf = 4;
   std::vector<int> animations;
+  std::size_t most = 0;
   for (std::size_t i = 0; i < scene.animations.size(); ++i) {
-    if (moved_count(scene, scene.animations[i], joints) > 0) {
-      animations.push_back(static_cast<int>(i));
-    }
+    const std::size_t moved = moved_count(scene, scene.animations[i], joints);
+    most = std::max(most, moved);
+    if (moved > 0) animations.push_back(static_cast<int>(i));
   }
+  if (kFewOf * most < joints.size()) animations.clear();
   return animations;
 }
 

@@ -230,6 +230,22 @@ TEST_F(KrokLint, EachAnimationOfAFileIsJudged) {
                                   "walk [duplicate]"));
 }
 
+// Would fail if a file with an animation for each joint were as many motions of one joint.
+TEST_F(KrokLint, AnAnimationForEachJointIsNoMotion) {
+  ASSERT_EQ(run_here("krok-export", {"walk.anim", "-o", "split.gltf"}).exit_code, 0);
+  json file = json::parse(get(path("split.gltf")));
+  const json whole = file["animations"][0];
+  file["animations"] = json::array();
+  for (const json& channel : whole["channels"]) {
+    json one = whole;
+    one["channels"] = json::array({channel});
+    file["animations"].push_back(one);
+  }
+  put("split.gltf", file.dump());
+  const ToolRun run = run_here("krok-lint", {"split.gltf", "--only", "duplicate"});
+  EXPECT_THAT(run.err, HasSubstr("1 file, 0 with faults"));
+}
+
 // Would fail if the slow rule ran unasked, or were not found by its option.
 TEST_F(KrokLint, SelfIntersectionIsAskedFor) {
   Clip clip = write_walk(8);
