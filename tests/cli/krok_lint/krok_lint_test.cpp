@@ -232,6 +232,7 @@ TEST_F(KrokLint, EachAnimationOfAFileIsJudged) {
 
 // Would fail if a file with an animation for each joint were as many motions of one joint.
 TEST_F(KrokLint, AnAnimationForEachJointIsNoMotion) {
+  write_walk(8);
   ASSERT_EQ(run_here("krok-export", {"walk.anim", "-o", "split.gltf"}).exit_code, 0);
   json file = json::parse(get(path("split.gltf")));
   const json whole = file["animations"][0];
