@@ -244,10 +244,12 @@ struct Level {
   bool known = false;
 };
 
-Level level_of(const Soles& soles) {
+// Of a track, or -1: of all.
+Level level_of(const Soles& soles, int track = -1) {
   std::vector<std::pair<double, double>> heights;  // and seconds
   double total = 0;
   for (const Stay& stay : soles.found.stays) {
+    if (track >= 0 && stay.track != track) continue;
     const double seconds = stay.end - stay.start;
     heights.emplace_back(stay.place.y(), seconds);
     total += seconds;
@@ -271,6 +273,10 @@ class GroundRule {
   GroundRule(const Series& series, const Soles& soles, MotionFaults& out)
       : series_(series), soles_(soles), out_(out), level_(level_of(soles)) {
     limit_ = series.threshold(Rule::ground) * series.scale;
+    for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
+      const Level own = series.options.ground ? Level() : level_of(soles, t);
+      lower_.push_back(own.known ? std::clamp(level_.height - own.height, 0.0, limit_) : 0);
+    }
   }
 
   void find() {
@@ -329,8 +335,8 @@ class GroundRule {
       for (std::size_t t = 0; f < series_.frames && t < soles_.places.size(); ++t) {
         const Vec3& place = soles_.places[t][at(f)];
         const auto ground = ground_at(place);
-        if (!ground || *ground - place.y() <= deep) continue;
-        const double depth = depth_of(place, *ground);
+        if (!ground || *ground - lower_[t] - place.y() <= deep) continue;
+        const double depth = depth_of(place, *ground - lower_[t]);
         if (depth > deep) deep = depth, here = soles_.found.tracks[t].point.joint;
       }
       if (deep > limit_) {
@@ -391,6 +397,9 @@ class GroundRule {
   MotionFaults& out_;
   Level level_;
   double limit_ = 0;
+  // [tracks], metres below the level that a point stands: the height of ankles and balls over the
+  // sole is not known.
+  std::vector<double> lower_;
 };
 
 }  // namespace

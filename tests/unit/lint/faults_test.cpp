@@ -415,6 +415,27 @@ TEST(LintFaults, FeetSinkIntoRisersByTheShortestWay) {
   }
 }
 
+// Would fail if heels were held against where balls stand: of who walks on tiptoe for most of the
+// time, heels are taken for higher than they are, and sank by 66 mm where they stand.
+TEST(LintFaults, HeelsThatStandLowerThanBallsAreNotSunk) {
+  const Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip& clip) {
+    const Quat down = from_rotation_vector(20 * kRadiansPerDegree * Vec3::UnitX());
+    const auto first = [&](auto all) { return all.first(all.size() * 3 / 5); };
+    for (const char* side : {"Left", "Right"}) {
+      const int foot = clip.skeleton.find(side + std::string("Foot"));
+      const int toes = clip.skeleton.find(side + std::string("ToeBase"));
+      for (Quat& one : first(m.joint_orientations(foot))) one = one * down;
+      for (Quat& one : first(m.joint_orientations(toes))) one = down.conjugate() * one;
+      const Vec3 ball = clip.skeleton.reference_local(toes).position;
+      for (Vec3& hips : first(m.joint_positions(0))) hips.y() += (ball - down * ball).y() / 2;
+    }
+  });
+  lint::MotionOptions options;
+  options.settings.enabled.fill(false);
+  options.settings.enabled[static_cast<std::size_t>(Rule::ground)] = true;
+  EXPECT_TRUE(faults_of(clip, options).findings.empty()) << listed(clip, faults_of(clip, options));
+}
+
 TEST(LintFaults, TreadmillsSlideNoFeet) {
   Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
     for (Vec3& place : m.joint_positions(0)) place.x() = place.z() = 0;
