@@ -21,7 +21,7 @@ struct Provenance {
   std::string tool;     // "krok-import"
   std::string version;  // "0.2.0"
   struct Source {
-    std::string name;  // base name of the file
+    std::string name;  // base name of the file, with the animation: "hero.glb#Run"
     std::string xxh3;  // sixteen hexadecimal digits
   };
   std::vector<Source> sources;

@@ -117,7 +117,7 @@ Result<InputFile> ToolContext::open_long_input(const std::string& address) {
     }
   }
   auto file = io::open_address(address);
-  if (file) report.inputs.push_back({path, ""});
+  if (file) report.inputs.push_back({path, "", file->part()});
   return file;
 }
 
@@ -166,7 +166,8 @@ Provenance ToolContext::provenance() const {
   provenance.tool = report.tool;
   provenance.version = report.version;
   for (const auto& input : report.inputs) {
-    provenance.sources.push_back({to_utf8(base_name(input.path)), input.xxh3});
+    const std::string part = input.animation.empty() ? "" : "#" + input.animation;
+    provenance.sources.push_back({to_utf8(base_name(input.path) + part), input.xxh3});
   }
   const auto text_of = [](const Json& value) {
     return value.is_string() ? to_utf8(value.get<std::string>()) : json_text(value);

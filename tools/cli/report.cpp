@@ -58,6 +58,7 @@ Json to_json(const std::vector<Report::Input>& inputs) {
     Json& entry = json.emplace_back(object_for(2));
     entry["path"] = input.path;
     entry["xxh3"] = input.xxh3;
+    if (!input.animation.empty()) entry["animation"] = input.animation;
   }
   return json;
 }

@@ -19,6 +19,7 @@ struct Report {
   struct Input {
     std::string path;
     std::string xxh3;
+    std::string animation = {};  // the one of the file that is meant; may be empty
   };
   std::vector<Input> inputs;
   // Folders that were searched for files; for the journal of a batch, not for the report.

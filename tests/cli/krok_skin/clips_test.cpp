@@ -159,6 +159,7 @@ TEST_F(SkinClips, EachAnimationOfAFileIsAMotion) {
   tool("krok-edit", {"run.anim", "--turn", "10deg", "-o", "run_turned.anim"});
   tool("krok-edit", {"hero.glb#run", "--turn", "10deg", "-o", "one.anim"});
   expect_same("one.anim", "run_turned.anim");
+  EXPECT_THAT(tool("krok-info", {"one.anim"}).out, HasSubstr("hero.glb#run (xxh3"));
   tool("krok-edit", {"hero.glb#1", "--turn", "10deg", "-o", "second.anim"});
   const ToolRun batch = tool("krok-edit", {"hero.glb", "--turn", "10deg", "--out-dir", "each"});
   EXPECT_FALSE(has_code(batch.err, "clip-choice")) << batch.err;
