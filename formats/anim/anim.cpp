@@ -204,8 +204,9 @@ Status read_frames(const Parts& parts, const Skeleton& skeleton, int first,
   return error;
 }
 
-Result<Parts> open_parts(std::span<const std::byte> file) {
-  auto container = ContainerReader::open(file, kFormat);
+Result<Parts> open_parts(std::span<const std::byte> file,
+                         const std::function<void(std::size_t)>& release = {}) {
+  auto container = ContainerReader::open(file, kFormat, release);
   if (!container) return container.error();
   Parts parts;
   parts.container = std::make_shared<const ContainerReader>(*std::move(container));
@@ -251,7 +252,7 @@ Result<Parts> open_parts(std::span<const std::byte> file) {
 }  // namespace
 
 Result<Opened> open(std::span<const std::byte> file, std::function<void(std::size_t)> release) {
-  auto parts = open_parts(file);
+  auto parts = open_parts(file, release);
   if (!parts) return parts.error();
   Opened opened = parts->opened;
   if (release) {

@@ -37,9 +37,14 @@ Error truncated(std::string message) {
 
 // Hashes everything after the section table, then header and table (with zeros for the checksum),
 // which a writer knows last.
-std::uint64_t checksum_of(std::span<const std::byte> file, std::size_t head_size) {
+std::uint64_t checksum_of(std::span<const std::byte> file, std::size_t head_size,
+                          const std::function<void(std::size_t)>& release) {
+  constexpr std::size_t kAtOnce = std::size_t{8} << 20;
   Xxh3Stream stream;
-  stream.update(file.subspan(head_size));
+  for (std::size_t begin = head_size; begin < file.size(); begin += kAtOnce) {
+    stream.update(file.subspan(begin, std::min(kAtOnce, file.size() - begin)));
+    if (release) release(std::min(begin + kAtOnce, file.size()));
+  }
   std::vector<std::byte> head(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(head_size));
   std::fill_n(head.begin() + kChecksumOffset, sizeof(std::uint64_t), std::byte{0});
   stream.update(head);
@@ -52,7 +57,8 @@ struct Header {
   std::size_t head_size() const { return kHeaderSize + section_count * kEntrySize; }
 };
 
-Result<Header> read_header(std::span<const std::byte> file, const ContainerFormat& format) {
+Result<Header> read_header(std::span<const std::byte> file, const ContainerFormat& format,
+                           const std::function<void(std::size_t)>& release) {
   ByteReader reader(file);
   const std::string_view magic = reader.take_text(format.magic.size());
   if (magic != std::string_view(format.magic.data(), format.magic.size())) {
@@ -93,7 +99,7 @@ Result<Header> read_header(std::span<const std::byte> file, const ContainerForma
                  "the file is damaged; copy or create it again")
         .at_byte(32);
   }
-  const std::uint64_t checksum = checksum_of(file, header.head_size());
+  const std::uint64_t checksum = checksum_of(file, header.head_size(), release);
   if (checksum != stored_checksum) {
     return Error("container-checksum",
                  fmt::format("is damaged: its checksum is {}, expected {}", hex(checksum),
@@ -114,8 +120,9 @@ Result<Header> read_header(std::span<const std::byte> file, const ContainerForma
 }  // namespace
 
 Result<ContainerReader> ContainerReader::open(std::span<const std::byte> file,
-                                              const ContainerFormat& format) {
-  const auto header = read_header(file, format);
+                                              const ContainerFormat& format,
+                                              const std::function<void(std::size_t)>& release) {
+  const auto header = read_header(file, format, release);
   if (!header) return header.error();
   ContainerReader container;
   container.flags_ = header->flags;

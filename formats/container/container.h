@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,8 +43,11 @@ struct Section {
 // A container with a valid header, checksum and section table. Views the bytes it was given.
 class ContainerReader {
  public:
+  // `release`, which may be empty, is called with increasing offsets before which the bytes have
+  // been hashed, so that memory of a mapped file can be released.
   static Result<ContainerReader> open(std::span<const std::byte> file,
-                                      const ContainerFormat& format);
+                                      const ContainerFormat& format,
+                                      const std::function<void(std::size_t)>& release = {});
 
   std::uint32_t flags() const { return flags_; }
 

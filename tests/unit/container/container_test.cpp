@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <thread>
@@ -61,6 +62,22 @@ Error error_of(const Bytes& file) {
   const auto opened = ContainerReader::open(file, kFormat);
   EXPECT_FALSE(opened.ok());
   return opened.ok() ? Error() : opened.error();
+}
+
+// Would fail if a long file were in memory as a whole once, while its checksum is taken.
+TEST(Container, LongFilesAreReleasedAsTheyAreHashed) {
+  const Bytes large(std::size_t{20} << 20);
+  const Bytes file = samples::bytes_of([&](OutputFile& out) -> Status {
+    ContainerWriter writer(out, kFormat, 0, 1);
+    if (Status status = writer.section("LARGE", large); !status) return status;
+    return writer.finish();
+  });
+  std::vector<std::size_t> released;
+  ASSERT_TRUE(
+      ContainerReader::open(file, kFormat, [&](std::size_t end) { released.push_back(end); }).ok());
+  ASSERT_GE(released.size(), 3U);
+  EXPECT_TRUE(std::ranges::is_sorted(released));
+  EXPECT_EQ(released.back(), file.size());
 }
 
 TEST(Container, IsLaidOutAsSpecified) {
