@@ -16,7 +16,6 @@
 #include "motion/ground_frame.h"
 #include "motion/place.h"
 #include "motion/travel.h"
-#include "plant/long_take.h"
 #include "scene/frame_blocks.h"
 #include "tools/krok-edit/steps.h"
 #include "tools/shared/planting.h"
@@ -269,12 +268,8 @@ Status filter_jitter(const Options& options, ToolContext& context,
 
 // The feet are planted as frames are written.
 Status plant_frames(ToolContext& context, Edit& edit) {
-  const auto plant_part = [roles = edit.roles](const Clip& part, const auto& contacts) {
-    return cli::plant(part, roles, contacts);
-  };
-  auto planted =
-      plant_long_take(*edit.frames, edit.contacts, edit.clip.provenance.removed_root_motion,
-                      thread_count(context.jobs), plant_part);
+  auto planted = cli::plant_frames(*edit.frames, edit.roles, edit.contacts,
+                                   edit.clip.provenance.removed_root_motion, context);
   edit.note("plant", {}, "");
   edit.complete_note([done = std::move(planted.done), given = edit.contacts.has_value(), &context](
                          Edit&, Json& metrics) {

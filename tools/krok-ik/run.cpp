@@ -215,7 +215,10 @@ class Run {
   bool is_gaze(const PointGoal& point) const;
   Status turn_eyes(Clip& clip);
   Result<int> bring_about(const FrameSource& motion, const std::function<Provenance()>& of_input);
+  void note_planting(const PlantedFeet& planted, bool contacts_given);
   Result<int> finish_without_goals();
+  Result<int> write_without_goals(const FrameSource& made,
+                                  const std::function<Provenance()>& of_input);
   Provenance provenance_of(const Provenance& before, const std::string& line) const;
   Result<int> joint_of(const std::string& option, const std::string& name) const;
   Status write(const FrameSource* made, const std::function<Provenance()>& provenance = {},
@@ -459,11 +462,15 @@ Status Run::plant_first() {
   if (!contacts) return contacts.error();
   auto planted = plant(clip_, roles_, *contacts);
   if (!planted) return std::move(planted).error().in_file(options_.input);
-  context_.diagnose(planted->warnings);
-  planting_ = planting_json(*planted, contacts->has_value());
-  planting_line_ = planting_line(*planted);
+  note_planting(*planted, contacts->has_value());
   clip_ = std::move(planted->clip);
   return {};
+}
+
+void Run::note_planting(const PlantedFeet& planted, bool contacts_given) {
+  context_.diagnose(planted.warnings);
+  planting_ = planting_json(planted, contacts_given);
+  planting_line_ = planting_line(planted);
 }
 
 // What was done to the motion, after what it says of itself.
@@ -488,12 +495,16 @@ Result<int> Run::finish_without_goals() {
   clip_.skeleton = planted.skeleton;
   clip_.rate = planted.rate;
   if (Status status = turn_eyes(planted); !status) return status.error();
+  return write_without_goals(frames_of(planted), [&] { return planted.provenance; });
+}
+
+Result<int> Run::write_without_goals(const FrameSource& made,
+                                     const std::function<Provenance()>& of_input) {
   const auto provenance = [&] {
-    return provenance_of(planted.provenance, gaze_.empty() ? "" : kTurnedEyes);
+    return provenance_of(of_input(), gaze_.empty() ? "" : kTurnedEyes);
   };
-  const FrameSource frames = frames_of(planted);
-  if (Status status = write(&frames, provenance); !status) return status.error();
-  context_.report.result["frames"] = planted.frame_count();
+  if (Status status = write(&made, provenance); !status) return status.error();
+  context_.report.result["frames"] = made.frame_count;
   if (options_.plant) context_.report.result["plant"] = std::move(planting_);
   if (!gaze_.empty()) context_.report.result["gaze"] = std::move(gaze_);
   context_.log(
@@ -551,7 +562,7 @@ Status Run::prepare() {
   solver_ = options_.solver;
   for (const auto step :
        {&Run::read_roles, &Run::read_character, &Run::read_limits, &Run::read_goals,
-        &Run::add_points, &Run::raise_goals, &Run::set_stiffness, &Run::plant_first}) {
+        &Run::add_points, &Run::raise_goals, &Run::set_stiffness}) {
     if (Status status = (this->*step)(); !status) return status;
   }
   return {};
@@ -560,6 +571,7 @@ Status Run::prepare() {
 Result<int> Run::run(Clip motion) {
   clip_ = std::move(motion);
   if (Status status = prepare(); !status) return status.error();
+  if (Status status = plant_first(); !status) return status.error();
   if (goals_.empty()) {
     if (!options_.plot.empty()) return usage("--plot shows goals, of which eyes are none");
     return finish_without_goals();
@@ -579,7 +591,17 @@ Result<int> Run::run(const FrameSource& motion, const std::function<Provenance()
     std::ranges::copy(frame->orientations, std::back_inserter(clip_.orientations));
   }
   if (Status status = prepare(); !status) return status.error();
-  return bring_about(motion, provenance);
+  if (!options_.plant) return bring_about(motion, provenance);
+  const auto contacts = read_planting_contacts(options_.contacts, options_.input, motion, context_);
+  if (!contacts) return contacts.error();
+  const PlantedFrames planted =
+      plant_frames(motion, roles_, *contacts, provenance().removed_root_motion, context_);
+  const auto of_planted = [&] {
+    note_planting(planted.done(), contacts->has_value());
+    return provenance();
+  };
+  return goals_.empty() ? write_without_goals(planted.frames, of_planted)
+                        : bring_about(planted.frames, of_planted);
 }
 
 Result<int> Run::bring_about(const FrameSource& motion,
@@ -655,8 +677,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = check_outputs(options, context); !status) return status.error();
   auto input = context.open_long_input(options.input);
   if (!input) return input.error();
-  if (input->bytes().size() < kLongBytes || !options.has_goals() || options.plant ||
-      !options.plot.empty() || options.limits == "auto" || looks_with_eyes(options)) {
+  if (input->bytes().size() < kLongBytes || !options.changes_motion() || !options.plot.empty() ||
+      options.limits == "auto" || looks_with_eyes(options)) {
     context.note_checksum(*input);
     auto clip = io::open_motion(*input, context);
     if (!clip) return clip.error();

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "core/numbers.h"
+#include "core/parallel.h"
 #include "motion/ground_frame.h"
 #include "motion/travel.h"
 #include "tools/shared/keys_sidecar.h"
@@ -68,6 +69,15 @@ Result<PlantedFeet> plant(const Clip& clip, const RoleMap& roles,
   std::optional<std::span<const Contact>> given;
   if (contacts) given = *contacts;
   return plant_feet(clip, roles, given);
+}
+
+PlantedFrames plant_frames(const FrameSource& motion, const RoleMap& roles,
+                           const std::optional<std::vector<Contact>>& contacts,
+                           const std::optional<RootMotion>& removed, ToolContext& context) {
+  const auto plant_part = [roles](const Clip& part, const auto& given) {
+    return plant(part, roles, given);
+  };
+  return plant_long_take(motion, contacts, removed, thread_count(context.jobs), plant_part);
 }
 
 Json planting_json(const PlantedFeet& planted, bool contacts_given) {

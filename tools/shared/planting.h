@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "plant/long_take.h"
 #include "plant/plant_feet.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
@@ -23,6 +24,11 @@ Result<std::optional<std::vector<krok::Contact>>> read_planting_contacts(
 // plant_feet(), of a motion in place while it travels as it did before.
 Result<PlantedFeet> plant(const Clip& clip, const RoleMap& roles,
                           const std::optional<std::vector<krok::Contact>>& contacts);
+
+// The same of a long take, see plant_long_take().
+PlantedFrames plant_frames(const FrameSource& motion, const RoleMap& roles,
+                           const std::optional<std::vector<krok::Contact>>& contacts,
+                           const std::optional<RootMotion>& removed, ToolContext& context);
 
 // For the report: where the contacts are from, drift before and after, lowering of the pelvis, and
 // each stay.

@@ -87,6 +87,14 @@ TEST_F(LongTake, FeetArePlantedInParts) {
   EXPECT_GT(result["steps"][0]["stays"].size(), 1000U);
   EXPECT_LT(result["steps"][0]["drift"], 0.002);
   EXPECT_GT(result["steps"][0]["stance_share"], 0.5);
+  const std::vector<std::string> reach = {"--reach", "Head=0.5m,1.5m,0m@10s..20s"};
+  for (const auto& goals : {std::vector<std::string>(), reach}) {
+    std::vector<std::string> options = {"--plant", "-o", "out.anim"};
+    options.insert(options.end(), goals.begin(), goals.end());
+    peak("krok-ik", "walk.anim", options);
+    const json plant = json::parse(get(path("report.json")))["result"]["plant"];
+    EXPECT_EQ(plant["stays"], result["steps"][0]["stays"]);
+  }
 }
 
 // Would fail if the ground's targets of all points were kept for all frames: 35 kB each.
