@@ -25,6 +25,7 @@ constexpr double kCreeping = 0.2;        // metres per second; faster is a slide
 constexpr double kCreepTime = 1;         // seconds
 constexpr double kMinCreep = 1.35;       // times the threshold of foot-slide
 constexpr double kTogether = 0.35;       // difference of two feet's velocities over their size
+constexpr double kStanding = 0.45;       // of the legs' length, of hips over a foot that carries
 constexpr double kUneven = 0.1;          // metres, of heights of contacts on level ground
 constexpr double kFloor = 2;             // times the threshold, of the floor's height
 constexpr double kUpright = 0.8;         // of the legs' length, height of the hips
@@ -68,13 +69,20 @@ std::optional<Soles> soles_of(const Series& series) {
   return soles;
 }
 
+// Whether the body stands on its feet; not of who sits with dangling legs, crawls or lies.
+bool stands(const Series& series, const Soles& soles, int track, int frame) {
+  const double hips = series.clip.frame_positions(frame)[at(series.carrier)].y();
+  return hips - soles.places[at(track)][at(frame)].y() > kStanding * soles.found.leg_length;
+}
+
 // The slowest point of each foot that is near the ground, -1 for a foot in the air.
 std::array<int, 2> carrying(const Series& series, const Soles& soles, int frame) {
   std::array<int, 2> slowest = {-1, -1};
   for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
     const PointTrack& track = soles.found.tracks[at(t)];
     if (track.height[at(frame)] > kNear * series.scale ||
-        std::abs(soles.rises[at(t)][at(frame)]) > kRising * series.scale) {
+        std::abs(soles.rises[at(t)][at(frame)]) > kRising * series.scale ||
+        !stands(series, soles, t, frame)) {
       continue;
     }
     int& best = slowest[static_cast<std::size_t>(track.point.side)];
@@ -223,7 +231,7 @@ void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& 
     const int first = static_cast<int>(std::ceil((stay.start + margin) * series.rate));
     const int last = std::min(series.frames - 1,
                               static_cast<int>(std::floor((stay.end - margin) * series.rate)));
-    if (last - first < 3) continue;
+    if (last - first < 3 || !stands(series, soles, stay.track, (first + last) / 2)) continue;
     Vec3 moved = places[at(last)] - places[at(first)];
     moved.y() = 0;
     Finding finding;

@@ -446,6 +446,16 @@ TEST(LintFaults, TreadmillsSlideNoFeet) {
   EXPECT_EQ(find(faults_of(clip, options), Rule::foot_slide, kAt), nullptr);
 }
 
+// Would fail if feet of crawlers, which are dragged, counted as standing.
+TEST(LintFaults, WhoCrawlsDoesNotSlide) {
+  Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
+    for (Vec3& place : m.joint_positions(0)) place.x() = place.z() = 0;
+  });
+  EXPECT_NE(find(faults_of(clip), Rule::foot_slide, kAt), nullptr);
+  for (int f = 0; f < clip.frame_count(); ++f) clip.frame_positions(f)[0].y() -= 0.6F;
+  EXPECT_EQ(find(faults_of(clip), Rule::foot_slide, kAt), nullptr);
+}
+
 TEST(LintFaults, FeetThatLandAndLeaveFastSlideNowhere) {
   // A frame of several, so that feet stop and leave within one or two.
   for (const int factor : {6, 7}) {
