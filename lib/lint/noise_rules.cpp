@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/index.h"
@@ -29,7 +30,7 @@ struct Detail {
   float noise = 0;        // rad, the standard deviation of each axis
   float correlation = 1;  // of successive accelerations
   float speed = 0;        // rad a frame, root mean square
-  float usual = 0;        // rad a frame, the median, which a jump leaves as it is
+  float usual = 0;        // rad a frame, of the slower half, which a jump leaves as it is
 };
 
 struct Windows {
@@ -71,26 +72,27 @@ void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, 
   details.resize(at(windows.count));
   for (int w = 0; w < windows.count; ++w) {
     const std::size_t first = at(windows.first(w)), end = first + at(windows.length);
-    double squares = sizes.turn[first], products = 0, accelerations = 0;
+    double products = 0, accelerations = 0;
+    std::array<double, 2> squares = {sizes.turn[first], 0};
+    const std::size_t half = at(windows.length / 2);
     for (std::size_t f = first + 1; f < end; ++f) {
-      squares += sizes.turn[f];
+      squares[f < first + half ? 0 : 1] += sizes.turn[f];
       accelerations += sizes.acceleration[f];
       products += f > first + 1 ? sizes.product[f] : 0;
     }
     Detail& detail = details[at(w)] = {};
     detail.correlation = accelerations > 0 ? static_cast<float>(products / accelerations) : 1.0F;
-    detail.speed = static_cast<float>(std::sqrt(squares / windows.length));
+    detail.speed = static_cast<float>(std::sqrt((squares[0] + squares[1]) / windows.length));
     if (detail.speed < still) continue;
-    const auto middle_of = [&](const std::vector<float>& list, std::size_t from) {
-      sizes.sorted.assign(&list[from], &list[end - 1] + 1);
-      const auto middle =
-          sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
-      std::ranges::nth_element(sizes.sorted, middle);
-      return std::sqrt(*middle);
+    detail.usual =
+        static_cast<float>(std::sqrt(std::ranges::min(squares) / static_cast<double>(half)));
+    const auto place = [&](std::size_t f) {
+      return sizes.noise.begin() + static_cast<std::ptrdiff_t>(f);
     };
-    detail.usual = middle_of(sizes.turn, first);
-    detail.noise = static_cast<float>(middle_of(sizes.noise, first + 3) /
-                                      (std::sqrt(kFourthDifference) * kMedianOfNorm));
+    sizes.sorted.assign(place(first + 3), place(end));
+    const auto middle = sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
+    std::ranges::nth_element(sizes.sorted, middle);
+    detail.noise = static_cast<float>(std::sqrt(*middle / kFourthDifference) / kMedianOfNorm);
   }
 }
 
