@@ -30,6 +30,7 @@ constexpr double kUneven = 0.1;          // metres, of heights of contacts on le
 constexpr double kFloor = 2;             // times the threshold, of the floor's height
 constexpr double kUpright = 0.8;         // of the legs' length, height of the hips
 constexpr double kShortestHover = 0.25;  // seconds
+constexpr double kShortestSink = 0.05;   // seconds; what is shorter is a pop
 constexpr double kMinFall = 4;           // metres per second squared
 
 // The feet's points over the frames.
@@ -351,7 +352,8 @@ class GroundRule {
         if (frames++ == 0) first = f;
         if (deep > deepest) deepest = deep, worst = f, joint = here;
       } else if (frames > 0) {
-        if (frames > 1) add("sinking", first, f - 1, worst, deepest, limit_, joint);
+        if (frames >= series_.frames_in(kShortestSink, 2))
+          add("sinking", first, f - 1, worst, deepest, limit_, joint);
         frames = 0, deepest = 0;
       }
     }

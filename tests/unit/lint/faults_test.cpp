@@ -446,6 +446,18 @@ TEST(LintFaults, TreadmillsSlideNoFeet) {
   EXPECT_EQ(find(faults_of(clip, options), Rule::foot_slide, kAt), nullptr);
 }
 
+// Would fail if a jump of two frames, which is one frame at half the rate, counted as sinking.
+TEST(LintFaults, WhatSinksForTwoFramesPops) {
+  for (const int frames : {2, 12}) {
+    const Clip clip = changed(usual_walk(), [&](LocalMotion& m, Clip&) {
+      for (Vec3& hips : m.joint_positions(0).subspan(kAt, at(frames))) hips.y() -= 0.12;
+    });
+    const auto faults = faults_of(clip);
+    EXPECT_NE(find(faults, Rule::pop, kAt), nullptr) << listed(clip, faults);
+    EXPECT_EQ(find(faults, Rule::ground, kAt) != nullptr, frames == 12) << listed(clip, faults);
+  }
+}
+
 // Would fail if feet of crawlers, which are dragged, counted as standing.
 TEST(LintFaults, WhoCrawlsDoesNotSlide) {
   Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
