@@ -12,7 +12,7 @@ namespace krok::io {
 class Takes;
 
 // Where motions are read, FILE#ANIMATION is one animation of a scene: its name, the end of it
-// behind a |, or its number. A file of that whole name comes first.
+// behind a |, or its number (## where another is called so). A file of that whole name comes first.
 struct Address {
   std::string file, animation;  // the path itself and nothing, unless it is such an address
 };

@@ -32,7 +32,7 @@ void apply_rest_weights(Actor& actor);
 
 struct ActorOptions {
   std::string clip = {};            // animation of a scene, a name or number; empty: the best
-  bool every_clip = false;          // of scenes, without `clip`: all animations that move joints
+  bool every_clip = false;          // of scenes, without `clip`: all that move or pose joints
   bool with_mesh = true;            // of scenes, not the skeleton alone
   bool with_materials = true;       // of scenes with a mesh
   bool with_morphs = false;         // keep morph targets; otherwise faces are at rest
@@ -51,8 +51,8 @@ struct ActorOptions {
 Result<Actor> open_actor(const InputFile& file, Inputs& inputs, const ActorOptions& options = {});
 Result<Actor> open_actor(const std::string& path, Inputs& inputs, const ActorOptions& options = {});
 
-// All motions of a file: each animation of a scene that moves joints, with its name; the one of any
-// other file, without a name. Errors: those of open_motion().
+// All motions of a file: each animation of a scene that moves or poses joints, with its name; the
+// one of any other file, without a name. Errors: those of open_motion().
 Result<std::vector<Actor::Motion>> open_motions(const InputFile& file, Inputs& inputs);
 
 }  // namespace krok::io

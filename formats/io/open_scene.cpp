@@ -99,8 +99,24 @@ Result<nodes::Scene> read_through_assimp(const InputFile& file, Inputs& inputs,
 
 namespace {
 
-// The animations that move joints; none where each moves a few of many, as programs write one
-// motion with an animation for each joint.
+// Whether an animation begins with joints turned otherwise than at rest, by half a degree.
+bool poses(const nodes::Scene& scene, const nodes::Animation& animation,
+           std::span<const int> joints) {
+  return std::ranges::any_of(animation.channels, [&](const nodes::Channel& channel) {
+    if (std::ranges::find(joints, channel.node) == joints.end() || channel.values->empty()) {
+      return false;
+    }
+    const bool spline = channel.interpolation == nodes::Interpolation::cubic_spline;
+    const float* const key = channel.values->data() + (spline ? channel.width : 0);
+    const nodes::Node& rest = scene.nodes[at(channel.node)];
+    if (rest.has_matrix || channel.path != nodes::Path::rotation) return false;
+    const Vec4f turn = Eigen::Map<const Vec4f>(key);
+    return std::abs(turn.dot(rest.rotation.coeffs().cast<float>())) < 1 - 1e-5F;
+  });
+}
+
+// The animations that move or pose joints; none where each moves a few of many, as programs write
+// one motion with an animation for each joint.
 std::vector<int> moving(const nodes::Scene& scene, std::span<const int> joints) {
   constexpr std::size_t kFewOf = 4;
   std::vector<int> animations;
@@ -108,7 +124,9 @@ std::vector<int> moving(const nodes::Scene& scene, std::span<const int> joints) 
   for (std::size_t i = 0; i < scene.animations.size(); ++i) {
     const std::size_t moved = moved_count(scene, scene.animations[i], joints);
     most = std::max(most, moved);
-    if (moved > 0) animations.push_back(static_cast<int>(i));
+    if (moved > 0 || poses(scene, scene.animations[i], joints)) {
+      animations.push_back(static_cast<int>(i));
+    }
   }
   if (kFewOf * most < joints.size()) animations.clear();
   return animations;
@@ -204,7 +222,11 @@ Result<nodes::Scene> read_scene(const Format& format, const InputFile& file, Inp
                                 bool with_materials) {
   auto scene = format.read_scene(file, inputs, with_materials);
   if (!scene || file.part().empty()) return scene;
-  const auto chosen = find_animation(*scene, file.part(), file.path());
+  const auto number =
+      file.part().starts_with('#') ? parse_integer(file.part().substr(1)) : std::nullopt;
+  const bool is_number = number && *number >= 0 && *number < std::ssize(scene->animations);
+  const auto chosen = is_number ? Result<int>(static_cast<int>(*number))
+                                : find_animation(*scene, file.part(), file.path());
   if (!chosen) return chosen.error();
   nodes::Animation only = std::move(scene->animations[at(*chosen)]);
   scene->animations.clear();
@@ -254,7 +276,8 @@ bool has_one_animation(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string> addresses_in(const std::string& path, const GivenLimits& limits) {
+std::vector<std::string> addresses_in(const std::string& path, const GivenLimits& limits,
+                                      Diagnostics& notes) {
   PlainInputs inputs;
   inputs.limits = limits;
   inputs.jobs = 1;
@@ -270,13 +293,29 @@ std::vector<std::string> addresses_in(const std::string& path, const GivenLimits
   if (!rig) return {path};
   const std::vector<int> animations = moving(*scene, rig->joints.nodes);
   if (animations.size() < 2) return {path};
+  std::string left_out;
+  for (std::size_t i = 0; i < scene->animations.size(); ++i) {
+    if (std::ranges::find(animations, static_cast<int>(i)) != animations.end()) continue;
+    left_out += (left_out.empty() ? "" : ", ") + shown(animation_name(*scene, i));
+  }
+  if (!left_out.empty()) {
+    notes.push_back(make_warning(
+        "clip-still", "neither moves nor poses joints, and is left out: " + left_out, "", path));
+    notes.back().severity = Severity::note;
+  }
   std::vector<std::string> addresses;
+  const auto is = [&](const std::string& name, int animation) {
+    const auto found = find_animation(*scene, name, path);
+    return found && *found == animation;
+  };
   for (const int animation : animations) {
     std::string name = animation_name(*scene, at(animation));
     name.erase(0, name.rfind('|') + 1);  // npos + 1 is 0
-    const auto found = find_animation(*scene, name, path);
-    const bool plain = found && *found == animation && name.find('/') == std::string::npos;
-    addresses.push_back(path + "#" + (plain ? name : std::to_string(animation)));
+    if (!is(name, animation) || name.find('/') != std::string::npos) {
+      name = std::to_string(animation);
+      if (!is(name, animation)) name = "#" + name;  // another one is called so
+    }
+    addresses.push_back(path + "#" + name);
   }
   return addresses;
 }

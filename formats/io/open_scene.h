@@ -18,9 +18,11 @@ bool is_scene(registry::Kind kind);
 // scene-kind for a file that is not a scene.
 Result<nodes::Scene> open_scene(const InputFile& file, Inputs& inputs, bool with_materials = false);
 
-// The addresses of all motions of a file: FILE#ANIMATION for each animation that moves joints,
-// where a scene has several; else, and if it cannot be read, the path itself. Animations called
-// ARMATURE|NAME are NAME where that says which, those whose name is no file name are numbers.
-std::vector<std::string> addresses_in(const std::string& path, const GivenLimits& limits = {});
+// The addresses of all motions of a file: FILE#ANIMATION for each animation that moves or poses
+// joints, where a scene has several; else, and if it cannot be read, the path itself. Animations
+// called ARMATURE|NAME are NAME where that says which, those whose name is no file name are
+// numbers. A note (clip-still) names those that are left out.
+std::vector<std::string> addresses_in(const std::string& path, const GivenLimits& limits,
+                                      Diagnostics& notes);
 
 }  // namespace krok::io

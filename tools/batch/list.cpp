@@ -126,7 +126,9 @@ class Lister {
     for (const std::string& argument : line_.inputs) {
       for (const Found& found : find(argument)) {
         std::vector<std::string> inputs = {found.input};
-        if (sets_.all()[*set].each_animation) inputs = io::addresses_in(inputs[0], line_.limits());
+        if (sets_.all()[*set].each_animation) {
+          inputs = io::addresses_in(inputs[0], line_.limits(), list_.left_out);
+        }
         for (std::string& input : inputs) {
           std::string absolute = absolute_path(input);
           if (!known.insert(absolute).second) continue;

@@ -211,7 +211,7 @@ Status CommandLine::open_folders() {
     std::vector<std::string> files;
     const auto add = [&](const std::string& path) {
       if (!each) return files.push_back(path);
-      std::ranges::copy(io::addresses_in(path, limits()), std::back_inserter(files));
+      std::ranges::copy(io::addresses_in(path, limits(), left_out), std::back_inserter(files));
     };
     for (const std::string& value : option->results()) {
       std::error_code unknown;

@@ -9,6 +9,7 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "fit/refine.h"
+#include "formats/io/inputs.h"
 #include "formats/steps/steps.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
@@ -196,7 +197,8 @@ Result<int> run(const Options& options, ToolContext& context) {
     return run_correctives(options, context);
   }
   std::error_code unknown;
-  if (options.first() != "-" && !std::filesystem::exists(options.first(), unknown)) {
+  if (options.first() != "-" &&
+      !std::filesystem::exists(io::address_of(options.first()).file, unknown)) {
     return Error("file-missing", "no such file", "check the path").in_file(options.first());
   }
   Status kind = check_output_kind(context.output, "-o", registry::Kind::steps);

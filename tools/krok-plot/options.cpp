@@ -272,6 +272,10 @@ ToolSpec make_spec() {
        "a motion, in its reference pose"}};
   spec.needs_output = false;  // --sheet and --strip have their own output files
   spec.folder_endings = io::motion_endings();
+  spec.each_animation = [options](const std::string&) {
+    const std::vector<ChartKind> charts = options->motion.charts();
+    return std::ranges::find(charts, ChartKind::cycles) != charts.end();
+  };
   spec.output_endings = chart::endings();
   spec.default_output = [options] {
     return options->sheet.wanted() ? "" : beside(options->inputs.front(), ".svg");

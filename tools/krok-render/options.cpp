@@ -108,7 +108,7 @@ Status check(const Options& o) {
 Result<Format> format_of(const Options& options, const std::string& output) {
   const std::string ending = extension(output);
   if (options.format != Format::from_extension) {
-    const std::string own = extension(ending_of(options.format));
+    const std::string own = extension("film" + ending_of(options.format));
     if (ending.empty() || ending == own) return options.format;
     return usage(fmt::format("-o {} is not {}, as --format says", output, own),
                  "leave out --format, or write -o NAME" + own);

@@ -229,7 +229,8 @@ Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice
 
 // The page contains the file itself; it is parsed for its errors and for what its keys tell of its
 // animations.
-Status add_glb(const std::string& path, std::vector<std::byte> bytes, Files& files) {
+Status add_glb(const std::string& path, std::vector<std::byte> bytes, const std::string& animation,
+               Files& files) {
   gltf::ReadOptions as_is;
   as_is.draco = false;
   const auto scene = gltf::read(bytes, as_is);
@@ -244,7 +245,10 @@ Status add_glb(const std::string& path, std::vector<std::byte> bytes, Files& fil
     glb.animations.push_back(animation.name);
     glb.rates.push_back(chosen->sampling.rate);
   }
-  glb.animation = std::max(0, best_animation(*scene).animation);
+  Diagnostics ignored;
+  const auto shown_first = choose_animation(*scene, animation, path, ignored);
+  if (!shown_first) return shown_first.error();
+  glb.animation = std::max(0, *shown_first);
   files.glbs.push_back(std::move(glb));
   return {};
 }
@@ -256,7 +260,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
   switch (kind) {
     case Kind::glb: {
       const auto bytes = input->bytes();
-      return add_glb(path, {bytes.begin(), bytes.end()}, files);
+      return add_glb(path, {bytes.begin(), bytes.end()}, input->part(), files);
     }
     case Kind::gltf: {
       // A page cannot open external files, so buffers and images are packed.
@@ -269,7 +273,7 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       for (const std::string& beside : packed->files) {
         if (auto opened = context.open_input(beside); !opened) return opened.error();
       }
-      return add_glb(path, std::move(packed->bytes), files);
+      return add_glb(path, std::move(packed->bytes), input->part(), files);
     }
     default:
       break;

@@ -382,6 +382,22 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   return status;
 }
 
+// With the addresses of all animations for files that are not read as glTF, which shows them all.
+std::vector<std::string> each_clip(const std::vector<std::string>& given,
+                                   const ActorOptions& options, ToolContext& context) {
+  if (!options.every_clip || !options.clip.empty()) return given;
+  std::vector<std::string> paths;
+  for (const std::string& path : given) {
+    const Kind kind = registry::kind_of_name(path);
+    const bool split = io::is_scene(kind) && kind != Kind::glb && kind != Kind::gltf;
+    Diagnostics notes;
+    std::ranges::move(split ? io::addresses_in(path, context.limits, notes) : std::vector{path},
+                      std::back_inserter(paths));
+    context.diagnose(notes);
+  }
+  return paths;
+}
+
 Result<double> time_of(const std::optional<ClipTime>& time, const char* option,
                        const MovingActor& actor, double otherwise) {
   if (!time) return otherwise;
@@ -419,11 +435,12 @@ Result<ImageSpan> span_of(const MovingActor& actor, const std::optional<ClipTime
   return span;
 }
 
-Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& paths,
+Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& given,
                                              const ActorOptions& options, ToolContext& context) {
   Read read;
   const bool bones = options.body == BodyChoice::none;
   const SkinMethod method = options.method;
+  const std::vector<std::string> paths = each_clip(given, options, context);
   if (Status status = add_files(paths, options, context, read); !status) return status.error();
   if (!paths.empty() && context.left_out.size() == paths.size()) return none_can_be_used();
   share_models(bones, read);
