@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "capture/far_values.h"
@@ -131,6 +132,7 @@ class Reader {
       find_rotations();
     }
     check_ground();
+    check_sides();
     for (Diagnostic& diagnostic : capture_.diagnostics) {
       if (diagnostic.where.file.empty()) diagnostic.where.file = file_.name;
     }
@@ -317,6 +319,38 @@ class Reader {
     report(Severity::warning, "npy-ground",
            fmt::format("the lowest foot is {} m below the ground", readable(depth, 3)),
            "krok-edit --on-ground moves it to y = 0");
+  }
+
+  // The knees of people bend ahead: those of a mirrored body, whose left is its right, do not.
+  void check_sides() {
+    constexpr double kBent = 0.05, kMost = 0.8;  // of the leg; of the frames
+    constexpr int kMinBent = 10;
+    const Clip& clip = capture_.clip;
+    const RoleMap& roles = capture_.roles;
+    const int left = roles.joint(Role::left_upper_leg), right = roles.joint(Role::right_upper_leg);
+    if (motion_.is_krok || left < 0 || right < 0) return;
+    const int step = std::max(1, clip.frame_count() / static_cast<int>(kMaxSamples));
+    int bent = 0, backwards = 0;
+    for (int f = 0; f < clip.frame_count(); f += step) {
+      const auto pose = clip.frame_positions(f);
+      const Vec3f ahead = (pose[at(left)] - pose[at(right)]).cross(Vec3f::UnitY());
+      for (const auto& [hip, knee, foot] :
+           {std::tuple(left, roles.joint(Role::left_lower_leg), roles.joint(Role::left_foot)),
+            std::tuple(right, roles.joint(Role::right_lower_leg), roles.joint(Role::right_foot))}) {
+        if (knee < 0 || foot < 0) return;
+        const Vec3f leg = pose[at(foot)] - pose[at(hip)], thigh = pose[at(knee)] - pose[at(hip)];
+        const Vec3f off = thigh - leg * (thigh.dot(leg) / std::max(leg.squaredNorm(), 1e-12F));
+        if (off.norm() < kBent * leg.norm()) continue;
+        ++bent;
+        backwards += off.dot(ahead) < 0 ? 1 : 0;
+      }
+    }
+    if (bent < kMinBent || backwards < kMost * bent) return;
+    report(Severity::warning, "npy-sides",
+           fmt::format("knees bend backwards {} times of {}: left and right are exchanged, or an "
+                       "axis is mirrored",
+                       backwards, bent),
+           "array * [-1, 1, 1] mirrors x; array[..., [0, 2, 1]] exchanges y and z");
   }
 
   const ArrayFile& file_;

@@ -48,7 +48,7 @@ struct Capture : krok::Capture {
 // npy-skeleton (joints unknown, or of another number), npy-value (not finite, or over 1e9 m away),
 // npy-rotation (a matrix that is no rotation), npy-rate, npy-limit, direction-parallel, those of
 // arrange(). Of warnings and notes besides: npy-unit, npy-up, npy-forward, npy-body, npy-motion,
-// npy-bones, npy-fit, npy-glitch, npy-ground, npy-noise, npy-repair, npy-root.
+// npy-bones, npy-fit, npy-glitch, npy-ground, npy-noise, npy-repair, npy-root, npy-sides.
 Result<Capture> read(std::span<const std::byte> file, const std::string& file_name,
                      const ReadOptions& options = {});
 

@@ -161,17 +161,45 @@ bool all_named(const std::vector<std::string>& names) {
   return std::ranges::none_of(names, [](const std::string& name) { return name.empty(); });
 }
 
-// As many animations in both, of which some have names of their own: those in their order.
-ListMatch with_renamed(const std::vector<std::string>& first,
-                       const std::vector<std::string>& second) {
+// By name. Of as many in both those that lack a partner are renamed ones in their order, if they
+// last as long and names alone are not asked for.
+ListMatch by_name(const SceneComparison& comparison, const std::vector<std::string>& first,
+                  const std::vector<std::string>& second) {
+  constexpr double kSame = 1e-3;  // seconds
   ListMatch match = match_lists(first, second, Matching::name);
-  for (std::size_t k = 0; k < match.only_first.size(); ++k) {
-    match.pairs.emplace_back(match.only_first[k], match.only_second[k]);
+  const auto duration = [](const Scene& scene, int animation) {
+    const auto& times = scene.animations[static_cast<std::size_t>(animation)].key_times;
+    return times.empty() ? 0.0 : times.back() - times.front();
+  };
+  if (first.size() != second.size() || comparison.options.matching == Matching::name) return match;
+  ListMatch left = std::exchange(match, {});
+  match.pairs = left.pairs;
+  for (std::size_t k = 0; k < left.only_first.size(); ++k) {
+    const int i = left.only_first[k], j = left.only_second[k];
+    if (std::abs(duration(comparison.first, i) - duration(comparison.second, j)) < kSame) {
+      match.pairs.emplace_back(i, j);
+    } else {
+      match.only_first.push_back(i);
+      match.only_second.push_back(j);
+    }
   }
   std::ranges::sort(match.pairs);
-  match.only_first.clear();
-  match.only_second.clear();
   return match;
+}
+
+// "; only in the first: animation Walk, animation Run and 2 more"
+std::string only_in(const char* which, const std::vector<int>& animations,
+                    const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 3;
+  if (animations.empty()) return {};
+  std::string text = fmt::format("; only in the {}: ", which);
+  for (std::size_t k = 0; k < std::min(kShown, animations.size()); ++k) {
+    const int animation = animations[k];
+    text += (k > 0 ? ", " : "") +
+            label("animation", names[static_cast<std::size_t>(animation)], animation);
+  }
+  if (animations.size() > kShown) text += fmt::format(" and {} more", animations.size() - kShown);
+  return text;
 }
 
 }  // namespace
@@ -188,31 +216,24 @@ Status choose_moments(SceneComparison& comparison) {
   }
   const auto first_names = names_of(first), second_names = names_of(second);
   ListMatch match = match_lists(first_names, second_names, Matching::automatic);
-  if (first.size() != second.size()) {
-    std::string text =
-        fmt::format("{} in the first, {} in the second",
-                    counted(static_cast<long long>(first.size()), "animation"), second.size());
-    // Where one has lost some, the others keep their names rather than their places.
-    const ListMatch named = match_lists(first_names, second_names, Matching::name);
+  if (comparison.options.matching == Matching::order) {
+    match = match_lists(first_names, second_names, Matching::order);
+  } else if (all_named(first_names) && all_named(second_names)) {
+    ListMatch named = by_name(comparison, first_names, second_names);
+    // Files whose names are of two programs are paired by their order.
     const std::size_t fewer = std::min(first.size(), second.size());
-    if (named.pairs.size() == fewer && all_named(first_names) && all_named(second_names)) {
-      match = named;
-      const bool in_first = first.size() > second.size();
-      const int missing = in_first ? named.only_first.front() : named.only_second.front();
-      text += fmt::format(
-          "; {} is only in the {}",
-          label("animation",
-                (in_first ? first_names : second_names)[static_cast<std::size_t>(missing)],
-                missing),
-          in_first ? "first" : "second");
+    if (comparison.options.matching == Matching::name || 2 * named.pairs.size() >= fewer) {
+      match = std::move(named);
     }
-    comparison.say(std::move(text));
-  } else {
-    if (comparison.options.matching == Matching::order) {
-      match = match_lists(first_names, second_names, Matching::order);
-    } else if (all_named(first_names) && all_named(second_names)) {
-      match = with_renamed(first_names, second_names);
-    }
+  }
+  if (first.size() != second.size() || !match.only_first.empty()) {
+    comparison.say(fmt::format("{} in the first, {} in the second",
+                               counted(static_cast<long long>(first.size()), "animation"),
+                               second.size()) +
+                   only_in("first", match.only_first, first_names) +
+                   only_in("second", match.only_second, second_names));
+  }
+  if (first.size() == second.size()) {
     // A bake is another file of the same motion.
     const bool baked =
         comparison.first.joint_names.empty() != comparison.second.joint_names.empty();

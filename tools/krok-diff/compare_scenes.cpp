@@ -159,6 +159,8 @@ Status Opened::read_gltf(const InputFile& file, ToolContext& context) {
     // What a Material leaves out is compared by its parameters.
     if (diagnostic.code != "gltf-material") context.diagnose(diagnostic);
   }
+  // What is asked for by name may have another one in the other file.
+  if (!file.part().empty()) read->animations[0].name.clear();
   auto made = scene_of(std::make_shared<const nodes::Scene>(*std::move(read)));
   if (!made) return std::move(made).error();
   scene = *std::move(made);

@@ -417,6 +417,19 @@ TEST(SceneDifference, OneRenamedClipOfSeveralInAnotherOrderIsFound) {
   EXPECT_EQ(
       compare_scenes(with({"Walk", "Run", "Idle"}), with({"Idle", "Walk", "Sprint"})).structure,
       std::vector<std::string>{"animation Run is named Sprint in the second"});
+  // Would fail if packs of other clips were compared by their order, with a false reason.
+  EXPECT_EQ(compare_scenes(with({"Walk", "Jog", "Sprint", "Hit"}), with({"Jog", "Sprint", "Dash"}))
+                .structure,
+            std::vector<std::string>{
+                "4 animations in the first, 3 in the second; only in the first: animation Walk, "
+                "animation Hit; only in the second: animation Dash"});
+  SceneOptions by_name;
+  by_name.matching = Matching::name;
+  Progress progress;
+  EXPECT_EQ(
+      difference(with({"Walk", "Jog"}), with({"Jog", "Dash"}), by_name, 1, progress)->structure,
+      std::vector<std::string>{"2 animations in the first, 2 in the second; only in the "
+                               "first: animation Walk; only in the second: animation Dash"});
 }
 
 }  // namespace

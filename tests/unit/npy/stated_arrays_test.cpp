@@ -119,6 +119,17 @@ TEST(StatedArrays, ParentsThatAreNoneAreWarnedOf) {
   EXPECT_TRUE(has(*read(), "npy-fit"));
 }
 
+// Would fail if a mirrored body walked backwards on knees that bend backwards without a word.
+TEST(StatedArrays, MirroredPlacesAreWarnedOf) {
+  for (const double sign : {1.0, -1.0}) {
+    Walk walk;
+    for (std::size_t i = 0; i < walk.places.size(); i += 3) walk.places[i] *= sign;
+    const auto read = npy::read(write(walk.common()).value(), "walk.npz");
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(has(*read, "npy-sides"), sign < 0);
+  }
+}
+
 TEST(StatedArrays, PosesInDegreesAreRefused) {
   const std::vector<double> poses(66, 40);
   const auto read = npy::read(write(Named{{"poses", array_of(poses, {1, 66})}}).value(), "p.npz");
