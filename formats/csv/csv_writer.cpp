@@ -30,30 +30,31 @@ Status flush_long_text(std::string& text, OutputFile& file) {
 
 }  // namespace
 
-Status write(const Clip& clip, OutputFile& file) {
-  if (Status status = check(clip); !status) return status;
-  constexpr std::size_t kFlushAt = std::size_t{1} << 20;
-
+Status write(const FrameSource& motion, OutputFile& file) {
   std::vector<std::string> names;
-  for (const std::string& name : clip.skeleton.names) names.push_back(field(name));
+  for (const std::string& name : motion.skeleton.names) names.push_back(field(name));
 
   std::string text = "frame,time,joint,x,y,z\n";
-  for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    const std::string start = fmt::format("{},{},", frame, shortest(frame / clip.rate));
-    const auto positions = clip.frame_positions(frame);
-    for (std::size_t j = 0; j < names.size(); ++j) {
-      text += start;
-      text += names[j];
-      for (int axis = 0; axis < 3; ++axis) {
-        text += ',';
-        text += shortest(positions[j][axis]);
+  const auto add = [&](int first, const Clip& block) {
+    Status status = check_values(motion.skeleton, first, block.positions, block.orientations);
+    if (!status) return status;
+    for (int f = 0; f < block.frame_count(); ++f) {
+      const int frame = first + f;
+      const std::string start = fmt::format("{},{},", frame, shortest(frame / motion.rate));
+      const auto positions = block.frame_positions(f);
+      for (std::size_t j = 0; j < names.size(); ++j) {
+        text += start;
+        text += names[j];
+        for (int axis = 0; axis < 3; ++axis) {
+          text += ',';
+          text += shortest(positions[j][axis]);
+        }
+        text += '\n';
       }
-      text += '\n';
     }
-    if (text.size() < kFlushAt) continue;
-    if (Status status = file.write(text); !status) return status;
-    text.clear();
-  }
+    return flush_long_text(text, file);
+  };
+  if (Status status = for_each_block(motion, 1, add); !status) return status;
   return file.write(text);
 }
 

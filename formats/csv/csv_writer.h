@@ -6,7 +6,7 @@
 
 #include "core/file.h"
 #include "core/result.h"
-#include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/morph_set.h"
 #include "scene/motion_keys.h"
 
@@ -20,8 +20,9 @@ namespace krok::csv {
 // positions as floats); names with a comma, a quote or a line break are quoted (RFC 4180), what
 // printable() replaces is replaced (core/text.h), and names that a spreadsheet would run as a
 // formula, with '=', '+', '-' or '@' in front, get an apostrophe, which Table removes. Lines end
-// with LF. A clip without frames gives only the header. An Error if check() fails.
-Status write(const Clip& clip, OutputFile& file);
+// with LF. A motion without frames gives only the header. Errors are those of the source and of
+// `file`, and clip-value.
+Status write(const FrameSource& motion, OutputFile& file);
 
 // Contacts: the header "joint,start,end,x,y,z" and a row for each, in seconds and metres; `names`
 // are those of the joints.

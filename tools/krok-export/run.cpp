@@ -314,10 +314,6 @@ Status write_table(ExportFormat format, const Clip& clip, const Options& options
       return csv::write(*contacts, clip.skeleton.names, file);
     });
   }
-  if (!opensim && what == What::positions && layout == Layout::long_rows) {
-    return write_output(context, context.output,
-                        [&](OutputFile& file) { return csv::write(clip, file); });
-  }
   const bool is_angle = what == What::angles || what == What::local;
   const auto table = series_of(what, format, options, clip, context);
   if (!table) return table.error();
@@ -392,6 +388,23 @@ void note_root(const Skeleton& skeleton, const Options& options, ToolContext& co
       "--root-offset keeps it as the root's OFFSET"));
 }
 
+// Writes frames as they are read; `note` is called with the skeleton before the output is kept.
+Result<io::MotionSummary> export_frames(
+    const Options& options, ToolContext& context,
+    const std::function<Status(const FrameSource& frames, OutputFile& file)>& write,
+    const std::function<void(const Skeleton& skeleton)>& note) {
+  std::optional<OutputSet> outputs;
+  auto facts = io::stream_motion(options.input, context, [&](const FrameSource& frames) -> Status {
+    if (frames.skeleton.empty()) return empty_error(options.input);
+    outputs.emplace(context);
+    return outputs->add(context.output, [&](OutputFile& file) { return write(frames, file); });
+  });
+  if (!facts) return facts;
+  note(facts->skeleton);
+  if (Status status = outputs->finish(); !status) return status.error();
+  return facts;
+}
+
 Result<io::MotionSummary> export_bvh(const Options& options, ToolContext& context) {
   bvh::WriteOptions writing;
   writing.unit_metres = options.unit.metres;
@@ -399,21 +412,23 @@ Result<io::MotionSummary> export_bvh(const Options& options, ToolContext& contex
   writing.decimals = options.digits;
   writing.order = order_of(options.order);
   writing.jobs = context.jobs;
-  std::optional<OutputSet> outputs;
-  auto facts = io::stream_motion(options.input, context, [&](const FrameSource& frames) -> Status {
-    if (frames.skeleton.empty()) return empty_error(options.input);
-    outputs.emplace(context);
-    return outputs->add(context.output,
-                        [&](OutputFile& file) { return bvh::write(frames, writing, file); });
-  });
-  if (!facts) return facts;
-  note_root(facts->skeleton, options, context);
-  if (Status status = outputs->finish(); !status) return status.error();
-  return facts;
+  return export_frames(
+      options, context,
+      [&](const FrameSource& frames, OutputFile& file) {
+        return bvh::write(frames, writing, file);
+      },
+      [&](const Skeleton& skeleton) { note_root(skeleton, options, context); });
 }
 
 Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
                                         ToolContext& context) {
+  const bool positions = options.what == What::automatic || options.what == What::positions;
+  if (format == ExportFormat::csv && positions && options.layout == Layout::long_rows) {
+    return export_frames(
+        options, context,
+        [](const FrameSource& frames, OutputFile& file) { return csv::write(frames, file); },
+        [](const Skeleton&) {});
+  }
   auto clip = io::open_motion(options.input, context);
   if (!clip) return clip.error();
   if (clip->skeleton.empty()) return empty_error(options.input);

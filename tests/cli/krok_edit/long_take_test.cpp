@@ -47,6 +47,7 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
   };
   const std::vector<Row> rows = {
       {"krok-export", {"-o", "out.bvh"}},
+      {"krok-export", {"-o", "out.csv"}},
       {"krok-edit", {"--from", "10f", "--to", "19000f", "-o", "out.anim"}, 18991},
       {"krok-edit", {"--playback-speed", "0.8", "-o", "out.anim"}, 874999},
       {"krok-edit", {"--in-place", "-o", "out.anim"}},

@@ -21,7 +21,7 @@ std::string written(const Clip& clip) {
   {
     auto file = OutputFile::create(path);
     EXPECT_TRUE(file.ok());
-    EXPECT_TRUE(csv::write(clip, *file).ok());
+    EXPECT_TRUE(csv::write(frames_of(clip), *file).ok());
     EXPECT_TRUE(file->commit().ok());
   }
   const auto input = InputFile::open(path);
@@ -109,7 +109,7 @@ TEST(CsvWriter, RefusesWhatIsNotFinite) {
   clip.positions[2].x() = std::numeric_limits<float>::quiet_NaN();
   auto file = OutputFile::create(testing::TempDir() + "krok_csv_nan_" + std::to_string(getpid()));
   ASSERT_TRUE(file.ok());
-  const Status status = csv::write(clip, *file);
+  const Status status = csv::write(frames_of(clip), *file);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, "clip-value");
 }

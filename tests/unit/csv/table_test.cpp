@@ -57,7 +57,7 @@ TEST(Table, ReadsWhatTheWriterWrote) {
   {
     auto file = OutputFile::create(path);
     ASSERT_TRUE(file.ok());
-    ASSERT_TRUE(write(clip, *file).ok());
+    ASSERT_TRUE(write(frames_of(clip), *file).ok());
     ASSERT_TRUE(file->commit().ok());
   }
   const auto input = InputFile::open(path);
