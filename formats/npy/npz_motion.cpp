@@ -132,6 +132,10 @@ Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion) {
 }
 
 Result<ArrayMotion> read_krok(const ArrayFile& file) {
+  if (!file.options.columns_name.empty()) {
+    return Error("npy-skeleton", "the file has a skeleton of its own: names and parents",
+                 "leave out --skeleton");
+  }
   ArrayMotion motion;
   motion.is_krok = true;
   Skeleton& skeleton = motion.skeleton;

@@ -113,7 +113,7 @@ void declare_image(CommandOptions& command, Options& o) {
   command.add(
       "--distance", o.distance, length({0, 1e4, true}),
       "Distance from the point it looks at; default: the shortest that frames the character");
-  command.add("--fov", o.fov, angle({1, 179}), "Vertical field of view", "40deg")
+  command.add("--fov", o.fov, angle({3, 179}), "Vertical field of view", "40deg")
       .not_with("--lens");
   command.add("--lens MM", o.lens, number({0.1, 1e5}, "mm"),
               "The same as a focal length in millimetres, for an image 24 mm high");

@@ -143,7 +143,14 @@ Result<gait::Path> make_path(const Options& options, bool backward, ToolContext&
   if (!way) return way.error();
   auto path = gait::Path::create(*way);
   if (!path) return std::move(path.error()).in_file(options.path);
-  constexpr double kShort = 0.5;  // metres: less than a step
+  constexpr double kShort = 0.5, kLong = 300;  // metres: less than a step; a walk of minutes
+  if (path->length() > kLong && extension(options.path) == ".csv") {
+    context.diagnose_in(
+        options.path,
+        {make_warning("path-long",
+                      fmt::format("the path is {} m long", readable(path->length(), 3)),
+                      "columns without a unit are metres; centimetres are x [cm], z [cm]")});
+  }
   if (path->length() < kShort && extension(options.path) == ".svg") {
     context.diagnose_in(
         options.path,

@@ -98,6 +98,10 @@ TEST_F(KrokWalk, FollowsADrawing) {
   // Path a is 13 cm long: no unit of a drawing that one walks in.
   EXPECT_THAT(walk({"--path", path("way.svg"), "-o", path("short.anim")}).err,
               AllOf(HasSubstr("[path-short]"), HasSubstr("--path-scale")));
+  // 300 m and more are centimetres without their unit.
+  put("cm.csv", "x,z\n0,0\n0,310\n");
+  EXPECT_THAT(walk({"--path", path("cm.csv"), "-o", path("long.anim")}).err,
+              AllOf(HasSubstr("[path-long]"), HasSubstr("z [cm]")));
   // The way of a motion is another walk's.
   walked({"--path", path("walk.anim"), "-o", path("copy.anim"), "--save-prints", path("r.csv")});
   EXPECT_NEAR(prints("r.csv").back().z, prints("q.csv").back().z, 0.3);

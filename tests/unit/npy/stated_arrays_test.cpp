@@ -76,6 +76,14 @@ TEST(StatedArrays, WhatTheMotionShowsOtherwiseIsWarnedOfAndMayBeGiven) {
   }
 }
 
+TEST(StatedArrays, AnotherSkeletonIsRefused) {
+  ReadOptions options;
+  options.columns_name = "smpl24";
+  const auto read = Walk().read(options);
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.error().code, "npy-skeleton");
+}
+
 TEST(StatedArrays, QuaternionsOfAnotherOrderAreRefused) {
   const auto read = Walk(Quat::Identity(), 1, true).read();
   ASSERT_FALSE(read.ok());
