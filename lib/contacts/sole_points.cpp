@@ -169,6 +169,18 @@ Vec3 forward_in(const Clip& clip, const Leg& leg, const Vec3& up, const std::vec
   return forward.norm() < 1e-4 ? Vec3(up.unitOrthogonal()) : Vec3(forward.normalized());
 }
 
+// Whether a reference pose stands flat on the ground at y = 0 on feet that are no person's in
+// proportion, as boots on short legs: as steep as the feet of the motion, of which the front is
+// `below` the ankle, so that it does not point its toes.
+bool stands_on_high_ankles(const Skeleton& skeleton, const Leg& leg, int front, double length,
+                           double below) {
+  constexpr double kAlike = 0.08, kHighestFront = 0.2;  // leg lengths
+  const double height = skeleton.reference[static_cast<std::size_t>(front)].position.y();
+  const double ankle = skeleton.reference[static_cast<std::size_t>(leg.foot)].position.y();
+  return std::abs(ankle - height - below) < kAlike * length && ankle > kHighestAnkle * length &&
+         height >= 0 && height < kHighestFront * length;
+}
+
 std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side, double length,
                                  const UpOfGround& ground) {
   std::vector<SolePoint> points;
@@ -177,15 +189,24 @@ std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side
     points.push_back({side, FootPart::heel, leg.foot, Vec3::Zero(), true});
     return points;
   }
-  const std::vector<int> flat = flat_frames(clip, leg, length);
-  const Vec3 up = up_in(clip, leg.foot, flat, ground);
-  const Vec3 forward = forward_in(clip, leg, up, flat);
-  double ankle = kAnkleHeight * length;
+  std::vector<int> flat = flat_frames(clip, leg, length);
+  Vec3 up = up_in(clip, leg.foot, flat, ground);
+  double ankle = kAnkleHeight * length, above = kBallHeight * length;
   if (leg.toes >= 0 || leg.tip >= 0) {
-    const Vec3 front = place_in(clip, leg.toes >= 0 ? leg.toes : leg.tip, leg.foot, flat);
-    const double above = (leg.toes >= 0 ? kBallHeight : kTipHeight) * length;
-    ankle = std::clamp(above - up.dot(front), kLowestAnkle * length, kHighestAnkle * length);
+    const int front = leg.toes >= 0 ? leg.toes : leg.tip;
+    const double below = -up.dot(place_in(clip, front, leg.foot, flat));
+    if (leg.toes < 0) above = kTipHeight * length;
+    ankle = std::clamp(above + below, kLowestAnkle * length, kHighestAnkle * length);
+    if (above + below > kHighestAnkle * length &&
+        stands_on_high_ankles(clip.skeleton, leg, front, length, below)) {
+      flat.clear();
+      up = up_in(clip, leg.foot, flat, ground);
+      const auto& reference = clip.skeleton.reference;
+      ankle = reference[static_cast<std::size_t>(leg.foot)].position.y();
+      above = reference[static_cast<std::size_t>(front)].position.y();
+    }
   }
+  const Vec3 forward = forward_in(clip, leg, up, flat);
   points.push_back(
       {side, FootPart::heel, leg.foot, -up * ankle - forward * (kHeelBehind * length), true});
   if (leg.toes >= 0) {
@@ -207,10 +228,9 @@ std::vector<SolePoint> points_of(const Clip& clip, const Leg& leg, FootSide side
                 (joint_at(clip, frame, leg.foot).orientation * forward);
       }
       ahead -= toes_up * toes_up.dot(ahead);
-      points.push_back({side, FootPart::tip, leg.toes,
-                        ahead.normalized() * ((kTipForward - kBallForward) * length) -
-                            toes_up * (kBallHeight * length),
-                        true});
+      points.push_back(
+          {side, FootPart::tip, leg.toes,
+           ahead.normalized() * ((kTipForward - kBallForward) * length) - toes_up * above, true});
     }
     return points;
   }

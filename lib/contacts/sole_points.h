@@ -37,10 +37,12 @@ struct Feet {
 // The sole points of a skeleton. The heel is placed behind and below the ankle, and a tip without
 // an end site ahead of the ball, after Drillis and Contini's foot (Winter, "Biomechanics and Motor
 // Control of Human Movement"): ankle 0.039 of the stature above the sole and 0.036 ahead of the
-// heel, which is 0.079 and 0.073 of the leg. The down direction in the foot's frame is taken from
-// the frames in which the foot is still, because reference poses may point the toes anywhere; if
-// there are none, from the frames in which it is lowest, and for clips of fewer than five frames
-// from the reference pose. A foot that is only an end site has one point, at the ankle.
+// heel, which is 0.079 and 0.073 of the leg. Ankles that are over 0.16 of the leg above the toes,
+// as in boots on short legs, are as high as in a reference pose on the ground at y = 0. The down
+// direction in the foot's frame is taken from the frames in which the foot is still, because
+// reference poses may point the toes anywhere; if there are none, from the frames in which it is
+// lowest, and for clips of fewer than five frames from the reference pose. A foot that is only an
+// end site has one point, at the ankle.
 Feet find_feet(const Clip& clip, const RoleMap& roles);
 
 // Which way the ground below a point faces: a unit vector, world. Without a function: upwards.

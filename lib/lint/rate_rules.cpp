@@ -8,6 +8,7 @@
 #include "lint/series_internal.h"
 #include "math/window.h"
 #include "roles/roles.h"
+#include "roles/stature.h"
 
 // frame-rate: repeated frames, how long swings take, and how fast runs fall.
 
@@ -109,8 +110,17 @@ std::optional<double> fall_of(const Series& series, const std::vector<Swing>& le
   return median(falls);
 }
 
+// Whether legs are as long for the body as people's: people's motion on a toy's legs keeps people's
+// time, and its own motion has none of ours.
+bool has_proportions_of_people(const Series& series) {
+  constexpr double kUncertain = 0.35;  // of the stature; a quarter in public captures
+  const auto stature = stature_of(series.clip.skeleton, series.roles);
+  return !stature || stature->uncertainty < kUncertain * stature->metres;
+}
+
 // Runs by how fast they fall, and walks by how long their swings take.
 void find_speed(const Series& series, MotionFaults& out) {
+  if (!has_proportions_of_people(series)) return;
   const auto left = swings_of(series, Role::left_foot), right = swings_of(series, Role::right_foot);
   std::vector<double> seconds;
   for (const auto* swings : {&left, &right}) {

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "contacts/contacts.h"
+#include "contacts/hip_widths.h"
+#include "contacts/legs.h"
 #include "math/quaternion.h"
 #include "math/window.h"
 #include "motion/ground_frame.h"
@@ -28,6 +30,15 @@ void move_body(const Clip& source, int carrier, double scale, const std::vector<
     const Vec3 shift = (1 - scale) * Vec3(hips.x(), between[static_cast<std::size_t>(f)], hips.z());
     for (Vec3f& at : clip.frame_positions(f)) at = (at.cast<double>() + shift).cast<float>();
   }
+}
+
+// From hip joint to hip joint, metres.
+double hip_width(const Skeleton& skeleton, const RoleMap& roles) {
+  const auto hip = [&](FootSide side) {
+    const auto joint = static_cast<std::size_t>(leg_joints(roles, side).upper);
+    return skeleton.reference[joint].position;
+  };
+  return (hip(FootSide::left) - hip(FootSide::right)).norm();
 }
 
 // Height of the ground between the feet: the mean over both feet, interpolated between stances.
@@ -78,10 +89,12 @@ Result<FollowedFeet> follow_feet(const Clip& source, const RoleMap& source_roles
   }
   // Soles that face as the ground does, which need not be level.
   const Feet soles = find_feet(followed.clip, roles, ground.up);
+  const double beside = beside_for_hips(hip_width(clip.skeleton, roles),
+                                        hip_width(source.skeleton, source_roles), body->leg_length);
   std::vector<FootPath> paths;
   for (std::size_t i = 0; i < feet.size(); ++i) {
     body->legs[i].points = soles.points[i];
-    Status status = feet[i].lead_foot(followed.clip, body->legs[i], ground);
+    Status status = feet[i].lead_foot(followed.clip, body->legs[i], beside, ground);
     if (!status) return status.error();
     paths.push_back(feet[i].path(followed.clip));
   }

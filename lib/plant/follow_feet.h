@@ -29,7 +29,8 @@ struct FollowedFeet {
   // it is below or above the ground while the foot is flat; an end that stands out over an edge
   // does not count.
   double drift = 0, off_ground = 0;
-  double sunk = 0;  // metres, the deepest that a heel or ball is in the ground at any time
+  double sunk = 0;         // metres, the deepest that a heel or ball is in the ground at any time
+  double source_sunk = 0;  // the same of the source
   double pelvis_lowered = 0;  // metres, the most in any frame
   int out_of_reach = 0;       // frames in which a leg is too short for its place
 };
@@ -41,8 +42,9 @@ struct FollowedFeet {
 // - The body is moved so that the hips are over the source's, at `scale` of their height over the
 //   ground between the feet.
 // - Each sole is oriented as the source's sole. In a stance the middles of both lie together, or
-//   back or ahead of that where a longer foot would stand against a step or over an edge. A sole
-//   that rolls over its heel or ball rolls about its own.
+//   back or ahead of that where a longer foot would stand against a step or over an edge, and
+//   beside it by beside_for_hips() (contacts/hip_widths.h) across the hips. A sole that rolls over
+//   its heel or ball rolls about its own.
 // - In swing the foot moves from one place to the next as the source's foot does.
 // - Legs are solved by solve_two_bone(), the pelvis is lowered, smoothly, where they are too short.
 //

@@ -139,6 +139,9 @@ Result<SoleFollower> SoleFollower::create(const Clip& source, const RoleMap& sou
                                           std::span<const Contact> contacts) {
   SoleFollower follower;
   follower.source_ = &source;
+  follower.hip_ = leg_joints(source_roles, side).upper;
+  follower.other_hip_ =
+      leg_joints(source_roles, side == FootSide::left ? FootSide::right : FootSide::left).upper;
   const Feet feet = find_feet(source, source_roles, ground.up);
   const auto& points = feet.points[static_cast<std::size_t>(side)];
   const SolePoint* heel = point_of(points, FootPart::heel);
@@ -160,37 +163,49 @@ Result<SoleFollower> SoleFollower::create(const Clip& source, const RoleMap& sou
   return follower;
 }
 
-Status SoleFollower::lead_foot(const Clip& clip, const Leg& leg, const GroundBelow& ground) {
+Status SoleFollower::lead_foot(const Clip& clip, const Leg& leg, double beside,
+                               const GroundBelow& ground) {
   leg_ = leg;
   const SolePoint* heel = leg.point(FootPart::heel);
   const SolePoint* ball = leg.point(FootPart::ball);
   if (heel == nullptr || ball == nullptr) return no_sole("the target", leg.side);
   own_ = shape_of(clip, leg.points, *source_, theirs_.foot, flat_, ground);
   if (own_.length() < kShortSole) return no_sole("the target", leg.side);
-  for (Standing& standing : standings_) place(standing, ground);
+  for (Standing& standing : standings_) place(standing, beside, ground);
   return {};
 }
 
+Vec3 SoleFollower::across_hips(const Standing& standing) const {
+  Vec3 sum = Vec3::Zero();
+  for (int f = standing.first; f <= standing.last; ++f) {
+    sum += (joint_at(*source_, f, hip_).position - joint_at(*source_, f, other_hip_).position)
+               .stableNormalized();
+  }
+  sum.y() = 0;
+  return sum / (1 + standing.last - standing.first);
+}
+
 // Places the sole for a stance of the source: middles together, heel and ball on the ground.
-void SoleFollower::place(Standing& standing, const GroundBelow& ground) const {
+void SoleFollower::place(Standing& standing, double beside, const GroundBelow& ground) const {
   const Transform foot = joint_at(*source_, middle_of(standing), theirs_.foot);
   const Vec3 forward = foot.orientation * theirs_.forward;
   const Vec3 heel = foot * theirs_.heel, ball = foot * theirs_.ball;
   standing.up = foot.orientation * theirs_.up;
   const double longer = own_.length() - theirs_.length();
-  const Vec3 sole_at_ball = ball - theirs_.ball_height() * standing.up;
+  const Vec3 aside = beside == 0 ? Vec3(Vec3::Zero()) : Vec3(beside * across_hips(standing));
+  const Vec3 led = heel + aside, sole_at_ball = ball + aside - theirs_.ball_height() * standing.up;
   // Moved back or ahead where a longer foot would stand against a step or over an edge.
   double best = 0, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k <= 2 * kTries; ++k) {
     const int tried = (k + 1) / 2;
     const double ahead = std::abs(longer) * (k % 2 == 0 ? tried : -tried) / kTries;
-    const Vec3 own_heel = heel + (ahead - 0.5 * longer) * forward;
+    const Vec3 own_heel = led + (ahead - 0.5 * longer) * forward;
     const double trouble = trouble_at(own_heel, forward, ground) + 0.01 * std::abs(ahead);
     if (trouble >= least) continue;
     least = trouble;
     best = ahead;
   }
-  Vec3 own_heel = heel + (best - 0.5 * longer) * forward;
+  Vec3 own_heel = led + (best - 0.5 * longer) * forward;
   Vec3 own_tread = sole_at_ball + (best + 0.5 * longer) * forward;  // below the ball
   // Both ends come down to the ground, which need not be even; what is over an edge stays.
   const auto settled = [&](const Vec3& point) -> std::optional<double> {
@@ -312,13 +327,17 @@ void SoleFollower::measure(const Clip& clip, const GroundBelow& ground, Followed
     check(standing.heel, own_.heel, own_.heel);
     check(standing.ball, own_.ball, sole_at_ball);
   }
-  for (int f = 0; f < clip.frame_count(); ++f) {
-    for (const Vec3& point : {own_.heel, own_.ball}) {
-      const Vec3 at = joint_at(clip, f, own_.foot) * point;
-      const auto height = ground.height(at);
-      if (height) into.sunk = std::max(into.sunk, *height - at.y());
+  const auto deepest = [&](const Clip& of, const SoleShape& shape, double& sunk) {
+    for (int f = 0; f < of.frame_count(); ++f) {
+      for (const Vec3& point : {shape.heel, shape.ball}) {
+        const Vec3 at = joint_at(of, f, shape.foot) * point;
+        const auto height = ground.height(at);
+        if (height) sunk = std::max(sunk, *height - at.y());
+      }
     }
-  }
+  };
+  deepest(clip, own_, into.sunk);
+  deepest(*source_, theirs_, into.source_sunk);
 }
 
 }  // namespace krok::plant

@@ -44,8 +44,9 @@ class SoleFollower {
   static Result<SoleFollower> create(const Clip& source, const RoleMap& source_roles, FootSide side,
                                      const GroundBelow& ground, std::span<const Contact> contacts);
 
-  // Sets the foot that follows, in a clip that has been moved over the source. Code contacts-feet.
-  Status lead_foot(const Clip& clip, const Leg& leg, const GroundBelow& ground);
+  // Sets the foot that follows, in a clip that has been moved over the source, `beside` metres
+  // farther to its side in all stances. Code contacts-feet.
+  Status lead_foot(const Clip& clip, const Leg& leg, double beside, const GroundBelow& ground);
 
   // The correction that brings that foot to its places.
   FootPath path(const Clip& clip) const;
@@ -69,11 +70,14 @@ class SoleFollower {
   static Lead lead_in(const Standing& standing, int frame);
   void find_standings(std::span<const Contact> contacts, const SolePoint& heel,
                       const SolePoint* ball);
-  void place(Standing& standing, const GroundBelow& ground) const;
+  void place(Standing& standing, double beside, const GroundBelow& ground) const;
+  // From the other hip of the source to the foot's, the mean over a stance, horizontal.
+  Vec3 across_hips(const Standing& standing) const;
   // How badly the sole lies with its heel there; 0 is good.
   double trouble_at(const Vec3& heel, const Vec3& forward, const GroundBelow& ground) const;
 
   const Clip* source_ = nullptr;
+  int hip_ = -1, other_hip_ = -1;  // of the source
   Leg leg_;
   SoleShape theirs_, own_;
   std::vector<Standing> standings_;

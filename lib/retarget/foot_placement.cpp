@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "contacts/hip_widths.h"
 #include "core/index.h"
 #include "math/window.h"
 #include "retarget/actor_view_internal.h"
@@ -17,6 +18,46 @@ namespace {
 // Heights of a foot, in leg lengths, between which its place gives way to the leg's rotations.
 constexpr double kNearFloor = 0.08;
 constexpr double kFarFromFloor = 0.25;
+
+// The directions `across`, each the mean over its stance: in contact, or out of it for less than
+// `reach` frames. From one stance to the next as given, without a jump.
+std::vector<Eigen::Vector2f> held_in_stances(std::vector<Eigen::Vector2f> across,
+                                             std::vector<char> stands, int reach) {
+  const int frames = static_cast<int>(across.size());
+  const auto for_runs = [&](char of, const auto& body) {
+    for (int f = 0; f < frames; ++f) {
+      int end = f;
+      while (end < frames && stands[at(end)] == of) ++end;
+      if (end > f) body(f, end);
+      f = std::max(f, end - 1);
+    }
+  };
+  for_runs(0, [&](int begin, int end) {
+    if (begin == 0 || end == frames || end - begin >= reach) return;
+    std::fill(stands.begin() + begin, stands.begin() + end, char{1});
+  });
+  const std::vector<Eigen::Vector2f> given = across;
+  for_runs(1, [&](int begin, int end) {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    for (int f = begin; f < end; ++f) sum += given[at(f)].cast<double>();
+    const Eigen::Vector2f mean = (sum / (end - begin)).cast<float>();
+    std::fill(across.begin() + begin, across.begin() + end, mean);
+  });
+  for_runs(0, [&](int begin, int end) {
+    const int soft = std::min(reach, (end - begin) / 2);
+    for (int f = begin; f < end; ++f) {
+      if (begin > 0) {
+        across[at(f)] += static_cast<float>(1 - smooth_step(begin - 1, begin + soft, f)) *
+                         (across[at(begin - 1)] - given[at(begin)]);
+      }
+      if (end < frames) {
+        across[at(f)] += static_cast<float>(smooth_step(end - 1 - soft, end, f)) *
+                         (across[at(end)] - given[at(end - 1)]);
+      }
+    }
+  });
+  return across;
+}
 
 double elevation(const Vec3& v) {
   const double length = v.norm();
@@ -122,6 +163,11 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
              (from(leg.source_ankle_) - from(leg.source_knee_)).norm();
   leg.source_front_ = foot_front(source.skeleton, source.roles, foot);
   leg.find_soles(source, target, turns[at(ankle_joint)], foot, heel);
+  const Role other = kLegRoles[is_left ? 1 : 0].upper;
+  leg.source_hip_ = source.roles.joint(upper);
+  leg.source_other_hip_ = source.roles.joint(other);
+  const double width = (from(leg.source_hip_) - from(leg.source_other_hip_)).norm();
+  leg.beside_ = beside_for_hips(left.norm(), scale * width, leg.limb_.length(target.pose));
 
   leg.source_points_ =
       points_of_foot(source, leg.source_ankle_, lowest_of_foot(source, foot) - source_floor.sole);
@@ -231,6 +277,12 @@ void LegPlacement::add(const Clip& source, int begin, int end, Track& track) con
     track.upright.push_back(1 - smooth_step(60 * kRadiansPerDegree, 85 * kRadiansPerDegree, lean));
     const Quat& ankle = pose[at(source_ankle_)].orientation;
     const double rolled = -elevation(ankle * ahead_);
+    if (beside_ != 0) {
+      const Vec3 across = pose[at(source_hip_)].position - pose[at(source_other_hip_)].position;
+      const Vec3 direction = across.stableNormalized();
+      track.across.emplace_back(static_cast<float>(direction.x()),
+                                static_cast<float>(direction.z()));
+    }
     track.rolls.push_back(heel != front ? front : smooth_step(0, 6 * kRadiansPerDegree, rolled));
     if (heel == 0 || front == 0) continue;
     const Vec3 heading = heading_of(ankle);
@@ -280,12 +332,18 @@ LegPlacement::Stances LegPlacement::find_stances(Track track, double rate) {
     }
   });
   const std::vector<double> stands = softened(std::exchange(track.near, {}), reach);
-  std::vector<double> still(at(frames));
+  std::vector<char> still(at(frames));
   for (std::size_t f = 0; f < at(frames); ++f) still[f] = heel[f] | front[f];
-  Stances result{std::vector<FootStance>(at(frames)), softened(still, reach)};
+  Stances result{std::vector<FootStance>(at(frames)),
+                 softened(std::vector<double>(still.begin(), still.end()), reach)};
   for (std::size_t f = 0; f < at(frames); ++f) {
     result.feet[f] = {track.upright[f] * stands[f], rolls[f]};
     result.bearing[f] *= track.upright[f];
+  }
+  track.across = held_in_stances(std::move(track.across), std::move(still), reach);
+  for (std::size_t f = 0; f < track.across.size(); ++f) {
+    const Eigen::Vector2f beside = static_cast<float>(beside_) * track.across[f];
+    result.feet[f].beside = {beside.x(), beside.y()};
   }
   return result;
 }
@@ -299,18 +357,19 @@ void LegPlacement::add_lack(std::span<const Transform> source_pose,
   solver.add(bearing, along, 0, goal_of(source_pose, target_pose, stance) - ankle, {});
 }
 
-double LegPlacement::lack(std::span<const Transform> source_pose,
-                          std::span<const Transform> target_pose, const FootStance& stance) const {
-  const auto place_of = [&](int joint) { return target_pose[at(joint)].position; };
-  const Vec3 to_goal = goal_of(source_pose, target_pose, stance) - place_of(limb_.upper());
-  // The present extension, or nearly the full length if that is more.
-  const double reach =
-      std::max((place_of(limb_.end()) - place_of(limb_.upper())).norm() * (1 + 1e-9),
-               0.997 * ((place_of(limb_.lower()) - place_of(limb_.upper())).norm() +
-                        (place_of(limb_.end()) - place_of(limb_.lower())).norm()));
+LegPlacement::Way LegPlacement::way(std::span<const Transform> source_pose,
+                                    std::span<const Transform> target_pose,
+                                    const FootStance& stance) const {
+  const Vec3& hip = target_pose[at(limb_.upper())].position;
+  const double extension = (target_pose[at(limb_.end())].position - hip).norm();
+  return {goal_of(source_pose, target_pose, stance) - hip,
+          std::max(extension * (1 + 1e-9), 0.997 * limb_.length(target_pose)), stance.standing};
+}
+
+double LegPlacement::Way::lack() const {
   const double beside = flat(to_goal).squaredNorm();
   if (to_goal.norm() <= reach || to_goal.y() >= 0 || beside >= reach * reach) return 0;
-  return stance.standing * (-to_goal.y() - std::sqrt(reach * reach - beside));
+  return standing * (-to_goal.y() - std::sqrt(reach * reach - beside));
 }
 
 Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
@@ -330,7 +389,8 @@ Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
                 target_pose[at(limb_.end())].orientation * sole.target);
   };
   const Vec3 by_heel = ankle_over(heel_);
-  Vec3 goal = by_heel + stance.on_ball * (ankle_over(ball_) - by_heel);
+  Vec3 goal = by_heel + stance.on_ball * (ankle_over(ball_) - by_heel) +
+              Vec3(stance.beside[0], 0, stance.beside[1]);
   goal = ankle + stance.standing * (goal - ankle);
   const double allowed =
       std::min(0.0, scale_ * depth(source_pose, source_points_, source_floor_.motion));
@@ -342,11 +402,11 @@ Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
 
 LegPlacement::Outcome LegPlacement::place(std::span<const Transform> source_pose,
                                           std::span<const Transform> local,
-                                          const FootStance& stance, double part,
+                                          const FootStance& stance, double part, double softness,
                                           std::span<Transform> target_pose) const {
   const Vec3 way =
       goal_of(source_pose, target_pose, stance) - target_pose[at(limb_.end())].position;
-  return limb_.move_end(part * way, local, target_pose);
+  return limb_.move_end(part * way, local, target_pose, softness);
 }
 
 }  // namespace krok::retarget

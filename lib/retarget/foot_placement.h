@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -18,11 +19,13 @@
 // The heel's goal is the source's heel, scaled, on the floor; while the source's foot is rolled
 // over its ball, the ball is placed instead: the joint of the toes, which lie on the floor, where
 // both have one. The ankle's goal follows from it, so a planted foot stays still whatever the
-// height of the ankle and the length of the foot. Then the foot is raised if one of its joints
-// would be deeper in the floor than the source's. Two-bone inverse kinematics moves the ankle
-// there, weighted by the foot's stance; knees keep the plane they bend in, feet their orientation.
-// A leg that needs no correction beyond rounding is left as it is. If legs are too short for their
-// goals, the hips are lowered beforehand.
+// height of the ankle and the length of the foot. Where hips are far wider or narrower for their
+// legs than the source's, each foot stands as far to the side of its hip as the source's: its
+// places are moved across the hips, by the same in all of a stance. Then the foot is raised if one
+// of its joints would be deeper in the floor than the source's. Two-bone inverse kinematics moves
+// the ankle there, weighted by the foot's stance; knees keep the plane they bend in, feet their
+// orientation. A leg that needs no correction beyond rounding is left as it is. If legs are too
+// short for their goals, the hips are lowered beforehand.
 
 namespace krok::retarget {
 
@@ -60,6 +63,8 @@ std::vector<double> softened(const std::vector<double>& values, int reach);
 struct FootStance {
   double standing = 0;  // how far its place is kept
   double on_ball = 0;   // whether the ball is placed, or the heel (0)
+  // Metres along X and Z from the source's place, scaled, for the width of the hips.
+  std::array<float, 2> beside = {0, 0};
 };
 
 // One leg of source and target.
@@ -91,6 +96,8 @@ class LegPlacement {
     std::vector<char> heel, front;             // in contact
     std::vector<double> near, upright, rolls;  // of the frames that were added
     std::vector<double> left, ahead;           // of the ankle placed by the heel, from the ball
+    std::vector<Eigen::Vector2f> across;  // X and Z of the line across the hips to this leg, length
+                                          // 1 where level; empty where their widths are alike
   };
   Track begin_track(std::span<const Contact> contacts, int frames, double rate) const;
   // The frames [begin, end) of a clip, in order.
@@ -103,15 +110,29 @@ class LegPlacement {
   void add_lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
                 const FootStance& stance, double bearing, ShiftSolver& solver) const;
 
-  // By how much the hips must be lowered for the leg to reach its goal, metres; 0 if it does.
-  double lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
-              const FootStance& stance) const;
+  // From the hip to the goal of the ankle.
+  struct Way {
+    Vec3 to_goal = Vec3::Zero();
+    double reach = 0;  // metres: the present extension, or nearly the full length if that is more
+    double standing = 0;
+
+    // By how much the hips must be lowered for the leg to reach its goal, metres; 0 if it does.
+    double lack() const;
+    // By how much the leg is too short for its goal once the hips are lowered by `drop`, metres.
+    double short_by(double drop) const {
+      return std::max(0.0, (to_goal + drop * Vec3::UnitY()).norm() - reach);
+    }
+  };
+  Way way(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
+          const FootStance& stance) const;
 
   // Moves the leg of a target pose to where the source's foot is in `source_pose`, as far as it
-  // stands; only a `part` of that way where the leg kneels (0: wholly). Both poses are
-  // joint_to_world, shape [joints]; `local` is the target's reference joint_to_parent.
+  // stands; only a `part` of that way where the leg kneels (0: wholly). `softness` is that of
+  // MovedLimb::move_end(). Both poses are joint_to_world, shape [joints]; `local` is the target's
+  // reference joint_to_parent.
   Outcome place(std::span<const Transform> source_pose, std::span<const Transform> local,
-                const FootStance& stance, double part, std::span<Transform> target_pose) const;
+                const FootStance& stance, double part, double softness,
+                std::span<Transform> target_pose) const;
 
  private:
   explicit LegPlacement(MovedLimb limb) : limb_(std::move(limb)) {}
@@ -143,7 +164,9 @@ class LegPlacement {
   MovedLimb limb_;
   double scale_ = 1;
   Floor source_floor_, target_floor_;
-  double leg_ = 0;  // metres, of the source's thigh and shank
+  double leg_ = 0;     // metres, of the source's thigh and shank
+  double beside_ = 0;  // metres of FootStance::beside, away from the other leg
+  int source_hip_ = -1, source_other_hip_ = -1;
   int source_knee_ = -1, source_ankle_ = -1;
   int source_front_ = -1;  // toes, or the end site of the foot, or -1
   Sole heel_, ball_;

@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::size_t kFramesATime = 64;
 constexpr int kShiftRounds = 2;
+// The softness with which a leg straightens, of what it is too short by, and at most, of the leg.
+constexpr double kSoftness = 1.5, kMaxSoftness = 0.06;
 constexpr double kSeat = 0.12;  // leg lengths, of the hips over the ground that one sits or lies on
 
 class FrameTransfer {
@@ -49,7 +51,9 @@ class FrameTransfer {
     clip.resize(source_.frame_count());
     const bool touches = touches_ != nullptr && !touches_->empty();
     if (touches || !plan_.legs.empty()) shifts_ = find_shifts(report);
-    const std::vector<double> drops = plan_.legs.empty() ? std::vector<double>() : find_drops();
+    std::vector<std::vector<double>> softness(plan_.legs.size());
+    const std::vector<double> drops =
+        plan_.legs.empty() ? std::vector<double>() : find_drops(softness);
     std::vector<std::array<LegPlacement::Outcome, 2>> outcomes(frames);
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       const int frame = static_cast<int>(f);
@@ -60,7 +64,8 @@ class FrameTransfer {
         const PlacedLeg& leg = plan_.legs[i];
         const double kneels = touches ? touches_->kneels(frame, leg.is_left) : 0;
         outcomes[f][i] =
-            leg.placement.place(from, plan_.local, leg.stances.feet[in_take(f)], 1 - kneels, pose);
+            leg.placement.place(from, plan_.local, leg.stances.feet[in_take(f)], 1 - kneels,
+                                softness[i].empty() ? 0 : softness[i][f], pose);
       }
       if (touches) {
         touches_->place_feet(frame, plan_.local, pose);
@@ -254,19 +259,37 @@ class FrameTransfer {
     for (std::size_t f = 0; f < shifts.size(); ++f) shifts[f].hips.y() += sunk[f];
   }
 
-  // How far the hips are lowered in each frame so that planted feet reach the floor.
-  std::vector<double> find_drops() const {
+  // How far the hips are lowered in each frame so that planted feet reach the floor. Knees of legs
+  // that are too short even then do not snap: before and after, too, they straighten with a
+  // softness, [legs][frames]; empty for legs that reach.
+  std::vector<double> find_drops(std::vector<std::vector<double>>& softness) const {
     std::vector<double> drops(at(source_.frame_count()), 0.0);
+    std::vector<std::vector<LegPlacement::Way>> ways(plan_.legs.size(),
+                                                     std::vector<LegPlacement::Way>(drops.size()));
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       if (!shifts_.empty()) shift_body(shifts_[f], pose);
-      for (const PlacedLeg& leg : plan_.legs) {
-        drops[f] = std::max(drops[f], leg.placement.lack(from, pose, leg.stances.feet[in_take(f)]));
+      for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
+        const PlacedLeg& leg = plan_.legs[i];
+        ways[i][f] = leg.placement.way(from, pose, leg.stances.feet[in_take(f)]);
+        drops[f] = std::max(drops[f], ways[i][f].lack());
       }
     });
     const double most = 0.06 * plan_.leg_length;
     for (double& drop : drops) drop = std::min(drop, most);
-    if (std::all_of(drops.begin(), drops.end(), [](double drop) { return drop == 0; })) return {};
-    return softened(drops, softening_reach(source_.rate));
+    const int reach = softening_reach(source_.rate);
+    const auto is_zero = [](double value) { return value == 0; };
+    if (std::ranges::all_of(drops, is_zero)) drops.clear();
+    if (!drops.empty()) drops = softened(drops, reach);
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      for (std::size_t f = 0; f < ways[i].size(); ++f) {
+        softness[i].push_back(
+            std::min(kSoftness * ways[i][f].short_by(drops.empty() ? 0 : drops[f]),
+                     kMaxSoftness * plan_.leg_length));
+      }
+      softness[i] = std::ranges::all_of(softness[i], is_zero) ? std::vector<double>()
+                                                              : softened(softness[i], reach);
+    }
+    return drops;
   }
 
   void add(const std::vector<std::array<LegPlacement::Outcome, 2>>& outcomes, std::size_t side,

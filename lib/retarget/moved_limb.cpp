@@ -57,7 +57,7 @@ double MovedLimb::length(std::span<const Transform> pose) const {
 }
 
 MovedLimb::Outcome MovedLimb::move_end(const Vec3& wanted, std::span<const Transform> local,
-                                       std::span<Transform> pose) const {
+                                       std::span<Transform> pose, double softness) const {
   const Vec3 root = pose[at(upper_)].position;
   const Vec3 middle = pose[at(lower_)].position;
   const Vec3 end = pose[at(end_)].position;
@@ -83,7 +83,7 @@ MovedLimb::Outcome MovedLimb::move_end(const Vec3& wanted, std::span<const Trans
   TwoBoneGoal to_reach;
   to_reach.target = goal;
   to_reach.pole = (goal - root).cross(chain.hinge);
-  to_reach.softness = soft * 0.003 * full;
+  to_reach.softness = std::max(soft * 0.003 * full, softness);
   const TwoBoneSolution solution = solve_two_bone(chain, to_reach);
   outcome.miss = (solution.end - goal).norm();
   turn(solution.root_rotation, solution.middle_rotation, local, pose);

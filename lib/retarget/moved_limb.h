@@ -37,9 +37,11 @@ class MovedLimb {
 
   // Moves the end by `correction` (world, metres) by two-bone inverse kinematics; the limb keeps
   // the plane it bends in. A correction that is no more than rounding leaves the pose as it is.
-  // `pose` is joint_to_world, `local` the reference joint_to_parent; both [joints].
+  // `pose` is joint_to_world, `local` the reference joint_to_parent; both [joints]. `softness` is
+  // TwoBoneGoal's, metres, if it is more than the 0.003 of the limb with which it always
+  // straightens.
   Outcome move_end(const Vec3& correction, std::span<const Transform> local,
-                   std::span<Transform> pose) const;
+                   std::span<Transform> pose, double softness = 0) const;
 
   // Turns the upper bone about the limb's root so that the middle joint points at `goal`; the lower
   // bone keeps its orientation.

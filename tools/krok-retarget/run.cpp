@@ -172,7 +172,13 @@ Result<FollowedFeet> stand_on_ground(const Options& options, const Clip& source,
     context.warn("plant-reach", fmt::format("in {} of {} frames a leg is too short for its place",
                                             followed->out_of_reach, source.frame_count()));
   }
-  if (followed && followed->sunk > kSunk) {
+  if (followed && followed->sunk > kSunk && followed->source_sunk < 0.5 * kSunk) {
+    context.warn(
+        "retarget-ground",
+        fmt::format("a foot that is over the ground goes {} mm into it, the input's {} mm: "
+                    "the target's feet do not take its steps there",
+                    readable(1e3 * followed->sunk, 3), readable(1e3 * followed->source_sunk, 3)));
+  } else if (followed && followed->sunk > kSunk) {
     context.warn(
         "retarget-ground",
         fmt::format("a foot that is over the ground goes {} mm into it: the input does not "

@@ -226,6 +226,23 @@ std::optional<Diagnostic> missed_contacts(const Outcome& outcome) {
       "other proportions, or --scale, leave limbs too short; krok-retarget -v lists all contacts");
 }
 
+// Legs that straighten and still miss a place of the input's foot.
+std::optional<Diagnostic> short_legs(const krok::retarget::Report& report) {
+  constexpr double kShort = 0.01;  // metres
+  const krok::retarget::FootReport* worst = nullptr;
+  for (const auto* foot : {&report.left_foot, &report.right_foot}) {
+    if (*foot && (worst == nullptr || (*foot)->largest_miss > worst->largest_miss)) worst = &**foot;
+  }
+  if (worst == nullptr || worst->largest_miss < kShort) return std::nullopt;
+  return make_warning(
+      "retarget-reach",
+      fmt::format("the legs are too short for the input's steps, the {} one by up to {} in frame "
+                  "{}",
+                  worst == &*report.left_foot ? "left" : "right", millimetres(worst->largest_miss),
+                  worst->largest_miss_frame),
+      "a smaller --scale makes the steps shorter");
+}
+
 }  // namespace
 
 Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
@@ -265,6 +282,7 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
         "do the toes have the right roles? krok-info -v shows them, --map and --onto-map of "
         "krok-retarget set them"));
   }
+  if (auto reach = short_legs(report)) choices.push_back(*std::move(reach));
   if (auto missed = missed_contacts(outcome)) choices.push_back(*std::move(missed));
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
     note("retarget-fingers",

@@ -1,0 +1,186 @@
+// Actors of a toy's proportions: short legs, wide hips, boots with high ankles. If these fail,
+// their soles are in the ground, their boots in each other, or knees snap.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "contacts/hip_widths.h"
+#include "contacts/legs.h"
+#include "contacts/sole_points.h"
+#include "plant/follow_feet.h"
+#include "samples/generator/walk.h"
+#include "support/chibi_skeleton.h"
+#include "tests/unit/retarget/actors.h"
+
+namespace krok {
+namespace {
+
+using namespace test;
+
+constexpr double kAnkle = 0.145, kToes = 0.026;  // metres, of chibi_skeleton() on the ground
+
+samples::Walk walk_of(double stature) {
+  samples::WalkOptions options;
+  options.steps = 6;
+  options.stature = stature;
+  auto walk = samples::make_walk(options);
+  EXPECT_TRUE(walk.ok());
+  return std::move(*walk);
+}
+
+int joint_of(const Clip& clip, Role role) {
+  return find_roles(clip.skeleton).joint(role);
+}
+
+Vec3 place_of(const Clip& clip, int frame, int joint) {
+  return clip.frame_positions(frame)[at(joint)].cast<double>();
+}
+
+double width_of(const Clip& clip) {
+  return (place_of(clip, 0, joint_of(clip, Role::left_upper_leg)) -
+          place_of(clip, 0, joint_of(clip, Role::right_upper_leg)))
+      .norm();
+}
+
+double height_of(const Feet& feet, const Clip& clip, int frame, FootPart part) {
+  for (const SolePoint& point : feet.points[0]) {
+    if (point.part == part) return (joint_at(clip, frame, point.joint) * point.offset).y();
+  }
+  return 1e9;
+}
+
+// Ankles over 0.16 of the leg were taken for toes that point down: the heel was 85 mm too high.
+TEST(ShortLegs, SolesAreBelowHighAnkles) {
+  Clip standing = resting(with_other_axes(chibi_skeleton(), 4));
+  standing.rate = 30;
+  standing.resize(9);
+  for (int f = 0; f < 9; ++f) standing.set_pose(f, standing.skeleton.reference);
+  const Feet feet = find_feet(standing, find_roles(standing.skeleton));
+  EXPECT_NEAR(height_of(feet, standing, 0, FootPart::heel), 0, 1e-6);
+  EXPECT_NEAR(height_of(feet, standing, 0, FootPart::ball), kToes, 1e-6);
+}
+
+// People on the tips of their toes, or with a reference pose that points them, have no such ankles.
+TEST(ShortLegs, ToesThatPointDownAreNoHighAnkles) {
+  for (const bool in_reference : {false, true}) {
+    Skeleton skeleton = human_skeleton();
+    const Quat down = from_rotation_vector(0.9 * Vec3::UnitX());
+    Clip clip = resting(skeleton);
+    clip.skeleton = posed(posed(skeleton, "LeftFoot", down), "RightFoot", down);
+    clip.rate = 30;
+    clip.resize(9);
+    for (int f = 0; f < 9; ++f) {
+      clip.set_pose(f, in_reference ? skeleton.reference : clip.skeleton.reference);
+    }
+    if (!in_reference) clip.skeleton = skeleton;
+    const Feet feet = find_feet(clip, find_roles(clip.skeleton));
+    const Vec3 heel = feet.points[0].front().offset;
+    EXPECT_LT(heel.norm(), 0.18 * feet.leg_length) << in_reference;
+  }
+}
+
+TEST(ShortLegs, StandOnTheGroundThatTheyAreLedOver) {
+  const Clip source = walk_of(1.4).clip;
+  const Skeleton target = with_other_axes(chibi_skeleton(), 4);
+  const auto copy = transfer(source, target, {.feet = retarget::Feet::free});
+  ASSERT_TRUE(copy.ok());
+  const GroundBelow level = {[](const Vec3&) { return std::optional<double>(0); },
+                             [](const Vec3&) { return Vec3(Vec3::UnitY()); }};
+  const auto made = follow_feet(source, find_roles(source.skeleton), copy->clip, find_roles(target),
+                                copy->report.scale, level);
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  EXPECT_LT(made->sunk, 0.003);
+  for (const Contact& contact : made->contacts) {
+    const double height = contact.place.y();
+    if (target.names[at(contact.joint)].ends_with("Foot")) {
+      EXPECT_NEAR(height, kAnkle, 0.01);
+    } else {
+      EXPECT_NEAR(height, kToes, 0.003);
+    }
+  }
+  EXPECT_GE(made->contacts.size(), 8u);
+}
+
+// Feet were scaled by the legs alone: boots of 0.24 m stood 0.04 m apart, and a toy's stance on a
+// person's legs was a straddle.
+TEST(ShortLegs, FeetAreAsFarFromTheirHipsAsTheSources) {
+  const samples::Walk walk = walk_of(1.75);
+  const auto onto_toy = transfer(walk.clip, with_other_axes(chibi_skeleton(), 4));
+  ASSERT_TRUE(onto_toy.ok());
+  Clip toy = onto_toy->clip;
+  const auto onto_person = transfer(toy, human_skeleton(1.75));
+  ASSERT_TRUE(onto_person.ok());
+  for (const auto& [source, made] : {std::pair(&walk.clip, &*onto_toy), {&toy, &*onto_person}}) {
+    const Clip& clip = made->clip;
+    const double scale = made->report.scale;
+    const double wider = 0.5 * (width_of(clip) - scale * width_of(*source));
+    ASSERT_GT(std::abs(wider), 0.05);
+    for (const std::size_t side : {0, 1}) {
+      const Role foot = side == 0 ? Role::left_foot : Role::right_foot;
+      const int theirs = joint_of(*source, foot), own = joint_of(clip, foot);
+      int stances = 0;
+      for (const samples::Contact& heel : walk.feet[side].heel) {
+        for (const samples::Contact& toe : walk.feet[side].toe) {
+          const double from = std::max(heel.from, toe.from), to = std::min(heel.to, toe.to);
+          if (to - from < 0.1) continue;
+          ++stances;
+          Eigen::AlignedBox3d off;
+          for (auto f = static_cast<int>(std::ceil((from + 0.02) * clip.rate));
+               f < (to - 0.02) * clip.rate; ++f) {
+            off.extend(place_of(clip, f, own) - scale * place_of(*source, f, theirs));
+          }
+          // To the side, not ahead, and by the same in all of a stance.
+          EXPECT_NEAR(off.center().x(), side == 0 ? wider : -wider, 0.1 * std::abs(wider));
+          EXPECT_LT(off.sizes().maxCoeff(), 0.008);
+        }
+      }
+      EXPECT_GE(stances, 2);
+    }
+  }
+}
+
+TEST(ShortLegs, HipsAsPeopleHaveThemMoveNoFeet) {
+  EXPECT_EQ(beside_for_hips(0.2, 0.12, 0.8), 0);
+  EXPECT_EQ(beside_for_hips(0.12, 0.2, 0.8), 0);
+  EXPECT_NEAR(beside_for_hips(0.34, 0.08, 0.37), 0.13, 1e-12);
+  EXPECT_NEAR(beside_for_hips(0.2, 0.7, 0.8), -0.25, 1e-12);
+  EXPECT_EQ(beside_for_hips(0.2, 0.1, 0), 0);
+}
+
+// The most that a knee bends or straightens in a frame, degrees.
+double knee_step(const Clip& clip) {
+  double most = 0;
+  for (const LegRoles& leg : kLegRoles) {
+    const int hip = joint_of(clip, leg.upper), knee = joint_of(clip, leg.lower),
+              ankle = joint_of(clip, leg.foot);
+    double before = -1;
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      const Vec3 middle = place_of(clip, f, knee);
+      const double bend =
+          degrees_between(middle - place_of(clip, f, hip), place_of(clip, f, ankle) - middle);
+      if (before >= 0) most = std::max(most, std::abs(bend - before));
+      before = bend;
+    }
+  }
+  return most;
+}
+
+// A leg that is too short for its steps straightened from 25 degrees and more in a frame.
+TEST(ShortLegs, KneesDoNotSnapStraight) {
+  samples::WalkOptions options;
+  options.steps = 6;
+  options.step_length = 0.95;
+  const auto walk = samples::make_walk(options);
+  ASSERT_TRUE(walk.ok());
+  for (const double stature : {1.25, 1.1}) {
+    const auto made =
+        transfer(walk->clip, with_other_axes(human_skeleton(stature), 4), {.scale = 1});
+    ASSERT_TRUE(made.ok());
+    EXPECT_GT(made->report.left_foot->largest_miss, 0.01);
+    EXPECT_LT(knee_step(made->clip), 2 * knee_step(walk->clip)) << stature;
+  }
+}
+
+}  // namespace
+}  // namespace krok
