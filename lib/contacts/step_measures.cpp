@@ -31,11 +31,46 @@ Vec3 mean_position(const Clip& clip, int joint, double from, double to) {
   return sum / (end - first + 1);
 }
 
+// The stances that the clip's ends cut off, if their middle third is within it: the rest is taken
+// to last as long as whole ones do.
+std::vector<StanceTimes> cut_stances(const std::vector<Keytime>& keytimes, FootSide side,
+                                     double duration) {
+  std::vector<double> lengths;
+  for (const FootSide foot : {FootSide::left, FootSide::right}) {
+    for (const StanceTimes& stance : stance_times(keytimes, foot)) {
+      lengths.push_back(stance.off - stance.strike);
+    }
+  }
+  std::vector<StanceTimes> cut;
+  if (lengths.empty()) return cut;
+  const double usual = upper_median(lengths);
+  const Keytime *first = nullptr, *last = nullptr;
+  for (const Keytime& key : keytimes) {
+    if (!key.name.starts_with(name_of(side))) continue;
+    if (first == nullptr) first = &key;
+    last = &key;
+  }
+  if (first == nullptr) return cut;
+  if (first->name.ends_with("_off") && first->time > 2 * usual / 3) {
+    cut.push_back({first->time - usual, first->time});
+  }
+  if (last->name.ends_with("_strike") && duration - last->time > 2 * usual / 3) {
+    cut.push_back({last->time, last->time + usual});
+  }
+  return cut;
+}
+
 std::vector<FootPlace> places_of(const Clip& clip, const std::array<int, 2>& ankles,
-                                 const std::vector<Keytime>& keytimes) {
+                                 const std::vector<Keytime>& keytimes, bool with_cut) {
   std::vector<FootPlace> places;
   for (const std::size_t side : {0, 1}) {
-    for (const StanceTimes& stance : stance_times(keytimes, static_cast<FootSide>(side))) {
+    const auto foot = static_cast<FootSide>(side);
+    std::vector<StanceTimes> stances = stance_times(keytimes, foot);
+    if (with_cut) {
+      const auto cut = cut_stances(keytimes, foot, clip.duration());
+      stances.insert(stances.end(), cut.begin(), cut.end());
+    }
+    for (const StanceTimes& stance : stances) {
       const double third = (stance.off - stance.strike) / 3;
       places.push_back(
           {side, 0.5 * (stance.strike + stance.off),
@@ -50,14 +85,12 @@ std::optional<double> median_if_any(const std::vector<double>& values) {
   return values.empty() ? std::nullopt : std::optional(upper_median(values));
 }
 
-}  // namespace
-
-StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
-                           const std::vector<Keytime>& keytimes) {
+StepMeasures measures_of(const Clip& clip, const RoleMap& roles,
+                         const std::vector<Keytime>& keytimes, bool with_cut) {
   StepMeasures measures;
   const std::array<int, 2> ankles = {roles.joint(Role::left_foot), roles.joint(Role::right_foot)};
   if (ankles[0] < 0 || ankles[1] < 0 || clip.frame_count() == 0) return measures;
-  const std::vector<FootPlace> places = places_of(clip, ankles, keytimes);
+  const std::vector<FootPlace> places = places_of(clip, ankles, keytimes, with_cut);
   std::vector<double> speeds, strides, widths;
   int pairs = 0, alike = 0;
   Vec3 before = Vec3::Zero();  // the stride of the step before
@@ -108,6 +141,15 @@ StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
   measures.step_width = median_if_any(widths);
   if (pairs > 0) measures.steadiness = static_cast<double>(alike) / pairs;
   return measures;
+}
+
+}  // namespace
+
+StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
+                           const std::vector<Keytime>& keytimes) {
+  const StepMeasures whole = measures_of(clip, roles, keytimes, false);
+  if (whole.step_length[0] && whole.step_length[1]) return whole;
+  return measures_of(clip, roles, keytimes, true);
 }
 
 }  // namespace krok

@@ -24,6 +24,13 @@ struct StepMeasures {
   // along: nearly all of a walk or run, few of a dance or a fight.
   std::optional<double> steadiness;
 
+  // Whether it is a walk or a run: two strides in a row that go on at 0.3 metres per second or
+  // more.
+  bool are_gait() const {
+    constexpr double kMinSpeed = 0.3;  // metres per second
+    return steadiness.has_value() && speed.value_or(0) >= kMinSpeed && are_steady();
+  }
+
   // Steps that go to and fro are no gait. Of steps on the spot, or of one alone, it cannot be
   // known.
   bool are_steady() const {
@@ -33,8 +40,9 @@ struct StepMeasures {
 };
 
 // A foot's place is the mean position of its ankle in the middle third of a stance, which is from a
-// strike to the toe-off after it. A step is three places in turn (left, right, left, ..), each
-// within three seconds of the next.
+// strike to the toe-off after it. Where whole stances give no step of a foot, those that the clip
+// cuts off count, too, if their middle third is within it. A step is three places in turn (left,
+// right, left, ..), each within three seconds of the next.
 StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
                            const std::vector<Keytime>& keytimes);
 

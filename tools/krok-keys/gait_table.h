@@ -20,7 +20,11 @@ struct GaitFacts {
   double slide_speed = 0;  // metres per second
   // Where both feet fly, no foot could be still: the slide says nothing.
   bool is_run() const { return gait.cycles > 0 && gait.double_support <= 0; }
-  const char* name() const { return !steps.are_steady() ? "unsteady" : is_run() ? "run" : "walk"; }
+  // Empty where no gait shows.
+  const char* name() const {
+    if (!steps.are_steady()) return "unsteady";
+    return !steps.are_gait() ? "" : is_run() ? "run" : "walk";
+  }
 };
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes);
 

@@ -13,6 +13,7 @@
 #include "contacts/slide_speed.h"
 #include "contacts/step_measures.h"
 #include "events.h"
+#include "motion/cut.h"
 
 namespace krok {
 namespace {
@@ -173,6 +174,39 @@ TEST(Cycloid, StepsToAndFroAreNoGait) {
   EXPECT_EQ(dance.steps, walk.steps);
   EXPECT_LT(dance.steadiness.value(), 0.3);
   EXPECT_FALSE(dance.are_steady());
+}
+
+// Would fail if a straight walk of two cycles had no speed, as none of its strides has three whole
+// stances.
+TEST(Cycloid, StancesThatTheEndsCutCount) {
+  samples::WalkOptions options;
+  options.steps = 10;
+  options.rate = 60;
+  const samples::Walk walk = samples::make_walk(options).value();
+  const double begin = walk.feet[0].strikes[1] - 0.05;
+  const auto first = static_cast<int>(std::lround(begin * 60));
+  const auto last = static_cast<int>(std::lround((begin + 3.2 * walk.step_time) * 60));
+  const Clip clip = cut(walk.clip, first, last);
+  const StepMeasures steps =
+      step_measures(clip, find_roles(clip.skeleton), test::keytimes_of(clip));
+  EXPECT_GE(steps.steps, 1);
+  EXPECT_NEAR(steps.speed.value_or(0), options.step_length / walk.step_time, 0.05);
+  EXPECT_NEAR(steps.stride_length.value_or(0), 2 * options.step_length, 0.05);
+}
+
+// Would fail if steps on the spot passed for a walk or a run.
+TEST(Cycloid, StepsOnTheSpotAreNoGait) {
+  samples::WalkOptions options;
+  options.steps = 10;
+  const auto measured = [&] {
+    const Clip clip = samples::make_walk(options).value().clip;
+    return step_measures(clip, find_roles(clip.skeleton), test::keytimes_of(clip));
+  };
+  EXPECT_TRUE(measured().are_gait());
+  options.step_length = 0;
+  EXPECT_FALSE(measured().are_gait());
+  options.turn = 40 * kRadiansPerDegree;
+  EXPECT_FALSE(measured().are_gait());
 }
 
 TEST(Cycloid, PlacesAreTheJoints) {
