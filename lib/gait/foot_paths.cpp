@@ -113,6 +113,10 @@ FootPose Stance::rolled(FootPose foot, double angle) const {
   return foot;
 }
 
+void Stance::be_flat(double time, double latest) {
+  flat_from = std::max(time, std::min(strike + kShortestRamp, latest));
+}
+
 void Stance::land(const SlopeGait& gait, double flat) {
   gait_ = gait;
   flat_from = std::max(flat_from, strike + gait.forefoot * (flat - strike));

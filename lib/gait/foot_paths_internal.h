@@ -47,6 +47,9 @@ class Stance {
   // From `from` on, where the heel rises, rolls over the ball further than the blend: by `angle` at
   // toe-off. `from` is at least flat_from and becomes flat_to if that is later.
   void roll_further(double angle, double from);
+  // Flat from `time` on, or from 60 ms after the strike if that is later, but not after `latest`: a
+  // foot that is flat at once stops dead, and the swing before throws its toes up to match that.
+  void be_flat(double time, double latest);
   // How the foot strikes, other than in the blend. With `gait.forefoot` its ball is on the ground
   // from the strike on, and its heel comes down until `flat`, which is flat_from if that is
   // earlier.

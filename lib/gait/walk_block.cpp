@@ -170,7 +170,7 @@ void WalkBlock::begin_stance(std::size_t print) {
   }
   if (!series.empty()) {
     series.front().time = stance.strike;
-    stance.flat_from = time_of_flat(series);
+    stance.be_flat(time_of_flat(series), middle);
     stance.land(steps[print - 2].gait, std::lerp(stance.strike, middle, kHeelDown));
   }
   changed_stance(print) = stance;

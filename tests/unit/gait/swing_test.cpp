@@ -68,5 +68,29 @@ TEST(Swing, ToesAreRaisedByTheAnkleBeforeTheFoot) {
   EXPECT_LT(raised, 0.02);
 }
 
+// Would fail if a foot that lands nearly flat were flat at once: its swing then takes on a velocity
+// that no foot has, and throws the toes up by a decimetre to do so.
+TEST(Stance, AFootThatLandsNearlyFlatDoesNotStopDead) {
+  const Leg leg = plain_leg();
+  const auto pitched = [](double degrees) {
+    FootPose foot;
+    foot.foot.orientation = from_rotation_vector(Vec3(-degrees * kRadiansPerDegree, 0, 0));
+    foot.toes = foot.foot.orientation;
+    return foot;
+  };
+  Stance stance(leg, GroundedPrint(), pitched(0));
+  stance.strike = 1;
+  stance.flat_to = stance.off = 2;
+  stance.be_flat(1.01, 1.3);
+  const Quat lands = stance.at(1, pitched(6)).foot.orientation;
+  const Quat after = stance.at(1.01, pitched(4)).foot.orientation;
+  // No more than half as fast again as the blend.
+  EXPECT_LT(lands.angularDistance(after), 3 * kRadiansPerDegree);
+  EXPECT_LT(stance.at(1.07, pitched(2)).foot.orientation.angularDistance(Quat::Identity()), 1e-6);
+  // The middle of the stance is flat in any case.
+  stance.be_flat(1.01, 1.02);
+  EXPECT_EQ(stance.flat_from, 1.02);
+}
+
 }  // namespace
 }  // namespace krok::gait
