@@ -379,4 +379,17 @@ Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
   return found;
 }
 
+int middle_frame(const Contact& contact, double rate, int frames) {
+  const double middle = 0.5 * (contact.start + contact.end) * rate;
+  return static_cast<int>(std::clamp<double>(std::lround(middle), 0, frames - 1));
+}
+
+void place_contacts(const Clip& clip, std::span<Contact> contacts) {
+  if (clip.frame_count() == 0) return;
+  for (Contact& contact : contacts) {
+    const auto places = clip.frame_positions(middle_frame(contact, clip.rate, clip.frame_count()));
+    contact.place = places[static_cast<std::size_t>(contact.joint)].cast<double>();
+  }
+}
+
 }  // namespace krok

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "contacts/sole_points.h"
@@ -68,5 +69,12 @@ struct FoundContacts {
 // character floats or walks on a treadmill), contacts-short (fewer than three frames).
 Result<FoundContacts> find_contacts(const Clip& clip, const RoleMap& roles,
                                     const ContactOptions& options = {});
+
+// The frame halfway through a contact, of a motion that has frames.
+int middle_frame(const Contact& contact, double rate, int frames);
+
+// Sets the places of contacts to where the motion has their joints halfway through: those of a
+// motion in place move.
+void place_contacts(const Clip& clip, std::span<Contact> contacts);
 
 }  // namespace krok

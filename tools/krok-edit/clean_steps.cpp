@@ -8,6 +8,7 @@
 
 #include "capture/rest_frame.h"
 #include "contacts/contacts.h"
+#include "contacts/legs.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "filter/noise_filter.h"
@@ -295,6 +296,25 @@ Status warn_of_rest_frame(const Options& options, ToolContext& context, const Ed
   return {};
 }
 
+// How far the heels and balls of three cycles move in a loop while they stand, metres. The first
+// and last stays may be cut off.
+Result<double> drift_of(const std::vector<FixedStay>& stays, const Looped& looped, int carrier) {
+  auto cycles = repeated(looped.clip, looped.displacement, 3);
+  if (!cycles) return cycles.error();
+  if (auto moving = travelling(*cycles, carrier)) cycles = *std::move(moving);
+  const int period = looped.clip.frame_count() - 1;
+  double drift = 0;
+  for (const FixedStay& stay : stays) {
+    if (stay.point.part == FootPart::tip || stay.last < period || stay.first > 2 * period) continue;
+    Eigen::AlignedBox3d places;
+    for (int f = stay.first; f <= stay.last; ++f) {
+      places.extend(joint_at(*cycles, f, stay.point.joint) * stay.point.offset);
+    }
+    drift = std::max(drift, places.diagonal().norm());
+  }
+  return drift;
+}
+
 }  // namespace
 
 Status clean(const Options& options, ToolContext& context, Edit& edit) {
@@ -320,8 +340,8 @@ Status plant(const Options& options, ToolContext& context, Edit& edit) {
   return {};
 }
 
-Status plant_loop(const Options& options, const Edit& edit, Looped& looped) {
-  if (!options.plant) return {};
+Result<double> plant_loop(const Options& options, const Edit& edit, Looped& looped) {
+  if (!options.plant) return 0.0;
   constexpr int kCycles = 3;
   const auto cycles = repeated(looped.clip, looped.displacement, kCycles);
   if (!cycles) return cycles.error();
@@ -330,7 +350,7 @@ Status plant_loop(const Options& options, const Edit& edit, Looped& looped) {
   if (!contacts) return contacts.error();
   // A loop in which no foot is in contact has nothing to hold.
   const auto planted = cli::plant(*cycles, edit.roles, std::move(contacts->contacts));
-  if (!planted) return {};
+  if (!planted) return 0.0;
   const int period = looped.clip.frame_count() - 1;
   Clip middle = cut(planted->clip, period, 2 * period);
   move_clip(looped.displacement.inverse(), middle);
@@ -343,7 +363,7 @@ Status plant_loop(const Options& options, const Edit& edit, Looped& looped) {
   if (!closed) return closed.error();
   looped.clip = std::move(closed->clip);
   looped.displacement = closed->displacement;
-  return {};
+  return drift_of(planted->stays, looped, edit.carrier);
 }
 
 }  // namespace krok::cli::edit

@@ -33,9 +33,11 @@ void declare_presets(CommandOptions& command, Options& o) {
   command
       .add_flag("--game-loop", o.game_loop,
                 "A loop for a game engine: --plant --cycle auto --loop-turn straighten --treadmill "
-                "--at-origin, travelling towards +Z (facing +Z if it walks sideways or stays). The "
-                "velocity that was removed is printed and stored, in the .anim and by krok-skin "
-                "and krok-export in the animation's extras. Steps that are given replace these")
+                "--at-origin, travelling towards +Z (away from it if it walks backwards, facing it "
+                "if it walks sideways or stays). The velocity that was removed is printed and "
+                "stored, in the .anim and by krok-skin and krok-export in the animation's extras. "
+                "Steps that are given replace these. A loop in place is kept as it is; its "
+                "velocity is the speed of its feet")
       .not_with({"--sequences", "--rounds"});
 }
 

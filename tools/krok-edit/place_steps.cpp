@@ -5,10 +5,13 @@
 #include <cmath>
 
 #include "character/space.h"
+#include "contacts/loop_steps.h"
+#include "contacts/slide_speed.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "motion/ground_frame.h"
 #include "motion/place.h"
+#include "motion/travel.h"
 #include "roles/stature.h"
 #include "scene/frame_blocks.h"
 #include "settle/settle.h"
@@ -18,21 +21,38 @@ namespace krok::cli::edit {
 
 namespace {
 
-// The heading of the removed travel, or of the character where it walks sideways, backwards or
-// hardly at all.
-double forward(const Edit& edit) {
-  constexpr double kForward = 30 * kRadiansPerDegree;
-  constexpr double kWalks = 0.1;  // metres per second
+// The mean facing of a joint, radians.
+double facing_of(const Clip& clip, int joint) {
   Vec2 facing = Vec2::Zero();
-  for (int f = 0; f < edit.clip.frame_count(); ++f) {
-    const double heading = ground_frame(edit.clip, edit.carrier, f).heading;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const double heading = ground_frame(clip, joint, f).heading;
     facing += Vec2(std::sin(heading), std::cos(heading));
   }
-  const double mean = std::atan2(facing.x(), facing.y());
+  return std::atan2(facing.x(), facing.y());
+}
+
+// The heading of the removed travel, or its opposite where the character walks backwards. Where it
+// walks sideways or hardly at all, the facing of its head, as the pelvis may be turned by its
+// stance.
+double forward(const Edit& edit) {
+  constexpr double kAlong = 55 * kRadiansPerDegree;
+  constexpr double kWalks = 0.1;  // metres per second
+  std::vector<double> facings;
+  for (const Role role : {Role::head, Role::chest}) {
+    const int joint = edit.roles.joint(role);
+    if (joint >= 0) facings.push_back(facing_of(edit.clip, joint));
+  }
+  if (facings.empty()) facings.push_back(facing_of(edit.clip, edit.carrier));
   const auto& removed = edit.clip.provenance.removed_root_motion;
-  if (!removed || removed->velocity.norm() < kWalks) return mean;
-  const double travel = std::atan2(removed->velocity.x(), removed->velocity.z());
-  return std::abs(wrapped(travel - mean)) < kForward ? travel : mean;
+  const Vec3 velocity = removed ? removed->velocity : Vec3::Zero();
+  if (std::hypot(velocity.x(), velocity.z()) < kWalks) return facings.front();
+  const double travel = std::atan2(velocity.x(), velocity.z());
+  const auto is_along = [&](double way) {
+    return std::ranges::any_of(
+        facings, [&](double facing) { return std::abs(wrapped(way - facing)) < kAlong; });
+  };
+  if (is_along(travel)) return travel;
+  return is_along(travel + kPi) ? travel + kPi : facings.front();
 }
 
 std::string velocity_text(const RootMotion& removed) {
@@ -76,16 +96,36 @@ Status warn_of_level_ground(const FrameSource& frames, const Edit& edit, ToolCon
 
 }  // namespace
 
-void complete_game_loop(Options& options) {
+// Whether a motion is a loop in place; then what its feet show is its root motion, if none was
+// taken out of it.
+bool take_root_motion(Edit& edit) {
+  const auto displacement = loop_displacement(edit.clip, edit.carrier);
+  if (!displacement || !is_in_place(*displacement, edit.clip.skeleton)) return false;
+  auto& removed = edit.clip.provenance.removed_root_motion;
+  if (removed) return true;
+  const Vec3 velocity = velocity_of_feet(edit.clip, edit.roles);
+  removed.emplace().velocity = velocity;
+  edit.note("feet",
+            {{"speed", velocity.norm()}, {"velocity", {velocity.x(), velocity.y(), velocity.z()}}},
+            velocity.isZero() ? "a loop in place whose feet do not walk: its velocity is 0 m/s"
+                              : "a loop in place; an engine moves it at the speed of its feet, " +
+                                    velocity_text(*removed));
+  return true;
+}
+
+void complete_game_loop(Options& options, Edit& edit) {
   if (!options.game_loop) return;
   const bool ends = options.from || options.to;
+  const bool changed = ends || options.cycle != CycleFoot::none || !options.append.empty();
+  edit.kept_loop = take_root_motion(edit) && !changed;
+  if (edit.kept_loop) return;
+  options.at_origin = true;
   options.plant = true;
   if (options.cycle == CycleFoot::none && !(ends && options.loop)) {
     options.cycle = CycleFoot::either;
   }
   if (options.looping.turn == LoopTurn::automatic) options.looping.turn = LoopTurn::straighten;
   options.treadmill = !options.in_place;
-  options.at_origin = true;
 }
 
 Status take_out_travel(const Options& options, ToolContext& context, Edit& edit) {
@@ -108,6 +148,12 @@ Status take_out_travel(const Options& options, ToolContext& context, Edit& edit)
   }
   Status status = edit.take(in_place(source, edit.carrier, removed, thread_count(context.jobs)));
   if (!status) return status;
+  if (edit.climb_rate != 0) {
+    Provenance kept = edit.clip.provenance;
+    edit.clip = carried_along(edit.clip, edit.carrier, {Vec3(0, -edit.climb_rate, 0), 0});
+    edit.clip.provenance = std::move(kept);
+    root_motion->velocity.y() += edit.climb_rate;
+  }
   const bool all = removed == Travel::all;
   Json metrics;
   metrics["removed"] = all ? "all" : "trend";
@@ -172,7 +218,7 @@ Status change_place(const Options& options, ToolContext& context, Edit& edit) {
   const auto degrees = [](double angle) { return readable(angle / kRadiansPerDegree, 4); };
   if (options.at_origin) apply(to_origin(clip, edit.carrier), "starts above the origin");
   auto& root_motion = clip.provenance.removed_root_motion;
-  if (options.game_loop && !options.heading && !options.re_orient) {
+  if (options.game_loop && !edit.kept_loop && !options.heading && !options.re_orient) {
     const double turn = -forward(edit);
     apply(turned_about_start(clip, edit.carrier, turn),
           fmt::format("turned by {} deg to +Z", degrees(turn)));
@@ -216,6 +262,11 @@ Status change_place(const Options& options, ToolContext& context, Edit& edit) {
     const Vec3& velocity = root_motion->velocity;
     metrics["velocity"] = {velocity.x(), velocity.y(), velocity.z()};
     line += fmt::format("; an engine moves it at {}", velocity_text(*root_motion));
+    // Of what is written, which may slide where the seam was closed.
+    const auto moving = travelling(clip, edit.carrier);
+    const double slide = slide_speed(moving ? *moving : clip, edit.roles);
+    metrics["slide_speed"] = slide;
+    line += fmt::format(", the lower foot then slides at {} mm/s", readable(1000 * slide, 3));
   }
   metrics["moved"] = {move.position.x(), move.position.y(), move.position.z()};
   metrics["turned"] = to_degrees(2 * std::atan2(move.orientation.y(), move.orientation.w()));

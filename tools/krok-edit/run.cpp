@@ -130,7 +130,7 @@ Status read_surroundings(const Options& options, ToolContext& context, Edit& edi
 }
 
 // Reads all inputs, each opened once.
-Result<Edit> read_inputs(const InputFile& input, const Options& options, ToolContext& context) {
+Result<Edit> read_inputs(const InputFile& input, Options& options, ToolContext& context) {
   Edit edit;
   auto clip = io::open_motion(input, context);
   if (!clip) return clip.error();
@@ -138,6 +138,7 @@ Result<Edit> read_inputs(const InputFile& input, const Options& options, ToolCon
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   if (Status status = find_carrier(*find_roles, edit); !status) return status.error();
+  complete_game_loop(options, edit);
   if (options.plant) {
     auto contacts =
         read_planting_contacts(options.contacts, options.input, frames_of(edit.clip), context);
@@ -344,7 +345,6 @@ void Edit::complete_note(std::function<std::string(Edit&, Json& metrics)> comple
 
 Result<int> run(const Options& given, ToolContext& context) {
   Options options = given;
-  complete_game_loop(options);
   if (options.list_sequences) return list_sequences(options, context);
   if (context.output.empty()) return no_output_for(options.input);
   if (!has_step(context)) {

@@ -39,9 +39,11 @@ struct Edit {
   std::shared_ptr<const Terrain> ground;         // to settle on
   std::shared_ptr<const Model> model;            // to settle, or none
 
-  double speed = 1;      // of options and sequence together
-  bool loop = false;     // of options or sequence
-  double turn_rate = 0;  // radians per second that straightening a loop took out
+  double speed = 1;        // of options and sequence together
+  bool loop = false;       // of options or sequence
+  bool kept_loop = false;  // it is a loop in place already, and stays as it is
+  double turn_rate = 0;    // radians per second that straightening a loop took out
+  double climb_rate = 0;   // metres per second that a loop for an engine gains in height
   Json steps = Json::array();
   std::vector<std::string> lines;  // what was done, for display and provenance
 
@@ -61,8 +63,10 @@ struct Edit {
 // "12.5 deg"; "0 deg" below 1e-4 degrees.
 std::string in_degrees(double radians);
 
-// The options that --game-loop sets, where they are not given.
-void complete_game_loop(Options& options);
+// The options that --game-loop sets, where they are not given. A motion that is a loop in place
+// already is neither cut nor changed at its seam; the velocity at which its feet stay on the ground
+// becomes its root motion.
+void complete_game_loop(Options& options, Edit& edit);
 
 // Whether all steps can do without the whole motion in memory: those that change Edit::frames where
 // it is set. All others are listed there.
@@ -76,7 +80,8 @@ Status clean(const Options& options, ToolContext& context, Edit& edit);
 Status plant(const Options& options, ToolContext& context, Edit& edit);
 // With --plant: closing the seam moves feet that stood, so they are planted again, over three
 // cycles, of which the one in the middle repeats.
-Status plant_loop(const Options& options, const Edit& edit, Looped& looped);
+// Returns how far heels and balls drift in what it makes while they stand, metres.
+Result<double> plant_loop(const Options& options, const Edit& edit, Looped& looped);
 Status cut_out(const Options& options, ToolContext& context, Edit& edit);
 Status mirror_sides(const Options& options, ToolContext& context, Edit& edit);
 Status change_timing(const Options& options, ToolContext& context, Edit& edit);

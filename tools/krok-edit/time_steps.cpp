@@ -275,7 +275,7 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
     if (!retimed) return retimed.error();
     edit.clip = std::move(*retimed);
   } else {
-    const LastFrame last = edit.loop ? LastFrame::kept : LastFrame::within;
+    const LastFrame last = edit.loop || edit.kept_loop ? LastFrame::kept : LastFrame::within;
     Status status = edit.take(retime(before, rate, edit.speed, last));
     if (!status) return status;
   }
@@ -366,7 +366,8 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
   if (turned_again) looping.turn = LoopTurn::automatic;
   auto looped = loop(edit.clip, edit.carrier, looping);
   if (!looped) return std::move(looped.error()).in_file(options.input);
-  if (Status status = plant_loop(options, edit, *looped); !status) return status;
+  const auto drift = plant_loop(options, edit, *looped);
+  if (!drift) return drift.error();
   if (turned_again && looped->turn != 0) straighten(edit.carrier, *looped);
   // Up to kLoopDrift it is a capture's drift, which nobody wants back.
   if (std::abs(looped->straightened) > kLoopDrift) {
@@ -379,8 +380,23 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
                              in_degrees(looped->turn)),
                  "--loop-turn straighten takes the turn out, and keeps its rate");
   }
+  const double climb = looped->displacement.position.y();
+  if (climb != 0 && (options.in_place || options.treadmill)) {
+    if (options.game_loop) edit.climb_rate = climb / looped->clip.duration();
+    context.warn("edit-climb",
+                 fmt::format("the loop gains {} m in height in each cycle{}", readable(climb, 3),
+                             options.game_loop ? ", which is part of the velocity that is stored"
+                                               : ": in place it jumps back at its end"),
+                 options.game_loop
+                     ? "--loop-climb level blends it away at the seam"
+                     : "--loop-climb level blends it away at the seam, --game-loop takes it out");
+  }
   Json metrics = loop_json(*looped, edit);
   std::string line = loop_text(*looped, edit);
+  if (options.plant) {
+    metrics["drift"] = *drift;
+    line += fmt::format("; planted feet drift by up to {}", millimetres(*drift));
+  }
   if (to_degrees(looped->before.angle) > kPoorSeam) {
     context.warn("edit-seam",
                  fmt::format("poses at both ends differ by up to {} ({}), which the loop spreads "

@@ -7,13 +7,12 @@
 #include <cmath>
 #include <optional>
 
+#include "contacts/loop_steps.h"
 #include "contacts/slide_speed.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/field.h"
 #include "formats/io/open_motion.h"
-#include "motion/ground_frame.h"
-#include "motion/travel.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/shared/keys_sidecar.h"
@@ -115,10 +114,21 @@ Result<int> write_rows(const Options& options, const char* header, Rows* rows_of
 }  // namespace
 
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes) {
-  if (const auto moving = travelling(clip, carrying_joint(roles))) {
-    return gait_facts(*moving, roles, keytimes);
+  const auto moving = travelling_on_feet(clip, roles);
+  const double slide = slide_speed(moving ? *moving : clip, roles);
+  const auto rounds = rounds_of(clip, roles);
+  if (!rounds) {
+    return {gait_metrics(keytimes), step_measures(moving ? *moving : clip, roles, keytimes), slide};
   }
-  return {gait_metrics(keytimes), step_measures(clip, roles, keytimes), slide_speed(clip, roles)};
+  // Of a loop the steps of its circle, each counted once.
+  const std::vector<Keytime> all = in_rounds(keytimes, *rounds);
+  GaitFacts facts{gait_metrics(all), step_measures(rounds->clip, roles, all), slide};
+  const auto strikes = std::ranges::count_if(all, [&](const Keytime& key) {
+    return key.name.ends_with("_strike") && key.time * rounds->clip.rate < rounds->period;
+  });
+  facts.gait.cycles = std::min(facts.gait.cycles, static_cast<int>(strikes));
+  facts.steps.steps = std::min(facts.steps.steps, static_cast<int>(strikes));
+  return facts;
 }
 
 Result<int> write_gait_table(const Options& options, ToolContext& context) {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "contacts/contacts.h"
-#include "contacts/gait_keytimes.h"
 #include "contacts/long_take.h"
+#include "contacts/loop_steps.h"
 #include "core/numbers.h"
 #include "core/result.h"
 #include "core/text.h"
@@ -18,8 +18,6 @@
 #include "formats/chart/chart_writer.h"
 #include "formats/io/open_motion.h"
 #include "formats/keys/keys.h"
-#include "motion/ground_frame.h"
-#include "motion/travel.h"
 #include "scene/clip.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
@@ -135,14 +133,13 @@ struct Found {
 };
 
 Result<Found> find(const Clip& clip, const RoleMap& roles, ToolContext& context) {
-  auto contacts = find_contacts(clip, roles);
-  if (!contacts) return std::move(contacts).error();
-  Gait gait = find_gait(clip, roles, *contacts);
-  context.diagnose(contacts->warnings);
-  context.diagnose(gait.warnings);
+  auto steps = find_steps(clip, roles);
+  if (!steps) return std::move(steps).error();
+  context.diagnose(steps->contacts.warnings);
+  context.diagnose(steps->gait.warnings);
   Found found;
-  found.keys = {contacts->contacts, std::move(gait.keytimes)};
-  found.contacts = std::move(*contacts);
+  found.keys = {steps->contacts.contacts, std::move(steps->gait.keytimes)};
+  found.contacts = std::move(steps->contacts);
   return found;
 }
 
@@ -368,11 +365,10 @@ Result<int> run(const Options& options, ToolContext& context) {
   krok::keys::Sidecar sidecar = before->value_or(krok::keys::Sidecar{});
   std::optional<FoundContacts> contacts;
   // In place, feet on the ground move with it: steps are found in the motion as it travels.
-  const auto moving = travelling(*clip, carrying_joint(*roles));
+  const auto moving = travelling_on_feet(*clip, *roles);
   if (*finding) {
-    auto found = find(moving ? *moving : *clip, *roles, context);
+    auto found = find(*clip, *roles, context);
     if (!found) return std::move(found).error().in_file(options.input());
-    if (moving) place_contacts(*clip, found->keys.contacts);
     sidecar = with_edits(std::move(found->keys), sidecar);
     contacts = std::move(found->contacts);
   } else if (*before && (*before)->has_edits()) {

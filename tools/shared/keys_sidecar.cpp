@@ -7,13 +7,11 @@
 #include <filesystem>
 #include <utility>
 
-#include "contacts/gait_keytimes.h"
+#include "contacts/loop_steps.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
-#include "motion/ground_frame.h"
-#include "motion/travel.h"
 #include "tools/cli/file_name.h"
 
 namespace krok::cli {
@@ -22,12 +20,6 @@ namespace {
 
 constexpr double kFar = 0.05;  // metres; feet in contact slide by less
 
-// The frame halfway through a contact, of a motion that has frames.
-int frame_of(const Contact& contact, double rate, int frames) {
-  const double middle = 0.5 * (contact.start + contact.end) * rate;
-  return static_cast<int>(std::clamp<double>(std::lround(middle), 0, frames - 1));
-}
-
 // The median distance, in metres, of the contacts' places from where the motion has their joints;
 // 0 without contacts. What cannot be read is an error where all frames are.
 double distance_of_contacts(const MotionKeys& keys, const FrameSource& motion) {
@@ -35,7 +27,7 @@ double distance_of_contacts(const MotionKeys& keys, const FrameSource& motion) {
   std::vector<Quatf> turns(places.size());
   std::vector<double> distances;
   for (const Contact& contact : keys.contacts) {
-    const int frame = frame_of(contact, motion.rate, motion.frame_count);
+    const int frame = middle_frame(contact, motion.rate, motion.frame_count);
     if (!motion.read(frame, 1, places, turns)) continue;
     const Vec3 place = places[static_cast<std::size_t>(contact.joint)].cast<double>();
     distances.push_back((place - contact.place).norm());
@@ -115,27 +107,13 @@ Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::string& m
 
 Result<MotionKeys> find_keys(const std::string& path, const Clip& clip, const RoleMap& roles,
                              ToolContext& context) {
-  if (const auto moving = travelling(clip, carrying_joint(roles))) {
-    auto keys = find_keys(path, *moving, roles, context);
-    if (keys) place_contacts(clip, keys->contacts);
-    return keys;
-  }
-  auto contacts = find_contacts(clip, roles);
-  if (!contacts) return std::move(contacts).error();
-  Gait gait = find_gait(clip, roles, *contacts);
+  auto steps = find_steps(clip, roles);
+  if (!steps) return std::move(steps).error();
   const Location before = std::exchange(context.subject, Location{.file = path});
-  context.diagnose(contacts->warnings);
-  context.diagnose(gait.warnings);
+  context.diagnose(steps->contacts.warnings);
+  context.diagnose(steps->gait.warnings);
   context.subject = before;
-  return MotionKeys{std::move(contacts->contacts), std::move(gait.keytimes)};
-}
-
-void place_contacts(const Clip& clip, std::span<Contact> contacts) {
-  if (clip.frame_count() == 0) return;
-  for (Contact& contact : contacts) {
-    const auto places = clip.frame_positions(frame_of(contact, clip.rate, clip.frame_count()));
-    contact.place = places[static_cast<std::size_t>(contact.joint)].cast<double>();
-  }
+  return MotionKeys{std::move(steps->contacts.contacts), std::move(steps->gait.keytimes)};
 }
 
 Json to_json(std::span<const Keytime> keytimes) {

@@ -46,15 +46,11 @@ inline Result<std::optional<krok::keys::Sidecar>> read_keys_beside(const std::st
   return read_keys_beside(motion_path, frames_of(clip), context);
 }
 
-// Detects contacts and keytimes as krok-keys does, with warnings for doubtful results; in a motion
-// in place, while it travels as it did before. Warnings name `path`, the motion's. Code:
+// Detects contacts and keytimes as krok-keys does, with warnings for doubtful results; as
+// find_steps() finds them. Warnings name `path`, the motion's. Code:
 // contacts-feet.
 Result<MotionKeys> find_keys(const std::string& path, const Clip& clip, const RoleMap& roles,
                              ToolContext& context);
-
-// Sets the places of contacts to where the motion has their joints halfway through: those of a
-// motion in place move.
-void place_contacts(const Clip& clip, std::span<Contact> contacts);
 
 // Names and times for the report.
 Json to_json(std::span<const Keytime> keytimes);

@@ -110,10 +110,16 @@ TEST_F(GameLoop, ClosingTheSeamDoesNotMoveFeet) {
     clip.set_pose(f, pose);
   }
   write("uneven.anim", clip);
-  loop("uneven.anim");
+  const json steps = loop("uneven.anim");
   const Clip out = read("out.anim");
   const int end = out.frame_count() - 1;
   EXPECT_GT(still_frames(out, 1e-4), 0.8 * end) << "of " << end;
+  // What is printed is of the loop, not of the take before.
+  const auto looped =
+      std::ranges::find(steps, "loop", [](const json& step) { return step["step"]; });
+  ASSERT_NE(looped, steps.end());
+  EXPECT_LT((*looped)["drift"].get<double>(), 1e-2);
+  EXPECT_LT(steps.back()["slide_speed"].get<double>(), 0.03);
   for (const std::string& joint : out.skeleton.names) {
     EXPECT_LT((at(out, end, joint) - at(out, 0, joint)).norm(), 1e-5) << joint;
   }
@@ -238,6 +244,76 @@ TEST_F(GameLoop, TurningIsTakenOutWithItsRate) {
   const ToolRun kept =
       run_here("krok-edit", {"circle.anim", "--game-loop", "--loop-turn", "keep", "-o", "k.anim"});
   EXPECT_THAT(kept.err, HasSubstr("[edit-turn]"));
+}
+
+// Would fail if a loop of a pack of game animations, which is in place already, were cut, faded,
+// turned or refused, or stored as one that does not travel.
+TEST_F(GameLoop, ALoopInPlaceIsKept) {
+  walk("walk.anim", 0);
+  const json cut = loop("walk.anim");
+  Clip pack = read("out.anim");
+  const double speed = pack.provenance.removed_root_motion->velocity.norm();
+  pack.provenance = {};
+  write("pack.anim", pack);
+  const json steps = loop("pack.anim");
+  ASSERT_EQ(steps.size(), 1U);
+  EXPECT_EQ(steps[0]["step"], "feet");
+  EXPECT_NEAR(steps[0]["speed"].get<double>(), speed, 0.03 * speed);
+  const Clip out = read("out.anim");
+  EXPECT_TRUE(std::ranges::equal(out.positions, pack.positions));
+  ASSERT_TRUE(out.provenance.removed_root_motion);
+  EXPECT_NEAR(out.provenance.removed_root_motion->velocity.z(), speed, 0.03 * speed);
+  // Its steps are known, too.
+  const json gait = report_here("krok-keys", {"pack.anim"})["result"]["gait"];
+  EXPECT_EQ(gait["steps"], 2);
+  EXPECT_NEAR(gait["speed"].get<double>(), speed, 0.03 * speed);
+  EXPECT_NEAR(gait["cadence"].get<double>(), 120, 1);
+  // One that stands has no speed.
+  for (int f = 1; f < pack.frame_count(); ++f) {
+    std::ranges::copy(pack.frame_positions(0), pack.frame_positions(f).begin());
+    std::ranges::copy(pack.frame_orientations(0), pack.frame_orientations(f).begin());
+  }
+  write("idle.anim", pack);
+  EXPECT_EQ(loop("idle.anim")[0]["speed"], 0);
+  EXPECT_EQ(read("out.anim").provenance.removed_root_motion->velocity, Vec3(0, 0, 0));
+}
+
+// A fencer's pelvis faces sideways while head and chest look where the walk goes. Would fail if the
+// pelvis alone decided which way is forward.
+TEST_F(GameLoop, APelvisThatIsTurnedDoesNotTurnTheWalk) {
+  walk("walk.anim", 0);
+  Clip clip = read("walk.anim");
+  const auto hips = static_cast<std::size_t>(clip.skeleton.find("Hips"));
+  const Quatf turn = axis_rotation(Axis::y, 1.4).cast<float>();
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    Quatf& pelvis = clip.frame_orientations(f)[hips];
+    pelvis = turn * pelvis;
+  }
+  write("fencer.anim", clip);
+  loop("fencer.anim");
+  const Vec3 velocity = read("out.anim").provenance.removed_root_motion->velocity;
+  EXPECT_NEAR(velocity.z(), 1.4, 0.02);
+  EXPECT_NEAR(velocity.x(), 0, 0.02);
+}
+
+// Would fail if a loop that gains height jumped at its seam, without a word.
+TEST_F(GameLoop, AClimbIsPartOfTheVelocity) {
+  samples::WalkOptions options;
+  options.cadence = 120;
+  options.steps = 10;
+  options.rate = kRate;
+  options.rise = 0.1;
+  write("stairs.anim", samples::make_walk(options).value().clip);
+  const ToolRun run = run_here("krok-edit", {"stairs.anim", "--game-loop", "-o", "out.anim"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("[edit-climb]"));
+  const Clip out = read("out.anim");
+  EXPECT_NEAR(out.provenance.removed_root_motion->velocity.y(), 0.2, 0.01);
+  const int end = out.frame_count() - 1;
+  EXPECT_LT((at(out, end, "Hips") - at(out, 0, "Hips")).norm(), 1e-4);
+  const ToolRun in_place =
+      run_here("krok-edit", {"stairs.anim", "--cycle", "auto", "--treadmill", "-o", "in.anim"});
+  EXPECT_THAT(in_place.err, HasSubstr("[edit-climb]"));
 }
 
 }  // namespace
