@@ -240,7 +240,12 @@ class ConventionChooser {
   void take_mark(Conventions& conventions) const {
     const auto unit = mark();
     if (!unit) return;
-    conventions = {};
+    const Conventions seen = std::exchange(conventions, {});
+    // A reference pose that lies is turned up, whoever wrote it.
+    if (seen.reference_up != conventions.up) {
+      conventions.reference_up = seen.reference_up;
+      conventions.reference_forward = seen.reference_forward;
+    }
     conventions.unit = *unit;
     conventions.unit_confidence = conventions.up_confidence = conventions.forward_confidence =
         Confidence::certain;

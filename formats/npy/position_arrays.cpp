@@ -209,8 +209,9 @@ Result<PositionSkeleton> stated_columns(const ArrayFile& file, std::size_t colum
     if (!(parent < static_cast<double>(columns))) {
       return Error("npy-value", fmt::format("parents has {} for joint {}", parent, j));
     }
-    skeleton.joints.push_back(
-        {.name = texts[j], .parent = parent < 0 ? "" : texts[static_cast<std::size_t>(parent)]});
+    PositionJoint& joint = skeleton.joints.emplace_back();
+    joint.name = texts[j];
+    if (parent >= 0) joint.parent = texts[static_cast<std::size_t>(parent)];
   }
   return skeleton;
 }

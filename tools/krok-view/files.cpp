@@ -229,7 +229,7 @@ Result<MotionKeys> keys_of(const std::string& path, const Clip& clip, KeysChoice
 
 // The page contains the file itself; it is parsed for its errors and for what its keys tell of its
 // animations.
-Status add_glb(const std::string& path, std::vector<std::byte> bytes, const std::string& animation,
+Status add_glb(const std::string& path, std::vector<std::byte> bytes, const std::string& wanted,
                Files& files) {
   gltf::ReadOptions as_is;
   as_is.draco = false;
@@ -246,7 +246,7 @@ Status add_glb(const std::string& path, std::vector<std::byte> bytes, const std:
     glb.rates.push_back(chosen->sampling.rate);
   }
   Diagnostics ignored;
-  const auto shown_first = choose_animation(*scene, animation, path, ignored);
+  const auto shown_first = choose_animation(*scene, wanted, path, ignored);
   if (!shown_first) return shown_first.error();
   glb.animation = std::max(0, *shown_first);
   files.glbs.push_back(std::move(glb));

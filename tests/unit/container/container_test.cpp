@@ -27,7 +27,7 @@ using Bytes = std::vector<std::byte>;
 constexpr ContainerFormat kFormat = {registry::Kind::anim, registry::kAnimMagic, 1,
                                      kFlagFourComponents};
 
-Bytes bytes_of(std::string_view text) {
+Bytes bytes_from(std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));
   return {bytes.begin(), bytes.end()};
 }
@@ -46,10 +46,10 @@ void set(Bytes& file, std::size_t offset, T value) {
 
 Status write_two_sections(OutputFile& file) {
   ContainerWriter writer(file, kFormat, 1, 2);
-  if (Status status = writer.section("FIRST", bytes_of("abc")); !status) return status;
+  if (Status status = writer.section("FIRST", bytes_from("abc")); !status) return status;
   if (Status status = writer.begin("SECONDLY"); !status) return status;
   for (const char* part : {"de", "", "fgh"}) {
-    if (Status status = writer.append(bytes_of(part)); !status) return status;
+    if (Status status = writer.append(bytes_from(part)); !status) return status;
   }
   return writer.finish();
 }
@@ -120,14 +120,14 @@ TEST(Container, SectionsComeBack) {
 }
 
 TEST(Container, SaysWhatAForeignFileSeemsToBe) {
-  const Error bvh = error_of(bytes_of("HIERARCHY\nROOT Hips\n"));
+  const Error bvh = error_of(bytes_from("HIERARCHY\nROOT Hips\n"));
   EXPECT_EQ(bvh.code, "container-magic");
   EXPECT_EQ(bvh.message, "is a BVH text file, not a .anim file");
   EXPECT_EQ(bvh.hint, "import it with krok-import");
   EXPECT_EQ(bvh.where.byte_offset, 0);
   EXPECT_THAT(error_of({}).message, HasSubstr("an empty file"));
   EXPECT_THAT(error_of(samples::bytes_of(samples::model())).message, HasSubstr("a Krok model"));
-  EXPECT_THAT(error_of(bytes_of("glTF\2\0\0\0")).message, HasSubstr("a binary glTF file"));
+  EXPECT_THAT(error_of(bytes_from("glTF\2\0\0\0")).message, HasSubstr("a binary glTF file"));
 }
 
 TEST(Container, SaysThatAFileIsNewer) {
@@ -244,7 +244,7 @@ Error error_with_provenance(std::string_view text) {
   Bytes file = samples::bytes_of(samples::clip());
   const auto meta = static_cast<std::size_t>(at<std::uint64_t>(file, 64 + 5 * 32 + 8));
   file.resize(meta);
-  const Bytes replacement = bytes_of(text);
+  const Bytes replacement = bytes_from(text);
   file.insert(file.end(), replacement.begin(), replacement.end());
   set<std::uint64_t>(file, 64 + 5 * 32 + 16, replacement.size());
   samples::repair_header(file);

@@ -112,9 +112,9 @@ TEST(StatedArrays, ParentsThatAreNoneAreWarnedOf) {
   const Skeleton& skeleton = walk.walk.skeleton;
   for (std::size_t j = 0; j < skeleton.names.size(); ++j) {
     const int parent = skeleton.parents[j];
-    options.columns->joints.push_back(
-        {.name = skeleton.names[j],
-         .parent = parent < 0 ? "" : skeleton.names[static_cast<std::size_t>(parent)]});
+    auto& joint = options.columns->joints.emplace_back();
+    joint.name = skeleton.names[j];
+    if (parent >= 0) joint.parent = skeleton.names[static_cast<std::size_t>(parent)];
   }
   const auto read = [&] {
     Named places = {walk.common()[0], walk.common()[3]};
