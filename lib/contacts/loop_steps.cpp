@@ -337,9 +337,27 @@ std::vector<Keytime> in_rounds(const std::vector<Keytime>& keytimes, const Round
   return all;
 }
 
+namespace {
+
+// Whether a foot strikes twice.
+bool has_a_cycle(const std::vector<Keytime>& keytimes) {
+  return std::ranges::any_of(std::array{"left_strike", "right_strike"}, [&](const char* name) {
+    return std::ranges::count(keytimes, name, &Keytime::name) > 1;
+  });
+}
+
+}  // namespace
+
 Result<FoundSteps> find_steps(const Clip& clip, const RoleMap& roles) {
   const auto rounds = rounds_of(clip, roles);
   const auto moving = travelling_on_feet(clip, roles);
+  if (rounds && !moving) {
+    // A walk of several steps ends in its first pose, too, and shows them by itself.
+    auto plain = find_contacts(clip, roles);
+    if (!plain) return std::move(plain).error();
+    Gait gait = find_gait(clip, roles, *plain);
+    if (has_a_cycle(gait.keytimes)) return FoundSteps{*std::move(plain), std::move(gait)};
+  }
   const Clip& played = rounds ? rounds->clip : moving ? *moving : clip;
   auto contacts = find_contacts(played, roles);
   if (!contacts) return std::move(contacts).error();

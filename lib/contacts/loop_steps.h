@@ -51,7 +51,8 @@ struct FoundSteps {
   FoundContacts contacts;
   Gait gait;
 };
-// find_contacts() and find_gait() of a motion as it travels, and of a loop on its circle: contacts
+// find_contacts() and find_gait() of a motion as it travels, and of a loop that is in place, or in
+// which no foot strikes twice, on its circle: contacts
 // across the seam are two, and a keytime at the seam is at both ends. Contacts of a motion in place
 // are placed by place_contacts(). Where feet of a loop in place slide so much that events are
 // missing, they are when velocity_of_feet() has a foot on the ground, with warning gait-in-place.

@@ -23,7 +23,7 @@ struct MirrorPairs {
   // the pose faces aside.
   Vec3 across = Vec3::UnitX();
   double plane = 0;
-  int carrier = 0;   // what carrying_joint() gives
+  int carrier = 0;  // what carrying_joint() gives
 
   std::vector<int> unpaired() const;
 };

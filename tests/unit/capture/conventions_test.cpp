@@ -311,8 +311,8 @@ TEST(DetectConventions, NothingIsCertainWhereTheReferencePoseDoesNotStand) {
   EXPECT_EQ(found.up_confidence, Confidence::likely) << found.up_reason;
 }
 
-// Somebody lies still, the feet at the origin and the hands a little in the ground. Would fail if he
-// were taken for one who stands there, without a warning.
+// Somebody lies still, the feet at the origin and the hands a little in the ground. Would fail if
+// he were taken for one who stands there, without a warning.
 TEST(DetectConventions, WhoLiesStillWithFeetAtTheOriginMayLie) {
   const Skeleton upright = person(1, Direction::plus_y, Direction::plus_z);
   const Quat prone = axis_rotation(Axis::x, kPi / 2);
