@@ -197,7 +197,8 @@ ToolSpec make_spec() {
   const auto options = std::make_shared<Options>();
   ToolSpec spec = spec_of("krok-ik", options, declare, check, run);
   spec.summary = "Brings joints of a motion to goals by inverse kinematics";
-  spec.details = "Feet stay where they stand, and with --limits joints within their ranges of motion.";
+  spec.details =
+      "Feet stay where they stand, and with --limits joints within their ranges of motion.";
   spec.inputs = "IN.anim";
   spec.writes = registry::Kind::anim;
   spec.needs_output = false;  // --save-limits alone is enough
