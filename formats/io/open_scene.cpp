@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "character/mesh.h"
 #include "character/scene_motion.h"
@@ -281,6 +282,8 @@ std::vector<std::string> addresses_in(const std::string& path, const GivenLimits
   PlainInputs inputs;
   inputs.limits = limits;
   inputs.jobs = 1;
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) return {path};  // pipes are read once
   const auto file = InputFile::open(path);
   if (!file) return {path};
   const Format& format = format_of(*file);

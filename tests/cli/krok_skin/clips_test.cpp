@@ -172,6 +172,12 @@ TEST_F(SkinClips, EachAnimationOfAFileIsAMotion) {
   const ToolRun table = tool("krok-info", {"more"});
   EXPECT_THAT(table.out,
               AllOf(HasSubstr("  2 animations  "), HasSubstr("\n8 animations in scenes")));
+  // Would fail if a pipe were read to look for animations, and then again.
+  ToolOptions piped;
+  piped.folder = folder_.string();
+  piped.input = get(path("in.anim"));
+  EXPECT_EQ(
+      run_tool("krok-skin", {"in.model", "-", "run.anim", "-o", "piped.glb"}, piped).exit_code, 0);
   const ToolRun none = tool("krok-edit", {"hero.glb#walk", "--turn", "1deg", "-o", "x.anim"}, 2);
   EXPECT_THAT(none.err, AllOf(HasSubstr("there is no animation walk"), HasSubstr("1 (run)")));
   // A file of the whole name comes first.
