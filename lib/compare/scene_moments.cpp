@@ -190,15 +190,15 @@ ListMatch by_name(const SceneComparison& comparison, const std::vector<std::stri
 // "; only in the first: animation Walk, animation Run and 2 more"
 std::string only_in(const char* which, const std::vector<int>& animations,
                     const std::vector<std::string>& names) {
-  constexpr std::size_t kShown = 3;
+  constexpr std::size_t kNamed = 3;
   if (animations.empty()) return {};
   std::string text = fmt::format("; only in the {}: ", which);
-  for (std::size_t k = 0; k < std::min(kShown, animations.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kNamed, animations.size()); ++k) {
     const int animation = animations[k];
     text += (k > 0 ? ", " : "") +
             label("animation", names[static_cast<std::size_t>(animation)], animation);
   }
-  if (animations.size() > kShown) text += fmt::format(" and {} more", animations.size() - kShown);
+  if (animations.size() > kNamed) text += fmt::format(" and {} more", animations.size() - kNamed);
   return text;
 }
 
