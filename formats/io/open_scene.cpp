@@ -316,9 +316,9 @@ std::vector<std::string> addresses_in(const std::string& path, const GivenLimits
     name.erase(0, name.rfind('|') + 1);  // npos + 1 is 0
     if (!is(name, animation) || name.find('/') != std::string::npos) {
       name = std::to_string(animation);
-      if (!is(name, animation)) name = "#" + name;  // another one is called so
+      if (!is(name, animation)) name.insert(0, 1, '#');  // another one is called so
     }
-    addresses.push_back(path + "#" + name);
+    addresses.push_back(fmt::format("{}#{}", path, name));
   }
   return addresses;
 }

@@ -193,12 +193,12 @@ Diagnostics beyond_ranges(const Outcome& outcome) {
   const auto& excesses = outcome.motion.excesses;
   const auto worst = std::ranges::max_element(excesses, {}, &krok::ik::GoalMotion::Excess::angle);
   if (worst == excesses.end() || worst->angle < kFar) return {};
-  Diagnostic warning = make_warning(
-      "ik-range",
-      fmt::format("goals bring {} {} deg beyond the range of people, in frame {}",
-                  shown(outcome.input.skeleton.names[at(worst - excesses.begin())]),
-                  readable(worst->angle / kRadiansPerDegree, 3), worst->frame),
-      "--limits auto keeps joints within published ranges");
+  Diagnostic warning =
+      make_warning("ik-range",
+                   fmt::format("goals bring {} {} deg beyond the range of people, in frame {}",
+                               shown(outcome.input.skeleton.names[at(worst - excesses.begin())]),
+                               readable(worst->angle / kRadiansPerDegree, 3), worst->frame),
+                   "--limits auto keeps joints within published ranges");
   warning.frame = worst->frame;
   return {std::move(warning)};
 }

@@ -28,8 +28,8 @@ Diagnostics missed_goals(const Outcome& outcome);
 // A warning (ik-feet) where goals of other limbs move a foot by more than 1 cm.
 Diagnostics moved_feet(const Outcome& outcome, std::span<const krok::ik::HeldFoot> legs);
 
-// A warning (ik-range) where goals bring a joint by more than 30 degrees beyond the ranges that were
-// measured.
+// A warning (ik-range) where goals bring a joint by more than 30 degrees beyond the ranges that
+// were measured.
 Diagnostics beyond_ranges(const Outcome& outcome);
 
 // A warning (ik-no-feet) where goals take half of a skeleton or more along and nothing is held.

@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "filter/spikes.h"
 #include "formats/anim/anim.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "plant/plant_feet.h"
 #include "tools/cli/file_name.h"

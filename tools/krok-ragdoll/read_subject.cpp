@@ -109,7 +109,8 @@ Status SubjectReader::read_bodies() {
           .in_file(options_.model);
     }
     model = std::move(actor->model);
-    // Files that share joints need not have them in one order; make_bodies() says what else differs.
+    // Files that share joints need not have them in one order; make_bodies() says what else
+    // differs.
     if (model->skeleton.names != neutral_.names) {
       if (auto bound = bind_to(*model, neutral_)) model = *std::move(bound);
     }

@@ -8,6 +8,7 @@
 
 #include <span>
 
+#include "contacts/contacts.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "motion/ground_frame.h"

@@ -432,7 +432,7 @@ TEST(LintFaults, FeetSinkIntoRisersByTheShortestWay) {
 // Would fail if heels were held against where balls stand: of who walks on tiptoe for most of the
 // time, heels are taken for higher than they are, and sank by 66 mm where they stand.
 TEST(LintFaults, HeelsThatStandLowerThanBallsAreNotSunk) {
-  const Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip& clip) {
+  const Clip tiptoe = changed(usual_walk(), [](LocalMotion& m, Clip& clip) {
     const Quat down = from_rotation_vector(20 * kRadiansPerDegree * Vec3::UnitX());
     const auto first = [&](auto all) { return all.first(all.size() * 3 / 5); };
     for (const char* side : {"Left", "Right"}) {
@@ -447,7 +447,8 @@ TEST(LintFaults, HeelsThatStandLowerThanBallsAreNotSunk) {
   lint::MotionOptions options;
   options.settings.enabled.fill(false);
   options.settings.enabled[static_cast<std::size_t>(Rule::ground)] = true;
-  EXPECT_TRUE(faults_of(clip, options).findings.empty()) << listed(clip, faults_of(clip, options));
+  EXPECT_TRUE(faults_of(tiptoe, options).findings.empty())
+      << listed(tiptoe, faults_of(tiptoe, options));
 }
 
 TEST(LintFaults, TreadmillsSlideNoFeet) {
