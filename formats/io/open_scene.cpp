@@ -282,6 +282,9 @@ std::vector<std::string> addresses_in(const std::string& path, const GivenLimits
   PlainInputs inputs;
   inputs.limits = limits;
   inputs.jobs = 1;
+  // Thousands of captures are not opened for it.
+  const registry::Kind named = registry::kind_of_name(path);
+  if (named != registry::Kind::unknown && !is_scene(named)) return {path};
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) return {path};  // pipes are read once
   const auto file = InputFile::open(path);

@@ -195,7 +195,7 @@ struct ToolSpec {
   // In a list of inputs, and without a Batch, a folder stands for all its files with one of these
   // endings, sub-folders included. None: it is a file that cannot be read.
   std::vector<std::string> folder_endings;
-  // Where a folder stands for its files: whether each animation of a file is an input of its own
+  // Where a folder is all files in it: whether each animation of a file is an input of its own
   // (FILE#ANIMATION), for this output. Called after the options are parsed. None: no.
   std::function<bool(const std::string& output)> each_animation;
 
