@@ -104,6 +104,10 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
       offset = position - token.size();
     }
     error_ = error_at(text_, offset, "json-syntax", "not valid JSON: " + what.substr(0, 200));
+    const std::size_t before = text_.find_last_not_of(" \t\r\n", offset == 0 ? 0 : offset - 1);
+    if (before < offset && text_[before] == ',' && (token.ends_with('}') || token.ends_with(']'))) {
+      error_->hint = "no comma is written after the last one: remove the one before";
+    }
     return false;
   }
 

@@ -86,16 +86,16 @@ bool is_plausible_size(double size) {
 }
 
 void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {
-  if (!roles.humanoid) return;
+  constexpr double kLargest = 40;  // metres: a whale has 30
   Eigen::AlignedBox3d box;
   for (const Transform& joint : skeleton.reference) box.extend(joint.position);
   const double size = box.sizes().maxCoeff();
-  if (is_plausible_size(size)) return;
+  if (roles.humanoid ? is_plausible_size(size) : size <= kLargest) return;
   diagnostics.push_back(make_warning(
       "scene-unit",
       fmt::format("the character is {} m in size in the file's unit, which is not a plausible "
-                  "human size",
-                  readable(size, 3)),
+                  "{}size",
+                  readable(size, 3), roles.humanoid ? "human " : ""),
       "set another unit than the file's with --unit: mm, cm, in, ft or m"));
 }
 
@@ -110,7 +110,7 @@ void check_actor(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& di
     diagnostics.push_back(make_warning(
         "scene-forward",
         fmt::format("the character does not face +z: {}; it is not rotated", found.forward_reason),
-        fmt::format("use --forward {} to rotate it to +z", direction_name(found.forward))));
+        fmt::format("krok-import --forward {} rotates it to +z", direction_name(found.forward))));
   }
 }
 

@@ -25,8 +25,8 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
 // Whether a person, a doll or a giant could be so large, in metres.
 bool is_plausible_size(double size);
 
-// Warns if a humanoid in Krok's frame is far from human size (code scene-unit). For scenes whose
-// unit was not detected but given by the file or the user.
+// Warns if a humanoid in Krok's frame is far from human size, or anything else larger than animals
+// are (code scene-unit). For scenes whose unit was not detected but given by the file or the user.
 void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics);
 
 // Warns if a humanoid in Krok's frame is not upright or does not face +Z, with the option that

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -33,8 +34,14 @@ Key length_key(std::string name, double& into) {
           }};
 }
 
+// An angle, or a grade: "12%" rises by 12 m over 100 m.
 Key angle_key(std::string name, double& into) {
   return {std::move(name), [&into](std::string_view text) -> Status {
+            if (const auto grade = parse_finite(text.substr(0, text.size() - 1));
+                grade && text.ends_with('%')) {
+              into = std::atan(*grade / 100);
+              return {};
+            }
             const auto value = parse_angle(text);
             if (!value) return value.error();
             into = *value;

@@ -11,7 +11,7 @@ namespace krok::terrain {
 // Ground from a short text: a kind, a colon and values separated by commas, in any order.
 //   level[:height=10cm]
 //   stairs[:rise=17cm,run=29cm,count=20,begin=1m]    rise below 0: down
-//   slope:12deg  or  slope:angle=12deg[,begin=1m]    below 0: down
+//   slope:12deg, slope:20% (a grade), slope:angle=12deg[,begin=1m]    below 0: down
 //   rough[:seed=1,height=8cm]
 // Without a unit lengths are metres and angles degrees.
 // Codes: ground-kind, ground-key, ground-value, with the nearest name or what is allowed.

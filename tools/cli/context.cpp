@@ -35,6 +35,11 @@ void ToolContext::diagnose(Diagnostic diagnostic) {
   if (diagnostic.where.file.empty() && !subject.file.empty()) diagnostic.where = subject;
   const bool shown = diagnostic.severity == Severity::error ||
                      (!quiet && (verbose || diagnostic.severity != Severity::note));
+  // A file that is read for each of its animations warns of itself once.
+  if (diagnostic.severity == Severity::warning &&
+      !said_.insert(message_of(report.tool, diagnostic)).second) {
+    return;
+  }
   const int alike = shown && !verbose ? ++alike_[diagnostic.code] : 1;
   const std::string code = verbose ? std::string() : diagnostic.code;
   if (shown && alike <= kMaxAlike) put_message(message_of(report.tool, diagnostic), code);

@@ -141,6 +141,12 @@ ValueKind<double> number(Range range, const std::string& unit) {
     }
     if (value && holds(range, *value)) return *value;
     const bool any = !std::isfinite(range.low) && !std::isfinite(range.high);
+    const std::size_t last_digit = text.find_last_of("0123456789.");
+    if (!value && !unit.empty() && last_digit != std::string::npos &&
+        parse_finite(text.substr(0, last_digit + 1))) {
+      return usage(fmt::format("'{}' is not in {}", shown(text), unit),
+                   fmt::format("a number{}", any ? "" : " " + described(range, unit.c_str())));
+    }
     return usage(fmt::format("'{}' is not a number{}", shown(text),
                              any ? "" : " " + described(range, unit.c_str())));
   };

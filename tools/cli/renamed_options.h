@@ -18,6 +18,8 @@ struct RenamedOption {
 
 inline constexpr RenamedOption kRenamedOptions[] = {
     // Of any tool; options only where the tool has them.
+    {"", "--fps", "krok-edit IN --rate N -o IN.anim first"},
+    {"", "--rate", "krok-edit IN --rate N -o IN.anim first"},
     {"", "--fps", "--rate"},
     {"", "--frame-rate", "--rate"},
     {"", "--framerate", "--rate"},

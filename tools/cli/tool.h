@@ -141,6 +141,7 @@ class ToolContext : public io::Inputs {
   void put_message(const std::string& text, const std::string& code = {});
 
   std::map<std::string, int> alike_;  // warnings and errors so far, by code
+  std::set<std::string> said_;        // warnings so far
   std::set<std::string> written_;     // canonical paths that passed check_output
 };
 

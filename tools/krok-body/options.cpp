@@ -47,7 +47,7 @@ ToolSpec make_spec() {
   spec.summary = "Generates a smooth, closed, skinned body for any skeleton";
   spec.details = "It shows a capture as a character.";
   spec.writes = registry::Kind::model;
-  spec.inputs = "IN.anim|IN.bvh|IN.amc|IN.model";
+  spec.inputs = "IN.anim|IN.bvh|IN.fbx|IN.glb|IN.model";
   spec.examples = {{"krok-body walk.anim -o walker.model",
                     "a body for the actor of a capture, about 10,000 vertices"},
                    {"krok-body dog.anim --detail high -o dog.model",

@@ -3,44 +3,24 @@
 #include <fmt/format.h>
 
 #include "core/numbers.h"
-#include "formats/anim/anim.h"
-#include "formats/io/open_motion.h"
+#include "formats/io/open_character.h"
 #include "formats/model/model_format.h"
-#include "formats/registry/registry.h"
 #include "tools/cli/output_set.h"
 
 namespace krok::cli::body {
 
 namespace {
 
-// A clip with the file's skeleton, and its motion if any.
+// A clip with the file's skeleton, and the motion that the pose may be taken from.
 Result<Clip> read_skeleton(const InputFile& input, ToolContext& context) {
-  switch (registry::kind_of_content(input.bytes())) {
-    case registry::Kind::anim: {
-      Stretches stretches;  // a body is made for the reference pose
-      auto clip = anim::read(input.bytes(), &stretches);
-      if (!clip) return std::move(clip).error().in_file(input.path());
-      return clip;
-    }
-    case registry::Kind::model: {
-      auto model = model::read(input.bytes());
-      if (!model) return std::move(model).error().in_file(input.path());
-      Clip clip;
-      clip.skeleton = std::move(model->skeleton);
-      return clip;
-    }
-    default:
-      break;
-  }
-  const registry::Kind kind = registry::identify(input.path(), input.bytes());
-  if (kind == registry::Kind::bvh || kind == registry::Kind::amc) {
-    return io::open_motion(input, context);
-  }
-  return Error("body-input",
-               fmt::format("expected a motion (.anim, .bvh, .amc) or a .model file, but this is {}",
-                           registry::describe_content(input.bytes())),
-               registry::advice(kind, registry::Kind::anim))
-      .in_file(input.path());
+  auto actor = io::open_actor(
+      input, context,
+      {.every_clip = true, .with_mesh = false, .with_materials = false, .with_stretches = true});
+  if (!actor) return actor.error();
+  if (!actor->motions.empty()) return std::move(actor->motions[0].clip);
+  Clip clip;
+  clip.skeleton = actor->skeleton();
+  return clip;
 }
 
 Json result_of(const Body& body) {

@@ -280,7 +280,9 @@ Result<Shot> make_shot(const Options& options, ToolContext& context) {
   const auto file = context.open_input(options.input);
   if (!file) return file.error();
   const Kind kind = registry::identify(file->path(), file->bytes());
-  if (io::is_motion(*file)) return from_motion(options, *file, context);
+  if (io::is_motion(*file) || (film_of(options) && io::format_of(*file).reads_motion())) {
+    return from_motion(options, *file, context);
+  }
   if (is_keys(*file, kind)) return from_keys(options, *file);
   switch (kind) {
     case Kind::cam:

@@ -107,6 +107,18 @@ class Comparison {
     }
     outcome_.notes = std::move(first.notes);
     std::move(second.notes.begin(), second.notes.end(), std::back_inserter(outcome_.notes));
+    for (const std::string& pattern : filter.exclude) {
+      const PathFilter excluded{{pattern}, {}};
+      for (const std::string& folder : {options_.first, options_.second}) {
+        found = files_in(folder, excluded, {}, {});
+        if (found && !found->paths.empty()) break;
+      }
+      if (!found || found->paths.empty()) {
+        context_.diagnose(make_warning(
+            "diff-pattern", fmt::format("--exclude '{}' matches no file", shown(pattern)),
+            "* and ? are within a name, ** is any number of folders"));
+      }
+    }
     pair(first.paths, second.paths);
     return {};
   }

@@ -220,7 +220,7 @@ void declare_place(CommandOptions& command, Options& o) {
                     "level")
       .only_with("--settle");
   command
-      .add("--floor", o.floor, length(),
+      .add("--floor", o.floor, length_with_unit(),
            "Height of the level ground that the input was made on [found by what lies on it]")
       .only_with("--settle");
   command

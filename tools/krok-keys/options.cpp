@@ -133,7 +133,9 @@ ToolSpec make_spec() {
   spec.folder_endings = io::motion_endings();
   spec.needs_output = false;
   spec.output_endings = {".json", ".csv"};
-  spec.each_animation = [options](const std::string&) { return !options->table.empty(); };
+  spec.each_animation = [options](const std::string& output) {
+    return !options->table.empty() || extension(output) == ".csv";
+  };
   spec.batch = {io::motion_endings(), always(".keys.json")};
   return spec;
 }

@@ -278,25 +278,34 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
     default:
       break;
   }
-  auto actor = io::open_actor(*input, context, {.with_camera = true});
+  auto actor = io::open_actor(*input, context, {.every_clip = true, .with_camera = true});
   if (!actor) return std::move(actor).error().in_file(path);
   for (Actor::Camera& camera : actor->cameras) {
     files.cameras.push_back({name_of_input(path), std::move(camera.track)});
   }
   if (actor->skeleton().empty()) return {};
-  if (actor->motions.empty()) {
-    files.models.push_back({path, name_of_input(path), *std::move(actor), false});
-    return {};
+  std::vector<Actor::Motion> motions = std::move(actor->motions);
+  actor->motions.clear();
+  const bool several = motions.size() > 1;
+  const bool has_mesh = actor->has_mesh();
+  if (has_mesh || motions.empty()) {
+    files.models.push_back({path, name_of_input(path), *std::move(actor), !motions.empty()});
   }
-  Clip clip = std::move(actor->motions[0].clip);
-  auto keys = keys_of(path, clip, choice, context);
-  if (!keys) return std::move(keys).error().in_file(path);
-  Files::Motion& motion = files.motions.emplace_back(
-      Files::Motion{path, name_of_input(path), std::move(clip), nullptr, {}, *std::move(keys), {}});
-  if (!actor->has_mesh()) return {};
-  files.models.push_back({path, motion.name, *std::move(actor), true});
-  motion.body = &files.models.back().actor.model;
-  motion.materials = files.models.back().actor.materials;
+  for (Actor::Motion& one : motions) {
+    // Keytimes beside a file are those of its only motion.
+    auto keys = several && choice == KeysChoice::automatic
+                    ? Result<MotionKeys>(MotionKeys())
+                    : keys_of(path, one.clip, choice, context);
+    if (!keys) return std::move(keys).error().in_file(path);
+    Files::Motion& motion = files.motions.emplace_back();
+    motion.path = path;
+    motion.name = name_of_input(path) + (several ? "#" + one.name : "");
+    motion.clip = std::move(one.clip);
+    motion.keys = *std::move(keys);
+    if (!has_mesh) continue;
+    motion.body = &files.models.back().actor.model;
+    motion.materials = files.models.back().actor.materials;
+  }
   return {};
 }
 

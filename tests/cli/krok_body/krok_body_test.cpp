@@ -72,8 +72,8 @@ TEST_F(KrokBody, FilesThatAreNoSkeletonOrDamaged) {
   cut.resize(cut.size() / 2);
   const std::pair<std::string, const char*> cases[] = {
       {put("cut.anim", cut), "[container-truncated]"},
-      {put("empty.anim", ""), "[body-input]"},
-      {kFrozen + "camera.cam", "[body-input]"},
+      {put("empty.anim", ""), "[container-magic]"},
+      {kFrozen + "camera.cam", "[container-magic]"},
   };
   for (const auto& [file, code] : cases) {
     const ToolRun run = build({file});

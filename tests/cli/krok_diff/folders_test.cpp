@@ -304,6 +304,9 @@ TEST_F(KrokDiffFolders, PatternsChooseFiles) {
               HasSubstr("1 file\n"));
   EXPECT_THAT(diff({"a", "b", "--exclude", "walks/**"}).out, HasSubstr("1 file\n"));
   EXPECT_EQ(code({"--include", "**", "--exclude", "walks/**", "--exclude", "log.txt"}), 2);
+  // A gate that leaves nothing out although it is said to.
+  EXPECT_THAT(diff({"a", "b", "--exclude", "walk/**"}).err, HasSubstr("matches no file"));
+  EXPECT_THAT(diff({"a", "b", "--exclude", "walks/**"}).err, Not(HasSubstr("matches no file")));
 }
 
 TEST_F(KrokDiffFolders, ThePageHasARowForEachFileThatIsNotTheSame) {

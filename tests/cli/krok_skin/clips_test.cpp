@@ -180,6 +180,11 @@ TEST_F(SkinClips, EachAnimationOfAFileIsAMotion) {
       run_tool("krok-skin", {"in.model", "-", "run.anim", "-o", "piped.glb"}, piped).exit_code, 0);
   const ToolRun none = tool("krok-edit", {"hero.glb#walk", "--turn", "1deg", "-o", "x.anim"}, 2);
   EXPECT_THAT(none.err, AllOf(HasSubstr("there is no animation walk"), HasSubstr("1 (run)")));
+  // A body is of the skeleton, a camera follows the animation, an FBX is shown with all of them.
+  tool("krok-body", {"hero.glb#run", "--detail", "low", "-o", "body.model"});
+  tool("krok-cam", {"hero.glb#run", "--still", "-o", "still.cam"});
+  tool("krok-cam", {"run.anim", "--still", "-o", "still_of_run.cam"});
+  tool("krok-diff", {"still.cam", "still_of_run.cam"});
   // A file of the whole name comes first.
   std::filesystem::copy(path("run.anim"), path("hero.glb#in"));
   tool("krok-diff", {"hero.glb#in", "run.anim"});

@@ -52,6 +52,11 @@ TEST(LocatedJson, SaysWhereTheTextIsBroken) {
   };
   EXPECT_EQ(place("{\n  \"a\": 1,\n  \"b\" 2\n}"), "json-syntax 3:7");
   EXPECT_EQ(place("{\"a\": 1} x"), "json-syntax 1:10");
+  // As JavaScript and Python allow it.
+  for (const char* text : {"[1, 2,\n]", "{\"a\": 1, }"}) {
+    EXPECT_NE(parse(text).error().hint.find("no comma"), std::string::npos) << text;
+  }
+  EXPECT_EQ(parse("[,]").error().hint.find("no comma"), std::string::npos);
   EXPECT_EQ(place("[1, 2"), "json-syntax 1:6");
   EXPECT_EQ(place(""), "json-syntax 1:1");
   EXPECT_EQ(place("{\"a\": 1,\n \"a\": 2}"), "json-syntax 2:2");

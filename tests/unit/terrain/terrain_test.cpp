@@ -65,6 +65,7 @@ TEST(Terrain, SlopeRisesByItsAngle) {
   EXPECT_EQ(height(*slope, 3, 1), 0);
   EXPECT_NEAR(height(*slope, 3, 3), 2 * std::tan(kPi / 6), 1e-12);
   EXPECT_LT((slope->at(0, 2)->normal - Vec3(0, std::sqrt(0.75), -0.5)).norm(), 1e-12);
+  EXPECT_NEAR(height(*made("slope:12%"), 0, 3), 0.24, 1e-12) << "a grade: the rise of the run";
   EXPECT_NEAR(height(*made("slope:-12deg"), 0, 2), -std::tan(12 * kRadiansPerDegree), 1e-12);
   EXPECT_NEAR(height(*made("slope:angle=12deg,begin=4m"), 0, 5), std::tan(12 * kRadiansPerDegree),
               1e-12);
