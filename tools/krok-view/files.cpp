@@ -253,6 +253,9 @@ Status add_glb(const std::string& path, std::vector<std::byte> bytes, const std:
   return {};
 }
 
+// Code of a file that the page cannot decode by itself, Draco's: it is read as an FBX is.
+constexpr std::string_view kCompressed = "gltf-compression";
+
 Status add_file(const std::string& path, KeysChoice choice, ToolContext& context, Files& files) {
   auto input = context.open_input(path);
   if (!input) return input.error();
@@ -260,7 +263,9 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
   switch (kind) {
     case Kind::glb: {
       const auto bytes = input->bytes();
-      return add_glb(path, {bytes.begin(), bytes.end()}, input->part(), files);
+      const Status added = add_glb(path, {bytes.begin(), bytes.end()}, input->part(), files);
+      if (added || added.error().code != kCompressed) return added;
+      break;
     }
     case Kind::gltf: {
       // A page cannot open external files, so buffers and images are packed.
@@ -268,12 +273,15 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       packing.folder = folder_of(path);
       packing.draco = false;
       auto packed = gltf::pack_glb(input->bytes(), packing);
+      if (!packed && packed.error().code == kCompressed) break;
       if (!packed) return std::move(packed).error().in_file(path);
       for (Diagnostic& diagnostic : packed->diagnostics) context.diagnose(std::move(diagnostic));
       for (const std::string& beside : packed->files) {
         if (auto opened = context.open_input(beside); !opened) return opened.error();
       }
-      return add_glb(path, std::move(packed->bytes), input->part(), files);
+      const Status added = add_glb(path, std::move(packed->bytes), input->part(), files);
+      if (added || added.error().code != kCompressed) return added;
+      break;
     }
     default:
       break;
