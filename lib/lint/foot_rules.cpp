@@ -15,23 +15,29 @@ namespace krok::lint {
 
 namespace {
 
-constexpr double kNear = 0.03;           // metres above the support, of points that may carry
-constexpr double kRising = 0.25;         // metres per second; faster up or down is a step
-constexpr double kFastest = 1.7;         // metres per second; faster is a swing, not a slide
-constexpr double kShortestSlide = 0.1;   // seconds
-constexpr double kStepEnd = 0.06;        // seconds in which a foot lands or leaves
-constexpr double kResting = 0.045;       // metres per second; slower is rest
-constexpr double kCreeping = 0.2;        // metres per second; faster is a slide or a step
-constexpr double kCreepTime = 1;         // seconds
-constexpr double kMinCreep = 1.35;       // times the threshold of foot-slide
-constexpr double kTogether = 0.35;       // difference of two feet's velocities over their size
-constexpr double kStanding = 0.45;       // of the legs' length, of hips over a foot that carries
-constexpr double kUneven = 0.1;          // metres, of heights of contacts on level ground
-constexpr double kFloor = 2;             // times the threshold, of the floor's height
-constexpr double kUpright = 0.8;         // of the legs' length, height of the hips
-constexpr double kShortestHover = 0.25;  // seconds
-constexpr double kShortestSink = 0.05;   // seconds; what is shorter is a pop
-constexpr double kMinFall = 4;           // metres per second squared
+constexpr double kNear = 0.03;            // metres above the support, of points that may carry
+constexpr double kRising = 0.25;          // metres per second; faster up or down is a step
+constexpr double kFastest = 1.7;          // metres per second; faster is a swing, not a slide
+constexpr double kShortestSlide = 0.1;    // seconds
+constexpr double kStepEnd = 0.06;         // seconds in which a foot lands or leaves, at least
+constexpr double kLongestStepEnd = 0.15;  // the same, while it is much faster than at its slowest
+constexpr double kStepFactor = 2;         // times the slowest speed
+constexpr double kStepSpeed = 0.1;        // metres per second, added to it
+constexpr double kResting = 0.045;        // metres per second; slower is rest
+constexpr double kCreeping = 0.2;         // metres per second; faster is a slide or a step
+constexpr double kCreepTime = 1;          // seconds
+constexpr double kMinCreep = 1.35;        // times the threshold of foot-slide
+constexpr double kTogether = 0.35;        // difference of two feet's velocities over their size
+constexpr double kStanding = 0.45;        // of the legs' length, of hips over a foot that carries
+constexpr double kKnees = 0.85;           // of the same; less is a bent leg
+constexpr double kLean = 0.7;             // of a bent leg's height, its length along the ground
+constexpr double kOffFloor = 0.1;         // metres over the lowest contact
+constexpr double kUneven = 0.1;           // metres, of heights of contacts on level ground
+constexpr double kFloor = 2;              // times the threshold, of the floor's height
+constexpr double kUpright = 0.8;          // of the legs' length, height of the hips
+constexpr double kShortestHover = 0.25;   // seconds
+constexpr double kShortestSink = 0.05;    // seconds; what is shorter is a pop
+constexpr double kMinFall = 4;            // metres per second squared
 
 // The feet's points over the frames.
 struct Soles {
@@ -39,6 +45,22 @@ struct Soles {
   std::vector<std::vector<Vec3>> places;      // [tracks][frames], metres
   std::vector<std::vector<Vec3>> velocities;  // [tracks][frames], metres per second, level
   std::vector<std::vector<double>> rises;     // the same, upwards
+  double floor = INFINITY;                    // height of the lowest contact, metres
+  // [frames][FootSide], the slowest point of each foot that is near the ground, -1 for a foot in
+  // the air.
+  std::vector<std::array<int, 2>> carrying;
+  std::vector<std::array<int, 2>> standing;  // the same, -1 also where the foot lands or leaves
+
+  double speed(int track, int frame) const { return velocities[at(track)][at(frame)].norm(); }
+  bool stays(int track, int frame) const {
+    return track >= 0 &&
+           standing[at(frame)][static_cast<std::size_t>(found.tracks[at(track)].point.side)] >= 0;
+  }
+  // The slower of two feet, -1 for none.
+  int slower(const std::array<int, 2>& feet, int frame) const {
+    if (feet[0] < 0 || feet[1] < 0) return std::max(feet[0], feet[1]);
+    return speed(feet[1], frame) < speed(feet[0], frame) ? feet[1] : feet[0];
+  }
 };
 
 std::vector<Vec3> velocities_of(const std::vector<Vec3>& places, double rate, double seconds) {
@@ -53,10 +75,60 @@ std::vector<Vec3> velocities_of(const std::vector<Vec3>& places, double rate, do
   return velocities;
 }
 
+// Whether the body stands on a foot; not of who sits, with feet on the floor or above it, crawls or
+// lies.
+bool stands(const Series& series, const Soles& soles, int track, int frame) {
+  const Vec3 hips = series.clip.frame_positions(frame)[at(series.carrier)].cast<double>();
+  const Vec3 leg = hips - soles.places[at(track)][at(frame)];
+  if (leg.y() < kStanding * soles.found.leg_length) return false;
+  if (leg.y() > kKnees * soles.found.leg_length) return true;
+  return std::hypot(leg.x(), leg.z()) < kLean * leg.y() &&
+         hips.y() - leg.y() < soles.floor + kOffFloor * series.scale;
+}
+
+std::array<int, 2> carrying(const Series& series, const Soles& soles, int frame) {
+  std::array<int, 2> slowest = {-1, -1};
+  for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
+    const PointTrack& track = soles.found.tracks[at(t)];
+    if (track.height[at(frame)] > kNear * series.scale ||
+        std::abs(soles.rises[at(t)][at(frame)]) > kRising * series.scale ||
+        soles.speed(t, frame) > kFastest * series.scale || !stands(series, soles, t, frame)) {
+      continue;
+    }
+    int& best = slowest[static_cast<std::size_t>(track.point.side)];
+    if (best < 0 || soles.speed(t, frame) < soles.speed(best, frame)) best = t;
+  }
+  return slowest;
+}
+
+// Takes out the beginning and end of each stance of a foot, in which it still slows down or already
+// speeds up.
+void take_out_step_ends(const Series& series, std::size_t side, Soles& soles) {
+  const int shortest = series.frames_in(kStepEnd, 1),
+            longest = series.frames_in(kLongestStepEnd, shortest);
+  const auto foot = [&](int f) { return soles.carrying[at(f)][side]; };
+  for (int first = 0, end = 0; first < series.frames; first = end + 1) {
+    for (end = first; end < series.frames && foot(end) >= 0;) ++end;
+    for (const int step : {1, -1}) {
+      if (end == first || (step > 0 ? first == 0 : end == series.frames)) continue;
+      const int begin = step > 0 ? first : end - 1, count = std::min(longest, end - first);
+      const auto speed = [&](int k) {
+        const int f = begin + step * k;
+        return soles.speed(foot(f), f);
+      };
+      int slowest = 0, ends = std::min(shortest, count);
+      for (int k = 1; k < count; ++k) slowest = speed(k) < speed(slowest) ? k : slowest;
+      const double limit = kStepFactor * speed(slowest) + kStepSpeed * series.scale;
+      for (int k = ends; k < slowest; ++k) ends = speed(k) > limit ? k + 1 : ends;
+      for (int k = 0; k < ends; ++k) soles.standing[at(begin + step * k)][side] = -1;
+    }
+  }
+}
+
 std::optional<Soles> soles_of(const Series& series) {
   auto found = find_contacts(series.clip, series.roles);
   if (!found) return std::nullopt;
-  Soles soles{*std::move(found), {}, {}, {}};
+  Soles soles{*std::move(found), {}, {}, {}, INFINITY, {}, {}};
   for (const PointTrack& track : soles.found.tracks) {
     soles.places.push_back(track_of(series.clip, track.point, soles.found.leg_length));
     std::vector<Vec3> velocities = velocities_of(soles.places.back(), series.rate, 0.07);
@@ -67,30 +139,13 @@ std::optional<Soles> soles_of(const Series& series) {
     }
     soles.velocities.push_back(std::move(velocities));
   }
-  return soles;
-}
-
-// Whether the body stands on its feet; not of who sits with dangling legs, crawls or lies.
-bool stands(const Series& series, const Soles& soles, int track, int frame) {
-  const double hips = series.clip.frame_positions(frame)[at(series.carrier)].y();
-  return hips - soles.places[at(track)][at(frame)].y() > kStanding * soles.found.leg_length;
-}
-
-// The slowest point of each foot that is near the ground, -1 for a foot in the air.
-std::array<int, 2> carrying(const Series& series, const Soles& soles, int frame) {
-  std::array<int, 2> slowest = {-1, -1};
-  for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
-    const PointTrack& track = soles.found.tracks[at(t)];
-    if (track.height[at(frame)] > kNear * series.scale ||
-        std::abs(soles.rises[at(t)][at(frame)]) > kRising * series.scale ||
-        !stands(series, soles, t, frame)) {
-      continue;
-    }
-    int& best = slowest[static_cast<std::size_t>(track.point.side)];
-    const auto speed = [&](int i) { return soles.velocities[at(i)][at(frame)].squaredNorm(); };
-    if (best < 0 || speed(t) < speed(best)) best = t;
+  for (const Stay& stay : soles.found.stays) {
+    soles.floor = std::min(soles.floor, stay.place.y());
   }
-  return slowest;
+  for (int f = 0; f < series.frames; ++f) soles.carrying.push_back(carrying(series, soles, f));
+  soles.standing = soles.carrying;
+  for (const std::size_t side : {0, 1}) take_out_step_ends(series, side, soles);
+  return soles;
 }
 
 // Runs of frames in which no point of the soles rests, though some are on the ground.
@@ -101,27 +156,21 @@ class Slides {
 
   void find() {
     for (int f = 0; f < series_.frames; ++f) {
-      const auto feet = carrying(series_, soles_, f);
-      const int left = feet[0], right = feet[1];
-      int slowest = left < 0 ? right : left;
-      if (left >= 0 && right >= 0 && velocity(right, f).norm() < velocity(left, f).norm()) {
-        slowest = right;
-      }
-      const double speed = slowest < 0 ? 0 : velocity(slowest, f).norm() / series_.scale;
-      const bool steps = slowest < 0 || speed > kFastest;
-      if (steps || speed < kResting) {
-        end(f, steps);
-        after_step_ = steps;
+      const int slowest = soles_.slower(soles_.carrying[at(f)], f);
+      const double speed = slowest < 0 ? 0 : soles_.speed(slowest, f) / series_.scale;
+      if (!soles_.stays(slowest, f) || speed < kResting) {
+        end();
         continue;
       }
-      points_.push_back(slowest);
+      frames_.emplace_back(f, slowest);
+      const auto [left, right] = soles_.carrying[at(f)];
       if (left >= 0 && right >= 0) {
         const Vec3 a = velocity(left, f), b = velocity(right, f);
         ++both_;
         if ((a - b).norm() < kTogether * std::max(a.norm(), b.norm())) ++together_;
       }
     }
-    end(series_.frames, false);
+    end();
   }
 
  private:
@@ -135,27 +184,20 @@ class Slides {
     way.y() = 0;
     return way.norm() < 0.2 * slid.norm();
   }
-  void end(int frame, bool before_step) {
-    // A foot that lands or leaves is no slide.
-    const int first = frame - static_cast<int>(points_.size()),
-              margin = series_.frames_in(kStepEnd, 1);
-    Finding finding;
-    finding.first = first + (after_step_ ? margin : 0);
-    finding.last = frame - 1 - (before_step ? margin : 0);
-    if (finding.last - finding.first + 1 >= series_.frames_in(kShortestSlide, 3)) {
+  void end() {
+    if (static_cast<int>(frames_.size()) >= series_.frames_in(kShortestSlide, 3)) {
+      Finding finding;
+      finding.first = frames_.front().first, finding.last = frames_.back().first;
       Vec3 way = Vec3::Zero();
       double fastest = 0;
-      int point = 0;
-      for (int f = finding.first; f <= finding.last; ++f) {
-        const Vec3& speed = velocity(points_[at(f - first)], f);
-        way += speed / series_.rate;
-        if (speed.norm() > fastest) {
-          fastest = speed.norm(), finding.worst = f, point = points_[at(f - first)];
-        }
+      for (const auto& [f, track] : frames_) {
+        way += velocity(track, f) / series_.rate;
+        if (soles_.speed(track, f) <= fastest) continue;
+        fastest = soles_.speed(track, f), finding.worst = f;
+        finding.joint = soles_.found.tracks[at(track)].point.joint;
       }
-      const bool body = 3 * both_ > static_cast<int>(points_.size()) && together_ > both_ / 2;
+      const bool body = 3 * both_ > static_cast<int>(frames_.size()) && together_ > both_ / 2;
       finding.rule = body ? Rule::drift : Rule::foot_slide;
-      finding.joint = soles_.found.tracks[at(point)].point.joint;
       finding.value = way.norm();
       finding.threshold = series_.threshold(finding.rule) * series_.scale, finding.unit = "m";
       finding.detail = fmt::format("up to {} m/s", readable(fastest, 2));
@@ -164,16 +206,14 @@ class Slides {
       }
       if (finding.value > finding.threshold) found_.push_back(finding);
     }
-    points_.clear();
+    frames_.clear();
     both_ = together_ = 0;
-    after_step_ = false;
   }
 
   const Series& series_;
   const Soles& soles_;
   std::vector<Finding>& found_;
-  std::vector<int> points_;  // the slowest of each frame of a slide
-  bool after_step_ = false;  // a foot landed just before
+  std::vector<std::pair<int, int>> frames_;  // of a slide, with the slowest point
   int both_ = 0, together_ = 0;
 };
 
@@ -186,13 +226,10 @@ void find_creep(const Series& series, const Soles& soles, std::vector<Finding>& 
   std::vector<int> slowest(at(series.frames), -1);
   int nearest_step = -margin - 1;
   for (int f = 0; f < series.frames; ++f) {
-    double least = kCreeping * series.scale;
-    for (const int track : carrying(series, soles, f)) {
-      if (track < 0 || soles.velocities[at(track)][at(f)].norm() > least) continue;
+    const int track = soles.slower(soles.carrying[at(f)], f);
+    if (soles.stays(track, f) && soles.speed(track, f) < kCreeping * series.scale) {
       slowest[at(f)] = track, way[at(f)] = soles.velocities[at(track)][at(f)] / series.rate;
-      least = soles.velocities[at(track)][at(f)].norm();
-    }
-    if (slowest[at(f)] < 0) {
+    } else {
       nearest_step = f;
       for (int g = std::max(0, f - margin); g < f; ++g) way[at(g)].setZero();
     }
@@ -428,7 +465,7 @@ void find_foot_faults(const Series& series, MotionFaults& out) {
       out.notes.emplace_back("foot-slide: no foot rests; --treadmill if the ground moves");
     }
   }
-  merge_joints(found, 1);
+  merge_joints(found, series.frames_in(2 * kLongestStepEnd, 1));
   out.findings.insert(out.findings.end(), found.begin(), found.end());
   if (series.has(Rule::ground)) GroundRule(series, *soles, out).find();
 }

@@ -483,6 +483,20 @@ TEST(LintFaults, WhoCrawlsDoesNotSlide) {
   EXPECT_EQ(find(faults_of(clip), Rule::foot_slide, kAt), nullptr);
 }
 
+// Would fail if feet ahead of who sits, which bear nobody, counted as standing.
+TEST(LintFaults, WhoSitsDoesNotSlide) {
+  const Clip walk = changed(usual_walk(), [](LocalMotion& m, Clip&) {
+    for (Vec3& place : m.joint_positions(0)) place.x() = place.z() = 0;
+  });
+  for (const float behind : {0.0F, 0.55F}) {
+    Clip clip = walk;
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      clip.frame_positions(f)[0] -= Vec3f(0, 0.35F, behind);
+    }
+    EXPECT_EQ(find(faults_of(clip), Rule::foot_slide, kAt) == nullptr, behind > 0);
+  }
+}
+
 TEST(LintFaults, FeetThatLandAndLeaveFastSlideNowhere) {
   // A frame of several, so that feet stop and leave within one or two.
   for (const int factor : {6, 7}) {
@@ -499,6 +513,32 @@ TEST(LintFaults, FeetThatLandAndLeaveFastSlideNowhere) {
     options.settings.enabled[static_cast<std::size_t>(Rule::foot_slide)] = true;
     const auto faults = faults_of(fast, options);
     EXPECT_TRUE(faults.findings.empty()) << factor << "\n" << listed(fast, faults);
+  }
+}
+
+// Would fail if feet of runs, which have landed before they are at rest, slid meanwhile; a foot
+// that keeps its speed does.
+TEST(LintFaults, FeetThatSlowDownOnTheGroundLand) {
+  const double rate = 60;
+  const Clip walk = usual_walk(rate);
+  for (const bool lands : {true, false}) {
+    const Clip clip = changed(walk, [&](LocalMotion& m, Clip& c) {
+      for (int j = 1; j < m.joints; ++j)
+        std::ranges::fill(m.joint_orientations(j), m.joint_orientations(j)[0]);
+      double way = 0;
+      const Vec3 start = m.joint_positions(0)[0];
+      for (std::size_t f = 0; f < m.joint_positions(0).size(); ++f) {
+        const double phase = static_cast<double>(f % 30) / rate;
+        const double landing = std::max(0.0, 10.2 * (0.25 - phase)), slide = phase > 0.15 ? 0.7 : 4;
+        Quat& leg = m.joint_orientations(c.skeleton.find("LeftUpLeg"))[f];
+        if (phase < 0.4) leg = leg * turn(60);
+        m.joint_positions(0)[f] = start + Vec3(0, 0, way);
+        way += (phase > 0.4 ? 4 : lands ? landing : slide) / rate;
+      }
+      std::ranges::fill(m.joint_orientations(0), m.joint_orientations(0)[0]);
+    });
+    const auto faults = faults_of(clip);
+    EXPECT_EQ(find(faults, Rule::foot_slide, kAt + 16) == nullptr, lands) << listed(clip, faults);
   }
 }
 
