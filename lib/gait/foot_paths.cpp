@@ -25,9 +25,10 @@ constexpr double kShortestRamp = 0.06;                      // seconds
 constexpr int kShapes[][2] = {{3, 3},  {3, 5},  {5, 3},  {3, 9}, {9, 3},
                               {3, 15}, {15, 3}, {3, 24}, {24, 3}};
 constexpr double kMaxToesUp = 15 * kRadiansPerDegree;
-constexpr double kToesEdge = 0.25;     // of the bump: below, it does not raise the toes
-constexpr double kToesLeftCost = 300;  // per metre, of a radian times the exponents
-constexpr double kRamp = 0.35;         // of the time from strike to flat, and from flat to off
+constexpr double kToesEdge = 0.25;      // of the bump: below, it does not raise the toes
+constexpr double kToesLeftCost = 300;   // per metre, of a radian times the exponents
+constexpr double kRamp = 0.35;          // of the time from strike to flat, and from flat to off
+constexpr double kTurningAside = 0.15;  // seconds, in which a foot turns aside in full
 
 double ramp_of(double lasts) {
   return std::min(lasts, std::max(kRamp * lasts, kShortestRamp));
@@ -80,15 +81,19 @@ Vec3 Stance::deviation(const FootPose& blend) const {
 }
 
 FootPose Stance::at(double time, const FootPose& blend) const {
-  double part = 0;
+  double since = 0, lasts = 0;
   if (time < flat_from) {
-    part = smoother_step((flat_from - time) / ramp_of(flat_from - strike));
+    since = flat_from - time, lasts = flat_from - strike;
   } else if (time > flat_to && off > flat_to) {
-    part = smoother_step((time - flat_to) / ramp_of(off - flat_to));
+    since = time - flat_to, lasts = off - flat_to;
   }
   FootPose foot{flat_, axes_ * leg_->flat_toes.conjugate()};
-  if (part == 0) return foot;
-  Vec3 turn = part * deviation(blend);
+  if (lasts == 0) return foot;
+  // Where walks turn, the blend's foot turns on its ball while it is still flat: it takes as long
+  // as there is, and what it has no time for is left to the swing.
+  const double aside = std::min(1.0, lasts / kTurningAside) * smoother_step(since / lasts);
+  Vec3 turn =
+      deviation(blend).cwiseProduct(Vec3(smoother_step(since / ramp_of(lasts)), aside, aside));
   if (time < flat_from) {
     const double down = smoother_step((flat_from - time) / (flat_from - strike));
     turn.x() = std::lerp(gait_.landing * turn.x(), down * gait_.toes_down, gait_.forefoot);
@@ -114,7 +119,12 @@ FootPose Stance::rolled(FootPose foot, double angle) const {
 }
 
 void Stance::be_flat(double time, double latest) {
-  flat_from = std::max(time, std::min(strike + kShortestRamp, latest));
+  flat_from = std::max(
+      time, std::min(std::max(time + 0.5 * kShortestRamp, strike + kShortestRamp), latest));
+}
+
+void Stance::leave(double time, double earliest) {
+  flat_to = std::max({std::min(time, off - kShortestRamp), earliest, flat_from});
 }
 
 void Stance::land(const SlopeGait& gait, double flat) {
@@ -270,7 +280,7 @@ void Swing::clear(const Terrain& ground, std::span<const double> times,
                                -0.16, 0.16,  -0.2, 0.2,   -0.26, 0.26};  // metres
   constexpr double kEdge = 0.2;     // of the bump: below, it does not raise the foot
   constexpr double kEnough = 3e-4;  // metres: what is raised less needs no holding
-  constexpr double kHoldCost = 0.3, kLeftCost = 30;
+  constexpr double kHoldCost = 1, kLeftCost = 30;
   // People clear the ground by their ankles first.
   detour_ = {};
   Detour best;

@@ -47,9 +47,13 @@ class Stance {
   // From `from` on, where the heel rises, rolls over the ball further than the blend: by `angle` at
   // toe-off. `from` is at least flat_from and becomes flat_to if that is later.
   void roll_further(double angle, double from);
-  // Flat from `time` on, or from 60 ms after the strike if that is later, but not after `latest`: a
-  // foot that is flat at once stops dead, and the swing before throws its toes up to match that.
+  // Flat from 30 ms after `time` on, when the blend is nearly flat, or from 60 ms after the strike
+  // if that is later, but not after `latest`: a foot that is flat at once stops dead, and the swing
+  // before throws its toes up to match that.
   void be_flat(double time, double latest);
+  // Flat to `time`, or to 60 ms before the off if that is earlier, but not before `earliest` or
+  // flat_from: a foot that is flat till it leaves turns at once, and the swing overshoots.
+  void leave(double time, double earliest);
   // How the foot strikes, other than in the blend. With `gait.forefoot` its ball is on the ground
   // from the strike on, and its heel comes down until `flat`, which is flat_from if that is
   // earlier.

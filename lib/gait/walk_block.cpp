@@ -197,7 +197,7 @@ void WalkBlock::finish_stance(std::size_t print) {
   }
   if (series.empty()) return;
   series.front().time = stance.off;
-  stance.flat_to = std::max(time_of_flat(series), stance.flat_from);
+  stance.leave(time_of_flat(series), middle);
 }
 
 // Where the leg that is left behind would be too long, its foot rolls over the ball, as people's

@@ -55,7 +55,14 @@ TEST_F(WalkOnGround, IsOnThePage) {
   const nlohmann::json& prints = page["prints"]["list"];
   EXPECT_EQ(report["prints"], prints.size());
   EXPECT_EQ(report["ground_triangles"], page["ground"]["triangles"]["count"].get<int>() / 3);
-  EXPECT_EQ(prints, data_of(get(path("walk.html")))["prints"]["list"]);
+  // Soles are measured on the motion, which has been rounded to floats here and not there.
+  nlohmann::json walked = data_of(get(path("walk.html")))["prints"]["list"];
+  ASSERT_EQ(walked.size(), prints.size());
+  for (std::size_t i = 0; i < prints.size(); ++i) {
+    EXPECT_NEAR(walked[i]["length"], prints[i]["length"], 1e-6);
+    walked[i]["length"] = prints[i]["length"];
+  }
+  EXPECT_EQ(prints, walked);
   ASSERT_GT(prints.size(), 6U);
   for (std::size_t i = 0; i < prints.size(); ++i) {
     EXPECT_EQ(prints[i]["number"], i + 1);

@@ -68,6 +68,54 @@ TEST(Swing, ToesAreRaisedByTheAnkleBeforeTheFoot) {
   EXPECT_LT(raised, 0.02);
 }
 
+// Would fail if a foot that is to be raised by two centimetres before it lands, as down slopes,
+// were moved past its print by 15 cm and back instead: its leg is then too short, and its knee
+// jumps.
+TEST(Swing, AFootIsRaisedDownASlopeNotMovedPastItsPrint) {
+  const Leg leg = plain_leg();
+  constexpr double kFall = 0.1, kToesUp = 15 * kRadiansPerDegree;
+  const test::Ground slope([](double, double z) { return -kFall * z; });
+  Swing swing(leg, kOff, kStrike, 0.16);
+  const auto on_slope = [](double z, double toes_up) {
+    FootPose foot;
+    foot.foot.orientation = from_rotation_vector(Vec3(std::atan(kFall) - toes_up, 0, 0));
+    foot.foot.position = foot.foot.orientation * Vec3(0, kAnkle, 0) + Vec3(0, -kFall * z, z);
+    foot.toes = foot.foot.orientation;
+    return foot;
+  };
+  // The blend walks on the level, as high as the middle between the prints.
+  const auto on_level = [](double time) {
+    const double u = std::clamp((time - kOff) / (kStrike - kOff), 0.0, 1.0);
+    FootPose foot;
+    foot.foot.orientation =
+        from_rotation_vector(Vec3(-kToesUp * smoother_step((u - 0.6) / 0.3), 0, 0));
+    foot.foot.position = Vec3(0, kAnkle - 0.6 * kFall + 0.04 * u * (1 - u), 1.2 * smoother_step(u));
+    foot.toes = foot.foot.orientation;
+    return foot;
+  };
+  Swing::Ends off, strike;
+  off.spacing = strike.spacing = 0.01;
+  for (std::size_t i = 0; i < 3; ++i) {
+    off.blend[i] = on_level(kOff), off.wanted[i] = on_slope(0, 0);
+    strike.blend[i] = on_level(kStrike), strike.wanted[i] = on_slope(1.2, kToesUp);
+  }
+  swing.set_ends(off, strike);
+  std::vector<double> times;
+  std::vector<FootPose> blend;
+  for (double time = kOff; time < kStrike; time += 1.0 / 60) {
+    times.push_back(time);
+    blend.push_back(on_level(time));
+  }
+  std::vector<double> plain;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    plain.push_back(swing.at(times[i], blend[i]).foot.position.z());
+  }
+  swing.clear(slope, times, blend, kClearance, 0);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_NEAR(swing.at(times[i], blend[i]).foot.position.z(), plain[i], 0.02) << times[i];
+  }
+}
+
 // Would fail if a foot that lands nearly flat were flat at once: its swing then takes on a velocity
 // that no foot has, and throws the toes up by a decimetre to do so.
 TEST(Stance, AFootThatLandsNearlyFlatDoesNotStopDead) {
@@ -87,9 +135,45 @@ TEST(Stance, AFootThatLandsNearlyFlatDoesNotStopDead) {
   // No more than half as fast again as the blend.
   EXPECT_LT(lands.angularDistance(after), 3 * kRadiansPerDegree);
   EXPECT_LT(stance.at(1.07, pitched(2)).foot.orientation.angularDistance(Quat::Identity()), 1e-6);
+  // What the blend brings down by itself is not brought down twice as fast.
+  stance.be_flat(1.07, 1.3);
+  const Quat halfway = stance.at(1.035, pitched(7)).foot.orientation;
+  EXPECT_NEAR(halfway.angularDistance(Quat::Identity()), 7 * kRadiansPerDegree, 1e-6);
   // The middle of the stance is flat in any case.
   stance.be_flat(1.01, 1.02);
   EXPECT_EQ(stance.flat_from, 1.02);
+}
+
+// Would fail if a foot that is flat nearly till it leaves turned within 5 ms as far as the blend's,
+// which the swing cannot follow: a foot turned by 120 degrees in a frame.
+TEST(Stance, AFootThatLeavesHasTimeToTurn) {
+  Stance stance(plain_leg(), GroundedPrint(), FootPose());
+  stance.flat_from = 1.2;
+  stance.off = 2;
+  stance.leave(1.995, 1.5);
+  EXPECT_LE(stance.flat_to, 1.94);
+  // The middle of the stance is flat in any case.
+  stance.leave(1.995, 1.98);
+  EXPECT_EQ(stance.flat_to, 1.98);
+}
+
+// Would fail if a foot whose heel rises late took the heading of the blend's, which turned on its
+// ball while flat, in a frame or two: ankles jumped by 17 degrees in walks that turn.
+TEST(Stance, AFootThatLeavesTurnsAsideSlowly) {
+  const Leg leg = plain_leg();
+  FootPose turned;
+  turned.foot.orientation = from_rotation_vector(Vec3(0, 20 * kRadiansPerDegree, 0));
+  turned.toes = turned.foot.orientation;
+  Stance stance(leg, GroundedPrint(), FootPose());
+  stance.flat_to = 1.94;
+  stance.off = 2;
+  double fastest = 0;
+  for (double time = stance.flat_to; time + 1.0 / 60 <= stance.off; time += 0.005) {
+    const Quat now = stance.at(time, turned).foot.orientation;
+    const Quat next = stance.at(time + 1.0 / 60, turned).foot.orientation;
+    fastest = std::max(fastest, now.angularDistance(next) / kRadiansPerDegree);
+  }
+  EXPECT_LT(fastest, 5);
 }
 
 }  // namespace
