@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -85,6 +86,8 @@ std::string written(const Motion& motion, const WriteOptions& options = WriteOpt
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
+  in.close();
+  std::filesystem::remove(path);
   return text.str();
 }
 
