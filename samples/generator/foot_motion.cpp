@@ -18,6 +18,9 @@ constexpr double kSettingDown = 8;                    // m/s^2, for a stature of
 constexpr double kFlatPitch = 9 * kRadiansPerDegree;  // of strikes that are not flat
 constexpr double kToesUpInSwing = 20 * kRadiansPerDegree;
 constexpr double kClearance = 0.012;  // metres under the sole in mid-swing, at least
+// Of the lift: where it is lower, as toes leave and heels land, millimetres under the sole would
+// take metres of it.
+constexpr double kMinShape = 0.05;
 
 // Toes up is a rotation about -X.
 Quat pitched(double angle) {
@@ -222,6 +225,8 @@ void FootMotion::clear_ground(std::size_t index, const FootPlan& plan) {
     double lift = 0;
     for (int k = 2; k < kSamples - 1; ++k) {
       const double u = static_cast<double>(k) / kSamples;
+      const double shape = lift_shape(u, swing_of.climb);
+      if (shape < kMinShape) continue;
       const FootPose pose = swing(index, from.off + u * (to.strike - from.off));
       const Vec3 toe_joint = pose.ankle + pose.foot * actor_.toe_joint;
       const std::array<Vec3, 3> sole = {
@@ -230,7 +235,7 @@ void FootMotion::clear_ground(std::size_t index, const FootPlan& plan) {
           toe_joint + pose.toes * Vec3(actor_.toe_tip - actor_.toe_joint)};
       for (const Vec3& point : sole) {
         const double missing = plan.ground_height(point) - point.y();
-        lift = std::max(lift, missing / lift_shape(u, swing_of.climb) + kClearance);
+        lift = std::max(lift, missing / shape + kClearance);
       }
     }
     const double cost = lift + 0.3 * swing_of.hold_back;

@@ -45,16 +45,16 @@ std::vector<Case> cases() {
                             {"uphill", walk(0.6, 0, 0.06)},
                             {"downhill", walk(0.6, 0, -0.06)},
                             {"steeply_downhill", walk(0.65, 0, -0.12)},
+                            {"turning_uphill", walk(0.5, 20, 0.12)},
+                            {"turning_downhill", walk(0.5, 20, -0.12)},
                             {"child", walk(0.5)},
                             {"slow_and_fine", walk(0.5)}};
-  list[9].options.ground = Ground::slope;
-  list[10].options.ground = Ground::slope;
-  list[11].options.ground = Ground::slope;
-  list[12].options.stature = 1.2;
-  list[13].options.cadence = 60;
-  list[13].options.rate = 240;
-  list[13].options.first_side = Side::right;
-  list[13].options.step_width = 0.2;
+  for (std::size_t i = 9; i < 14; ++i) list[i].options.ground = Ground::slope;
+  list[14].options.stature = 1.2;
+  list[15].options.cadence = 60;
+  list[15].options.rate = 240;
+  list[15].options.first_side = Side::right;
+  list[15].options.step_width = 0.2;
   return list;
 }
 
@@ -115,6 +115,9 @@ TEST_P(AnyWalk, ContactPointsStayPut) {
 
 TEST_P(AnyWalk, FeetNeverSinkIntoTheGround) {
   const FootPlan plan = plan_feet(walk_.options, walk_.actor);
+  // Each footprint lies in a plane of its own: where a slope turns, planes meet in an edge of 4 mm.
+  const bool has_edges = walk_.options.ground == Ground::slope && walk_.options.turn != 0;
+  const double lowest = has_edges ? -5e-3 : -5e-4;
   for (const Side side : {Side::left, Side::right}) {
     const std::string name = test::joint_side(side);
     const Vec3 toe = walk_.actor.toe_joint;
@@ -123,13 +126,14 @@ TEST_P(AnyWalk, FeetNeverSinkIntoTheGround) {
           test::track(walk_.clip, name + "ToeBase", walk_.actor.ball - toe),
           test::track(walk_.clip, name + "ToeBase", walk_.actor.toe_tip - toe)}) {
       for (std::size_t i = 0; i < points.size(); ++i) {
-        EXPECT_GT(points[i].y() - plan.ground_height(points[i]), -5e-4) << name << " frame " << i;
+        EXPECT_GT(points[i].y() - plan.ground_height(points[i]), lowest) << name << " frame " << i;
       }
     }
   }
 }
 
-// No one lifts a foot to the height of the hips to walk.
+// No one lifts a foot to the height of the hips to walk. Would fail where toes that are 4 mm in the
+// ground as they leave it raise the foot by metres, and legs turn over.
 TEST_P(AnyWalk, FeetAreLiftedNoHigherThanTheyNeed) {
   const FootPlan plan = plan_feet(walk_.options, walk_.actor);
   const double most = 0.2 * walk_.actor.stature + std::abs(walk_.options.rise);
