@@ -19,7 +19,7 @@ namespace krok::lint {
 namespace {
 
 constexpr double kUsualStature = 1.72;  // metres
-constexpr double kMinChange = 0.005;    // metres, of a bone
+constexpr double kMinChange = 0.0025;   // metres, of a bone
 constexpr double kShortestBone = 0.02;  // metres
 constexpr double kLongEnough = 0.1;     // seconds beyond a limit
 constexpr double kForwards = 0.7;       // cosine to where the toes point

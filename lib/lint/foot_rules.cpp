@@ -319,6 +319,8 @@ class GroundRule {
   GroundRule(const Series& series, const Soles& soles, MotionFaults& out)
       : series_(series), soles_(soles), out_(out), level_(level_of(soles)) {
     limit_ = series.threshold(Rule::ground) * series.scale;
+    marked_ = std::ranges::any_of(soles.found.tracks,
+                                  [](const PointTrack& track) { return !track.point.estimated; });
     for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
       const Level own = series.options.ground ? Level() : level_of(soles, t);
       lower_.push_back(own.known ? std::clamp(level_.height - own.height, 0.0, limit_) : 0);
@@ -379,6 +381,7 @@ class GroundRule {
       double deep = 0;
       int here = -1;
       for (std::size_t t = 0; f < series_.frames && t < soles_.places.size(); ++t) {
+        if (marked_ && soles_.found.tracks[t].point.estimated) continue;
         const Vec3& place = soles_.places[t][at(f)];
         const auto ground = ground_at(place);
         if (!ground || *ground - lower_[t] - place.y() <= deep) continue;
@@ -444,6 +447,7 @@ class GroundRule {
   MotionFaults& out_;
   Level level_;
   double limit_ = 0;
+  bool marked_ = false;  // joints mark points of the soles; what is estimated sinks nowhere then
   // [tracks], metres below the level that a point stands: the height of ankles and balls over the
   // sole is not known.
   std::vector<double> lower_;

@@ -171,6 +171,11 @@ std::vector<Seeded> seeded_faults() {
          auto all = m.joint_positions(joint(clip, "LeftForeArm"));
          for (std::size_t f = kAt; f < kAt + 30; ++f) all[f] *= 1.1;
        }},
+      {"short bone", Rule::bone_length, "",
+       [=](LocalMotion& m, Clip& clip) {
+         auto all = m.joint_positions(joint(clip, "LeftToeBase"));
+         for (std::size_t f = kAt; f < kAt + 30; ++f) all[f] *= 1.03;
+       }},
       {"knee", Rule::joint_limit, "",
        [=](LocalMotion& m, Clip& clip) {
          // The shin forwards: about the body's left axis, whatever the joint's own axes are.
@@ -486,6 +491,17 @@ TEST(LintFaults, WhoCrawlsDoesNotSlide) {
   EXPECT_NE(find(faults_of(clip), Rule::foot_slide, kAt), nullptr);
   for (int f = 0; f < clip.frame_count(); ++f) clip.frame_positions(f)[0].y() -= 0.6F;
   EXPECT_EQ(find(faults_of(clip), Rule::foot_slide, kAt), nullptr);
+}
+
+// Would fail if heels, which are estimated, were in the ground where the toes, which joints mark,
+// are on it.
+TEST(LintFaults, EstimatedHeelsAloneDoNotSink) {
+  Clip clip = usual_walk();
+  const int foot = clip.skeleton.find("RightFoot");
+  for (int f = 0; f < 20; ++f) clip.frame_positions(kAt + f)[at(foot)].y() -= 0.2F;
+  const auto faults = faults_of(clip);
+  EXPECT_NE(find(faults, Rule::bone_length, kAt), nullptr) << listed(clip, faults);
+  EXPECT_EQ(find(faults, Rule::ground, kAt), nullptr) << listed(clip, faults);
 }
 
 // Would fail if feet ahead of who sits, which bear nobody, counted as standing.
