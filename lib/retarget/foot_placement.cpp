@@ -130,12 +130,20 @@ double standing_height(std::vector<float> lowest) {
   return *place;
 }
 
-std::vector<LegPlacement::Point> LegPlacement::points_of_foot(const Actor& actor, int ankle,
-                                                              double floor) {
-  std::vector<Point> points;
-  for (const int joint : joints_below(actor.skeleton, ankle)) {
-    points.push_back({joint, actor.pose[at(joint)].position.y() - floor});
+std::vector<FootPoint> LegPlacement::points_of_foot(const Actor& actor, int ankle, double floor,
+                                                    std::span<const BodyPoint> more) {
+  std::vector<FootPoint> points;
+  const auto height = [&](const BodyPoint& point) { return point.in(actor.pose).y() - floor; };
+  const std::vector<int> joints = joints_below(actor.skeleton, ankle);
+  for (const int joint : joints) points.push_back({at_joint(joint), height(at_joint(joint))});
+  // What is on the surface may come down to the sole.
+  double sole = std::numeric_limits<double>::max();
+  for (const BodyPoint& point : more) {
+    if (!std::ranges::binary_search(joints, point.joint)) continue;
+    points.push_back({point});
+    sole = std::min(sole, height(point));
   }
+  for (std::size_t i = joints.size(); i < points.size(); ++i) points[i].height = sole;
   return points;
 }
 
@@ -143,7 +151,9 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
                                                  std::span<const Quat> turns, double scale,
                                                  const Floor& source_floor,
                                                  const Floor& target_floor, bool is_left,
-                                                 const std::optional<Vec3>& heel) {
+                                                 const std::optional<Vec3>& heel,
+                                                 std::span<const BodyPoint> source_points,
+                                                 std::span<const BodyPoint> target_points) {
   const auto& [upper, lower, foot, toes] = kLegRoles[is_left ? 0 : 1];
   const int upper_joint = target.roles.joint(upper), lower_joint = target.roles.joint(lower);
   const int ankle_joint = target.roles.joint(foot);
@@ -169,10 +179,14 @@ std::optional<LegPlacement> LegPlacement::create(const Actor& source, const Acto
   const double width = (from(leg.source_hip_) - from(leg.source_other_hip_)).norm();
   leg.beside_ = beside_for_hips(left.norm(), scale * width, leg.limb_.length(target.pose));
 
-  leg.source_points_ =
-      points_of_foot(source, leg.source_ankle_, lowest_of_foot(source, foot) - source_floor.sole);
-  leg.target_points_ =
-      points_of_foot(target, ankle_joint, lowest_of_foot(target, foot) - target_floor.sole);
+  leg.source_points_ = points_of_foot(
+      source, leg.source_ankle_, lowest_of_foot(source, foot) - source_floor.sole, source_points);
+  const auto is_joint = [](const FootPoint& point) { return point.point.offset.isZero(0); };
+  leg.source_joints_ =
+      static_cast<std::size_t>(std::ranges::count_if(leg.source_points_, is_joint));
+  leg.target_points_ = points_of_foot(
+      target, ankle_joint, lowest_of_foot(target, foot) - target_floor.sole, target_points);
+  leg.foot_bend_ = FootBend(target, foot, leg.target_points_);
   return leg;
 }
 
@@ -233,15 +247,6 @@ void LegPlacement::find_soles(const Actor& source, const Actor& target, const Qu
   sideways_ = source_back * left;
 }
 
-double LegPlacement::depth(std::span<const Transform> pose, const std::vector<Point>& points,
-                           double floor) const {
-  double deepest = std::numeric_limits<double>::max();
-  for (const Point& point : points) {
-    deepest = std::min(deepest, pose[at(point.joint)].position.y() - floor - point.height);
-  }
-  return deepest;
-}
-
 // From the foot's lateral axis, because a foot rolling over its toes briefly points back.
 Vec3 LegPlacement::heading_of(const Quat& source_ankle) const {
   return flat((source_ankle * sideways_).cross(kUp)).stableNormalized();
@@ -254,7 +259,7 @@ LegPlacement::Track LegPlacement::begin_track(std::span<const Contact> contacts,
   track.front.assign(at(frames), 0);
   for (const Contact& contact : contacts) {
     const bool own = std::ranges::any_of(
-        source_points_, [&](const Point& point) { return point.joint == contact.joint; });
+        source_points_, [&](const FootPoint& point) { return point.point.joint == contact.joint; });
     if (!own) continue;
     const int last = std::min(frames - 1, static_cast<int>(std::floor(contact.end * rate)));
     for (auto f = static_cast<int>(std::ceil(contact.start * rate)); f <= last; ++f) {
@@ -269,7 +274,8 @@ void LegPlacement::add(const Clip& source, int begin, int end, Track& track) con
   for (int f = begin; f < end; ++f) {
     source.get_pose(f, pose);
     const char heel = track.heel[track.near.size()], front = track.front[track.near.size()];
-    const double height = depth(pose, source_points_, source_floor_.motion) / leg_;
+    const auto joints = std::span(source_points_).first(source_joints_);
+    const double height = lowest_over(source_floor_.motion, joints, pose) / leg_;
     track.near.push_back(
         std::max(1 - smooth_step(kNearFloor, kFarFromFloor, height), heel | front ? 1.0 : 0.0));
     const Vec3 shank = pose[at(source_ankle_)].position - pose[at(source_knee_)].position;
@@ -334,8 +340,9 @@ LegPlacement::Stances LegPlacement::find_stances(Track track, double rate) {
   const std::vector<double> stands = softened(std::exchange(track.near, {}), reach);
   std::vector<char> still(at(frames));
   for (std::size_t f = 0; f < at(frames); ++f) still[f] = heel[f] | front[f];
-  Stances result{std::vector<FootStance>(at(frames)),
-                 softened(std::vector<double>(still.begin(), still.end()), reach)};
+  const std::vector<double> touching(still.begin(), still.end());
+  Stances result{std::vector<FootStance>(at(frames)), softened(touching, reach),
+                 softened(touching, reach / 4)};
   for (std::size_t f = 0; f < at(frames); ++f) {
     result.feet[f] = {track.upright[f] * stands[f], rolls[f]};
     result.bearing[f] *= track.upright[f];
@@ -372,9 +379,13 @@ double LegPlacement::Way::lack() const {
   return standing * (-to_goal.y() - std::sqrt(reach * reach - beside));
 }
 
-Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
-                           std::span<const Transform> target_pose, const FootStance& stance) const {
+Vec3 LegPlacement::place_of(std::span<const Transform> source_pose,
+                            std::span<const Transform> target_pose,
+                            const FootStance& stance) const {
   const Vec3 ankle = target_pose[at(limb_.end())].position;
+  // A foot that is bent has its ankle where it would have it otherwise.
+  const Quat unbent = foot_bend_.turn_of_foot(-stance.bend.foot, target_pose) *
+                      target_pose[at(limb_.end())].orientation;
   const auto scaled = [&](const Vec3& point) {
     return Vec3(scale_ * point.x(),
                 target_floor_.motion + scale_ * (point.y() - source_floor_.motion),
@@ -386,18 +397,44 @@ Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
   const auto ankle_over = [&](const Sole& sole) {
     const Vec3 apart = sole.apart.x() * kUp.cross(heading) + sole.apart.y() * kUp;
     return Vec3(scaled(source_ankle * sole.source) + apart + sole.apart.z() * heading -
-                target_pose[at(limb_.end())].orientation * sole.target);
+                unbent * sole.target);
   };
   const Vec3 by_heel = ankle_over(heel_);
   Vec3 goal = by_heel + stance.on_ball * (ankle_over(ball_) - by_heel) +
               Vec3(stance.beside[0], 0, stance.beside[1]);
-  goal = ankle + stance.standing * (goal - ankle);
-  const double allowed =
-      std::min(0.0, scale_ * depth(source_pose, source_points_, source_floor_.motion));
-  const double lies =
-      depth(target_pose, target_points_, target_floor_.motion) + goal.y() - ankle.y();
-  if (lies < allowed) goal.y() += allowed - lies;
+  return ankle + stance.standing * (goal - ankle);
+}
+
+Vec3 LegPlacement::goal_of(std::span<const Transform> source_pose,
+                           std::span<const Transform> target_pose, const FootStance& stance) const {
+  Vec3 goal = place_of(source_pose, target_pose, stance);
+  const double rise = goal.y() - target_pose[at(limb_.end())].position.y();
+  const double lies = lowest_over(target_floor_.motion, target_points_, target_pose) + rise;
+  goal.y() += std::max(0.0, allowed(source_pose) - lies);
   return goal;
+}
+
+double LegPlacement::needed_bend(std::span<const Transform> source_pose,
+                                 std::span<const Transform> target_pose,
+                                 const FootStance& stance) const {
+  const Vec3 way =
+      place_of(source_pose, target_pose, stance) - target_pose[at(limb_.end())].position;
+  return foot_bend_.needed(target_floor_.motion + allowed(source_pose) - way.y(), target_pose);
+}
+
+double LegPlacement::allowed(std::span<const Transform> source_pose) const {
+  return std::min(0.0, scale_ * lowest_over(source_floor_.motion, source_points_, source_pose));
+}
+
+LegPlacement::Sunk LegPlacement::sunk(std::span<const Transform> source_pose,
+                                      std::span<const Transform> target_pose) const {
+  Sunk sunk;
+  const double lowest = allowed(source_pose);
+  for (const FootPoint& point : target_points_) {
+    const double depth = lowest - point.over(target_floor_.motion, target_pose);
+    if (depth > sunk.depth) sunk = {depth, point.point.joint};
+  }
+  return sunk;
 }
 
 LegPlacement::Outcome LegPlacement::place(std::span<const Transform> source_pose,

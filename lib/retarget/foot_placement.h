@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "retarget/foot_bend.h"
 #include "retarget/moved_limb.h"
 #include "retarget/pose_alignment.h"
 #include "retarget/touches.h"
@@ -21,11 +22,12 @@
 // both have one. The ankle's goal follows from it, so a planted foot stays still whatever the
 // height of the ankle and the length of the foot. Where hips are far wider or narrower for their
 // legs than the source's, each foot stands as far to the side of its hip as the source's: its
-// places are moved across the hips, by the same in all of a stance. Then the foot is raised if one
-// of its joints would be deeper in the floor than the source's. Two-bone inverse kinematics moves
-// the ankle there, weighted by the foot's stance; knees keep the plane they bend in, feet their
-// orientation. A leg that needs no correction beyond rounding is left as it is. If legs are too
-// short for their goals, the hips are lowered beforehand.
+// places are moved across the hips, by the same in all of a stance. Where a point of the foot would
+// be deeper in the floor than the source's, toes and foot are bent upwards, and the foot is raised
+// by what is left. Two-bone inverse kinematics moves the ankle there, weighted by the foot's
+// stance; knees keep the plane they bend in, feet their orientation. A leg that needs no correction
+// beyond rounding is left as it is. If legs are too short for their goals, the hips are lowered
+// beforehand.
 
 namespace krok::retarget {
 
@@ -65,6 +67,7 @@ struct FootStance {
   double on_ball = 0;   // whether the ball is placed, or the heel (0)
   // Metres along X and Z from the source's place, scaled, for the width of the hips.
   std::array<float, 2> beside = {0, 0};
+  BendAngles bend = {};
 };
 
 // One leg of source and target.
@@ -72,11 +75,14 @@ class LegPlacement {
  public:
   // `turns` aligns the target's reference pose, `scale` is lengths of the target over those of the
   // source. `heel` is the heel of the source's foot in the ankle's frame, metres, for which its
-  // contacts are; without it a typical one. Empty if either skeleton lacks a joint of this leg.
+  // contacts are; without it a typical one. `source_points` and `target_points` are points of both
+  // feet beside their joints. Empty if either skeleton lacks a joint of this leg.
   static std::optional<LegPlacement> create(const Actor& source, const Actor& target,
                                             std::span<const Quat> turns, double scale,
                                             const Floor& source_floor, const Floor& target_floor,
-                                            bool is_left, const std::optional<Vec3>& heel);
+                                            bool is_left, const std::optional<Vec3>& heel,
+                                            std::span<const BodyPoint> source_points,
+                                            std::span<const BodyPoint> target_points);
 
   // The heel of both.
   PointPair heel() const { return {{source_ankle_, heel_.source}, {limb_.end(), heel_.target}}; }
@@ -85,10 +91,11 @@ class LegPlacement {
 
   // Stance weight of the foot in each frame of the source, 0 to 1: in its contacts and while it is
   // near the floor, with soft starts and ends; less if the shank lies, as in kneeling, and none in
-  // flight. `bearing` is that of its contacts alone. `contacts` are those of the source.
+  // flight. `bearing` is that of its contacts alone, `touching` is 0 sooner before and
+  // after them. `contacts` are those of the source.
   struct Stances {
     std::vector<FootStance> feet;
-    std::vector<double> bearing;
+    std::vector<double> bearing, touching;
   };
 
   // What stances are found from, of all frames of a take.
@@ -105,6 +112,15 @@ class LegPlacement {
   // Heel and ball are placed alike from here on where both are in contact, however the foot is
   // pitched there.
   Stances find_stances(Track track, double rate);
+
+  // The angle by which toes and foot of a target pose have to be bent upwards not to be deeper in
+  // the floor than the source's, radians.
+  double needed_bend(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
+                     const FootStance& stance) const;
+  // Bends them by FootStance::bend. Before all that follows.
+  void bend_foot(const FootStance& stance, std::span<Transform> target_pose) const {
+    foot_bend_.bend(stance.bend.toes, stance.bend.foot, target_pose);
+  }
 
   // Adds what the leg needs of the hips to be as bent as the source's.
   void add_lack(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
@@ -134,15 +150,19 @@ class LegPlacement {
                 const FootStance& stance, double part, double softness,
                 std::span<Transform> target_pose) const;
 
+  // How much deeper in the floor a point of the target's foot is than any of the source's, scaled,
+  // and its joint; 0 and -1 if none is.
+  struct Sunk {
+    double depth = 0;  // metres
+    int joint = -1;
+  };
+  Sunk sunk(std::span<const Transform> source_pose, std::span<const Transform> target_pose) const;
+
  private:
   explicit LegPlacement(MovedLimb limb) : limb_(std::move(limb)) {}
 
-  // A joint of a foot and its height above the floor in the reference pose.
-  struct Point {
-    int joint = -1;
-    double height = 0;
-  };
-  static std::vector<Point> points_of_foot(const Actor& actor, int ankle, double floor);
+  static std::vector<FootPoint> points_of_foot(const Actor& actor, int ankle, double floor,
+                                               std::span<const BodyPoint> more);
 
   // A point that a foot turns about as it rolls, in the frames of both ankles.
   struct Sole {
@@ -155,10 +175,13 @@ class LegPlacement {
   void find_soles(const Actor& source, const Actor& target, const Quat& turn, Role foot,
                   const std::optional<Vec3>& heel);
 
+  // Where the ankle is to be; before the foot is raised for the floor.
   Vec3 goal_of(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
                const FootStance& stance) const;
-  double depth(std::span<const Transform> pose, const std::vector<Point>& points,
-               double floor) const;
+  Vec3 place_of(std::span<const Transform> source_pose, std::span<const Transform> target_pose,
+                const FootStance& stance) const;
+  // The height that a point of the target's foot may have over the floor, 0 or below.
+  double allowed(std::span<const Transform> source_pose) const;
   Vec3 heading_of(const Quat& source_ankle) const;
 
   MovedLimb limb_;
@@ -173,7 +196,9 @@ class LegPlacement {
   Quat onto_target_ = Quat::Identity();  // from the source's ankle's frame to the target's
   Vec3 ahead_ = Vec3::Zero();            // heading of the source's foot, in its ankle's frame
   Vec3 sideways_ = Vec3::Zero();         // left of ahead_, in the same frame
-  std::vector<Point> source_points_, target_points_;
+  std::vector<FootPoint> source_points_, target_points_;
+  std::size_t source_joints_ = 0;  // the first of source_points_
+  FootBend foot_bend_;
 };
 
 }  // namespace krok::retarget

@@ -19,6 +19,12 @@ constexpr int kShiftRounds = 2;
 constexpr double kSoftness = 1.5, kMaxSoftness = 0.06;
 constexpr double kSeat = 0.12;  // leg lengths, of the hips over the ground that one sits or lies on
 
+// Empty where all are 0.
+std::vector<double> softened_if_any(std::vector<double> values, int reach) {
+  if (std::ranges::all_of(values, [](double value) { return value == 0; })) return {};
+  return softened(values, reach);
+}
+
 class FrameTransfer {
  public:
   FrameTransfer(const FrameRun& run, const Skeleton& target, const TransferPlan& plan, int jobs,
@@ -50,31 +56,36 @@ class FrameTransfer {
     const auto frames = at(source_.frame_count());
     clip.resize(source_.frame_count());
     const bool touches = touches_ != nullptr && !touches_->empty();
+    bends_ = find_bends();
     if (touches || !plan_.legs.empty()) shifts_ = find_shifts(report);
     std::vector<std::vector<double>> softness(plan_.legs.size());
     const std::vector<double> drops =
         plan_.legs.empty() ? std::vector<double>() : find_drops(softness);
     std::vector<std::array<LegPlacement::Outcome, 2>> outcomes(frames);
+    std::vector<std::array<LegPlacement::Sunk, 2>> sunk(frames);
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       const int frame = static_cast<int>(f);
       if (!shifts_.empty()) shift_body(shifts_[f], pose);
       if (!drops.empty()) move_body(-drops[f] * kUp, pose);
+      bend_feet(f, pose);
       if (touches) touches_->place_knees(frame, plan_.local, pose);
       for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
         const PlacedLeg& leg = plan_.legs[i];
         const double kneels = touches ? touches_->kneels(frame, leg.is_left) : 0;
-        outcomes[f][i] =
-            leg.placement.place(from, plan_.local, leg.stances.feet[in_take(f)], 1 - kneels,
-                                softness[i].empty() ? 0 : softness[i][f], pose);
+        outcomes[f][i] = leg.placement.place(from, plan_.local, stance_of(i, f), 1 - kneels,
+                                             softness[i].empty() ? 0 : softness[i][f], pose);
       }
       if (touches) {
         touches_->place_feet(frame, plan_.local, pose);
         touches_->place_arms(frame, from, plan_.local, pose);
       }
+      for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
+        sunk[f][i] = plan_.legs[i].placement.sunk(from, pose);
+      }
       clip.set_pose(frame, pose);
     });
     for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
-      add(outcomes, i, *(plan_.legs[i].is_left ? report.left_foot : report.right_foot));
+      add(outcomes, sunk, i, *(plan_.legs[i].is_left ? report.left_foot : report.right_foot));
     }
     for (const double drop : kept(drops)) report.largest_drop = std::max(report.largest_drop, drop);
     if (touches_ != nullptr) {
@@ -215,6 +226,38 @@ class FrameTransfer {
     if (touches_ != nullptr) touches_->turn_trunk(shift.turn, plan_.local, pose);
   }
 
+  // The angles by which toes and feet are bent so that they do not go into the floor, without a
+  // jerk, [legs][frames]; empty for feet that need none.
+  std::vector<std::vector<double>> find_bends() const {
+    std::vector<std::vector<double>> bends(plan_.legs.size(),
+                                           std::vector<double>(at(source_.frame_count())));
+    for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
+      for (std::size_t i = 0; i < bends.size(); ++i) {
+        const PlacedLeg& leg = plan_.legs[i];
+        bends[i][f] = leg.placement.needed_bend(from, pose, leg.stances.feet[in_take(f)]);
+      }
+    });
+    for (std::vector<double>& angles : bends) {
+      angles = softened_if_any(std::move(angles), softening_reach(source_.rate) / 2);
+    }
+    return bends;
+  }
+
+  FootStance stance_of(std::size_t leg, std::size_t frame) const {
+    const LegPlacement::Stances& stances = plan_.legs[leg].stances;
+    FootStance stance = stances.feet[in_take(frame)];
+    if (leg < bends_.size() && !bends_[leg].empty()) {
+      stance.bend = bend_angles(bends_[leg][frame], 1 - stances.touching[in_take(frame)]);
+    }
+    return stance;
+  }
+
+  void bend_feet(std::size_t frame, std::span<Transform> pose) const {
+    for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
+      plan_.legs[i].placement.bend_foot(stance_of(i, frame), pose);
+    }
+  }
+
   // How hips and trunk move in each frame so that limbs that touch something are bent as the
   // source's.
   std::vector<BodyShift> find_shifts(Report& report) const {
@@ -224,10 +267,12 @@ class FrameTransfer {
       std::vector<BodyShift> more(shifts.size());
       for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
         shift_body(shifts[f], pose);
+        bend_feet(f, pose);
         ShiftSolver solver(plan_.leg_length);
-        for (const PlacedLeg& leg : plan_.legs) {
-          leg.placement.add_lack(from, pose, leg.stances.feet[in_take(f)],
-                                 leg.stances.bearing[in_take(f)], solver);
+        for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
+          const PlacedLeg& leg = plan_.legs[i];
+          leg.placement.add_lack(from, pose, stance_of(i, f), leg.stances.bearing[in_take(f)],
+                                 solver);
         }
         if (touches_ != nullptr) touches_->add_lacks(static_cast<int>(f), pose, solver);
         more[f] = solver.solve();
@@ -268,31 +313,29 @@ class FrameTransfer {
                                                      std::vector<LegPlacement::Way>(drops.size()));
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       if (!shifts_.empty()) shift_body(shifts_[f], pose);
+      bend_feet(f, pose);
       for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
-        const PlacedLeg& leg = plan_.legs[i];
-        ways[i][f] = leg.placement.way(from, pose, leg.stances.feet[in_take(f)]);
+        ways[i][f] = plan_.legs[i].placement.way(from, pose, stance_of(i, f));
         drops[f] = std::max(drops[f], ways[i][f].lack());
       }
     });
     const double most = 0.06 * plan_.leg_length;
     for (double& drop : drops) drop = std::min(drop, most);
     const int reach = softening_reach(source_.rate);
-    const auto is_zero = [](double value) { return value == 0; };
-    if (std::ranges::all_of(drops, is_zero)) drops.clear();
-    if (!drops.empty()) drops = softened(drops, reach);
+    drops = softened_if_any(std::move(drops), reach);
     for (std::size_t i = 0; i < ways.size(); ++i) {
       for (std::size_t f = 0; f < ways[i].size(); ++f) {
         softness[i].push_back(
             std::min(kSoftness * ways[i][f].short_by(drops.empty() ? 0 : drops[f]),
                      kMaxSoftness * plan_.leg_length));
       }
-      softness[i] = std::ranges::all_of(softness[i], is_zero) ? std::vector<double>()
-                                                              : softened(softness[i], reach);
+      softness[i] = softened_if_any(std::move(softness[i]), reach);
     }
     return drops;
   }
 
-  void add(const std::vector<std::array<LegPlacement::Outcome, 2>>& outcomes, std::size_t side,
+  void add(const std::vector<std::array<LegPlacement::Outcome, 2>>& outcomes,
+           const std::vector<std::array<LegPlacement::Sunk, 2>>& sunk, std::size_t side,
            FootReport& foot) const {
     for (int f = run_.kept_begin; f < run_.kept_end; ++f) {
       const LegPlacement::Outcome& outcome = outcomes[at(f)][side];
@@ -304,6 +347,11 @@ class FrameTransfer {
         foot.largest_miss = outcome.miss;
         foot.largest_miss_frame = run_.first + f;
       }
+      if (sunk[at(f)][side].depth > foot.largest_depth) {
+        foot.largest_depth = sunk[at(f)][side].depth;
+        foot.largest_depth_time = (run_.first + f) / source_.rate;
+        foot.largest_depth_joint = sunk[at(f)][side].joint;
+      }
     }
   }
 
@@ -314,6 +362,7 @@ class FrameTransfer {
   int jobs_;
   const TouchKeeping* touches_;                     // of the run
   std::span<Transform> poses_;                      // [frames x joints()]
+  std::vector<std::vector<double>> bends_;          // of find_bends()
   std::vector<BodyShift> shifts_;                   // [frames] or empty
   std::vector<char> below_anchor_, beside_anchor_;  // [target joints]
 };

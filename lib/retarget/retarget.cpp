@@ -313,13 +313,17 @@ class Transfer {
   }
 
   void add_legs(const krok::Feet& feet) {
+    const std::vector<BodyPoint> source_points = estimated_tips(feet);
+    const std::vector<BodyPoint> target_points =
+        options_.target_feet.empty() ? estimated_tips(find_feet(target_clip_, target_roles_))
+                                     : options_.target_feet;
     for (const bool is_left : {true, false}) {
       std::optional<Vec3> heel;
       for (const SolePoint& point : feet.points[is_left ? 0 : 1]) {
         if (point.part == FootPart::heel) heel = point.offset;
       }
       auto leg = LegPlacement::create(from(), onto(), turns_, report_->scale, source_floor_,
-                                      target_floor_, is_left, heel);
+                                      target_floor_, is_left, heel, source_points, target_points);
       if (!leg) continue;
       (is_left ? report_->left_foot : report_->right_foot).emplace();
       plan_.legs.push_back({std::move(*leg), {}, is_left});

@@ -9,6 +9,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "math/types.h"
+#include "retarget/foot_points.h"
 #include "roles/roles.h"
 #include "scene/frame_blocks.h"
 #include "scene/skeleton.h"
@@ -46,6 +47,9 @@ struct Options {
   // The height of the floor under the target's reference pose (metres), from a mesh standing on it.
   // By default the height of the lowest joint of its feet.
   std::optional<double> target_floor = std::nullopt;
+  // Points of the target's feet that are to be no deeper in the floor than the source's, as
+  // points_of_feet() of that mesh. By default its joints and usual tips of the toes.
+  std::vector<BodyPoint> target_feet = {};
 
   // Frames used as reference poses, for skeletons whose own is not an upright stance. By default
   // the skeleton's own if it is upright, otherwise one built from it (retarget/stance.h).
@@ -80,6 +84,10 @@ struct FootReport {
   int largest_correction_frame = -1;
   double largest_miss = 0;  // metres by which a leg was too short for its goal
   int largest_miss_frame = -1;
+  // Metres by which a point of the foot is deeper in the floor than the source's foot, scaled.
+  double largest_depth = 0;
+  double largest_depth_time = 0;  // seconds
+  int largest_depth_joint = -1;   // of the target; -1 if none is deeper
 };
 
 // A stretch of time in which the source touches something, and what became of it.

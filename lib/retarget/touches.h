@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "math/types.h"
+#include "retarget/foot_points.h"
 #include "retarget/pose_alignment.h"
 #include "scene/clip.h"
 
@@ -51,16 +52,6 @@ inline constexpr int kBodyParts = 9;
 
 // "left hand", "hips".
 const char* name_of(BodyPart part);
-
-// A point fixed to a joint.
-struct BodyPoint {
-  int joint = -1;
-  Vec3 offset = Vec3::Zero();  // metres, in the joint's frame
-
-  Vec3 in(std::span<const Transform> pose) const {
-    return pose[static_cast<std::size_t>(joint)] * offset;
-  }
-};
 
 inline BodyPoint at_joint(int joint) {
   return {joint, Vec3::Zero()};

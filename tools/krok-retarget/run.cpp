@@ -34,8 +34,8 @@ namespace {
 constexpr double kSunk = 0.05;  // metres: steeper ground than that which its feet stood on
 
 struct Target {
-  Clip clip;                // without frames if it is a model
-  std::vector<Vec3f> mesh;  // of a model
+  Clip clip;   // without frames if it is a model
+  Model mesh;  // without vertices if it is a motion
 };
 
 Result<Target> read_target(const std::string& path, ToolContext& context) {
@@ -52,8 +52,8 @@ Result<Target> read_target(const std::string& path, ToolContext& context) {
     target.clip = std::move(actor->motions[0].clip);
     return target;
   }
-  target.mesh = std::move(actor->model.positions);
-  target.clip.skeleton = std::move(actor->model.skeleton);
+  target.mesh = std::move(actor->model);
+  target.clip.skeleton = target.mesh.skeleton;
   return target;
 }
 
@@ -301,7 +301,10 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
   const auto target_roles = roles_of(target->clip.skeleton, options.onto_map, context);
   if (!target_roles) return target_roles.error();
   if (!options.ground.empty()) how.feet = krok::retarget::Feet::free;
-  how.target_floor = floor_below(target->mesh, target->clip.skeleton, *target_roles);
+  how.target_floor = floor_below(target->mesh.positions, target->clip.skeleton, *target_roles);
+  if (how.target_floor) {
+    how.target_feet = krok::retarget::points_of_feet(target->mesh, *target_roles);
+  }
   Status posed = take_pose("--reference-pose", options.reference_pose, source.skeleton,
                            how.source_pose, context);
   if (posed) {

@@ -58,7 +58,9 @@ Json foot_json(const std::optional<krok::retarget::FootReport>& foot) {
   return {{"largest_correction", foot->largest_correction},
           {"largest_correction_frame", frame(foot->largest_correction_frame)},
           {"largest_miss", foot->largest_miss},
-          {"largest_miss_frame", frame(foot->largest_miss_frame)}};
+          {"largest_miss_frame", frame(foot->largest_miss_frame)},
+          {"largest_depth", foot->largest_depth},
+          {"largest_depth_time", foot->largest_depth_time}};
 }
 
 // The largest of every measure over all contacts.
@@ -226,6 +228,25 @@ std::optional<Diagnostic> missed_contacts(const Outcome& outcome) {
       "other proportions, or --scale, leave limbs too short; krok-retarget -v lists all contacts");
 }
 
+// Feet that go deeper into the ground than the input's.
+std::optional<Diagnostic> sunk_foot(const Outcome& outcome) {
+  constexpr double kDeep = 0.02;  // metres
+  const krok::retarget::FootReport* worst = nullptr;
+  for (const auto* foot : {&outcome.report.left_foot, &outcome.report.right_foot}) {
+    if (*foot && (worst == nullptr || (*foot)->largest_depth > worst->largest_depth)) {
+      worst = &**foot;
+    }
+  }
+  if (worst == nullptr || worst->largest_depth < kDeep) return std::nullopt;
+  return make_warning(
+      "retarget-sunk",
+      fmt::format("{} goes {} deeper into the ground at {} s than the input's foot",
+                  outcome.target.names[at(worst->largest_depth_joint)],
+                  millimetres(worst->largest_depth), readable(worst->largest_depth_time, 3)),
+      "feet that lie or kneel are placed as a whole; krok-edit --settle lays a "
+      "motion on the ground");
+}
+
 // Legs that straighten and still miss a place of the input's foot.
 std::optional<Diagnostic> short_legs(const krok::retarget::Report& report) {
   constexpr double kShort = 0.01;  // metres
@@ -283,6 +304,7 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
         "krok-retarget set them"));
   }
   if (auto reach = short_legs(report)) choices.push_back(*std::move(reach));
+  if (auto sunk = sunk_foot(outcome)) choices.push_back(*std::move(sunk));
   if (auto missed = missed_contacts(outcome)) choices.push_back(*std::move(missed));
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
     note("retarget-fingers",

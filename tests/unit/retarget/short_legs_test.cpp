@@ -9,6 +9,7 @@
 #include "contacts/legs.h"
 #include "contacts/sole_points.h"
 #include "plant/follow_feet.h"
+#include "retarget/foot_points.h"
 #include "samples/generator/walk.h"
 #include "support/chibi_skeleton.h"
 #include "tests/unit/retarget/actors.h"
@@ -146,6 +147,81 @@ TEST(ShortLegs, HipsAsPeopleHaveThemMoveNoFeet) {
   EXPECT_NEAR(beside_for_hips(0.34, 0.08, 0.37), 0.13, 1e-12);
   EXPECT_NEAR(beside_for_hips(0.2, 0.7, 0.8), -0.25, 1e-12);
   EXPECT_EQ(beside_for_hips(0.2, 0.1, 0), 0);
+}
+
+// Boots on chibi_skeleton() with other names: boxes that reach 0.11 m behind the ankle, and 0.19 m
+// ahead of the toe joint with what follows it.
+Model boots_on(const Skeleton& skeleton) {
+  Model model;
+  model.skeleton = skeleton;
+  model.influences_per_vertex = 1;
+  const auto add_box = [&](const std::string& joint, const Vec3& low, const Vec3& high) {
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vec3 place((corner & 1) != 0 ? high.x() : low.x(), (corner & 2) != 0 ? high.y() : 0,
+                       (corner & 4) != 0 ? high.z() : low.z());
+      model.positions.push_back(place.cast<float>());
+      model.influence_joints.push_back(static_cast<std::uint16_t>(skeleton.find("rig:" + joint)));
+      model.influence_weights.push_back(1);
+    }
+  };
+  for (const double side : {0.17, -0.17}) {
+    const std::string name = side > 0 ? "Left" : "Right";
+    add_box(name + "Foot", {side - 0.07, 0, -0.13}, {side + 0.07, 0.14, 0.09});
+    add_box(name + "ToeBase", {side - 0.07, 0, 0.1}, {side + 0.07, 0.1, 0.29});
+  }
+  return model;
+}
+
+// The lowest that the boots are in any frame.
+double lowest_of(const Model& boots, const Clip& clip) {
+  double lowest = 1e9;
+  for (std::size_t v = 0; v < boots.positions.size(); ++v) {
+    const int joint = boots.influence_joints[v];
+    const Vec3 place =
+        boots.skeleton.reference[at(joint)].inverse() * boots.positions[v].cast<double>();
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      lowest = std::min(lowest, (joint_at(clip, f, joint) * place).y());
+    }
+  }
+  return lowest;
+}
+
+TEST(ShortLegs, PointsOfBootsAreTheirOutline) {
+  const Skeleton skeleton = with_other_axes(chibi_skeleton(), 4);
+  const auto points = retarget::points_of_feet(boots_on(skeleton), find_roles(skeleton));
+  Eigen::AlignedBox3d left;
+  for (const retarget::BodyPoint& point : points) {
+    const Vec3 place = point.in(skeleton.reference);
+    if (place.x() > 0) left.extend(place);
+  }
+  EXPECT_NEAR((left.min() - Vec3(0.17, 0, -0.13)).norm(), 0, 1e-6);
+  EXPECT_NEAR(left.max().x(), 0.17, 1e-6);
+  EXPECT_NEAR(left.max().z(), 0.29, 1e-6);
+  Model bare = boots_on(skeleton);
+  bare.positions.clear();
+  EXPECT_TRUE(retarget::points_of_feet(bare, find_roles(skeleton)).empty());
+}
+
+// Tips of boots went 0.1 m and more into the ground as the foot pushed off.
+TEST(ShortLegs, TipsOfBootsStayAboveTheGround) {
+  const Clip source = walk_of(1.75).clip;
+  const Skeleton target = with_other_axes(chibi_skeleton(), 4);
+  const Model boots = boots_on(target);
+  const auto sunk = transfer(source, target, {.target_floor = 0.0});
+  const auto made = transfer(
+      source, target,
+      {.target_floor = 0.0, .target_feet = retarget::points_of_feet(boots, find_roles(target))});
+  ASSERT_TRUE(sunk.ok() && made.ok());
+  EXPECT_LT(lowest_of(boots, sunk->clip), -0.04);
+  EXPECT_GT(lowest_of(boots, made->clip), -0.015);
+  EXPECT_LT(made->report.left_foot->largest_depth, 0.005);
+  // Balls in contact are where they were; heels are higher by what is behind them.
+  for (const auto* one : {&*sunk, &*made}) {
+    for (const retarget::ContactReport& contact : one->report.contacts) {
+      EXPECT_LT(contact.height, contact.part.ends_with("ball") ? 0.02 : 0.035)
+          << contact.part << " " << contact.start;
+    }
+  }
 }
 
 // The most that a knee bends or straightens in a frame, degrees.
