@@ -64,6 +64,9 @@ std::vector<Swing> swings_of(const Series& series, Role role) {
   if (foot < 0) return swings;
   std::vector<double> speeds(at(series.frames), 0.0);
   const auto place = [&](int f) { return series.clip.frame_positions(f)[at(foot)]; };
+  const auto is_below_hips = [&](int f) {  // not of cartwheels
+    return place(f).y() < series.clip.frame_positions(f)[at(series.carrier)].y();
+  };
   for (int f = 1; f + 1 < series.frames; ++f) {
     speeds[at(f)] = 0.5 * (place(f + 1) - place(f - 1)).norm();
   }
@@ -77,7 +80,7 @@ std::vector<Swing> swings_of(const Series& series, Role role) {
     if (fast && first < 0) first = f;
     if (fast || first < 0) continue;
     const double way = (place(f) - place(first - 1)).norm() / series.scale;
-    if (first > 1 && way > kShortestStep && way < kLongestStep) {
+    if (first > 1 && way > kShortestStep && way < kLongestStep && is_below_hips((first + f) / 2)) {
       // Fractions of frames at both ends.
       const auto crossing = [&](int a, int b) {
         const double rise = std::abs(speeds[at(b)] - speeds[at(a)]);
