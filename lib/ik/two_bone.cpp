@@ -64,12 +64,6 @@ Vec3 any_perpendicular(const Vec3& along) {
   return along.cross(Vec3::Unit(least)).normalized();
 }
 
-double soft_distance(double distance, double longest, double softness) {
-  const double start = longest - softness;
-  if (!(softness > 0) || distance <= start) return distance;
-  return start + softness * (1.0 - std::exp(-(distance - start) / softness));
-}
-
 // Of the upper bone and of the lower one: both are computed side by side.
 using Two = Eigen::Array2d;
 
@@ -169,6 +163,12 @@ double reach_at(double upper_length, double lower_length, double bend) {
 }
 
 }  // namespace
+
+double soft_distance(double distance, double longest, double softness) {
+  const double start = longest - softness;
+  if (!(softness > 0) || distance <= start) return distance;
+  return start + softness * (1.0 - std::exp(-(distance - start) / softness));
+}
 
 double two_bone_reach(double upper_length, double lower_length, double bend) {
   // |u a + l b|^2 with an angle of `bend` between the unit vectors a and b, in a form without

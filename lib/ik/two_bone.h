@@ -73,6 +73,10 @@ struct TwoBoneSolution {
 // finite leave it unchanged with `reached` false.
 TwoBoneSolution solve_two_bone(const TwoBoneChain& chain, const TwoBoneGoal& goal);
 
+// The distance, up to `longest`, at which the end stays for a target at `distance`, with a softness
+// as in TwoBoneGoal; without softness `distance` itself.
+double soft_distance(double distance, double longest, double softness);
+
 // The distance from root to end of two bones with this bend.
 double two_bone_reach(double upper_length, double lower_length, double bend);
 

@@ -3,10 +3,13 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <utility>
 #include <vector>
+
+#include "core/index.h"
 
 namespace krok {
 
@@ -77,6 +80,31 @@ std::vector<double> max_within(std::span<const double> values, int reach) {
     result[i] = values[falling.front()];
   }
   return result;
+}
+
+std::vector<double> softened(std::span<const double> values, int reach) {
+  const int count = static_cast<int>(values.size());
+  const std::vector<double> widened = max_within(values, reach);
+  std::vector<double> result(values.size());
+  std::vector<double> weights;
+  double all = 0;
+  for (int k = -reach; k <= reach; ++k) {
+    weights.push_back(1 + std::cos(kPi * k / (reach + 1)));
+    all += weights.back();
+  }
+  for (int i = 0; i < count; ++i) {
+    double sum = 0;
+    for (int k = -reach; k <= reach; ++k) {
+      sum += weights[at(k + reach)] * widened[at(std::clamp(i + k, 0, count - 1))];
+    }
+    result[at(i)] = sum / all;
+  }
+  return result;
+}
+
+std::vector<double> softened_if_any(std::vector<double> values, int reach) {
+  if (std::ranges::all_of(values, [](double value) { return value == 0; })) return {};
+  return softened(values, reach);
 }
 
 std::vector<double> mean_within(std::span<const double> values, int reach) {

@@ -12,6 +12,12 @@ namespace krok {
 // The largest value within `reach` (>= 0) values on either side, of each.
 std::vector<double> max_within(std::span<const double> values, int reach);
 
+// A smooth curve that is nowhere below `values` (within rounding): the max over `reach` (>= 0)
+// neighbours on either side, averaged over as many with raised-cosine weights.
+std::vector<double> softened(std::span<const double> values, int reach);
+// The same, but empty where all values are 0.
+std::vector<double> softened_if_any(std::vector<double> values, int reach);
+
 // The mean of so many values; the ends stand for what is beyond them.
 std::vector<double> mean_within(std::span<const double> values, int reach);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "ik/soft_reach.h"
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
 #include "math/window.h"
@@ -372,6 +373,8 @@ double below_hip(const Vec3& from_hip) {
 struct LegNow {
   Transform upper, lower, foot;
   double thigh = 0, shank = 0, reach = 0;  // metres; reach from hip to ankle
+  Vec3 wanted = Vec3::Zero();              // from the hip to where the ankle is to be
+  double below = 0;                        // of below_hip()
   Vec3 goal = Vec3::Zero();                // of the ankle
 
   LegNow(const Clip& clip, int frame, const Leg& leg, const FootPath& path, double lowered) {
@@ -384,14 +387,33 @@ struct LegNow {
     thigh = (lower.position - upper.position).norm();
     shank = (foot.position - lower.position).norm();
     reach = (foot.position - upper.position).norm();
+    wanted = goal - upper.position;
+    below = below_hip(wanted);
     // A foot in the air is not worth a pelvis that goes down or a leg that is stretched.
-    const Vec3 wanted = goal - upper.position;
     const double too_far = wanted.norm() - longest();
-    if (too_far > 0) goal -= (1 - below_hip(wanted)) * too_far * wanted.normalized();
+    if (too_far > 0) goal -= (1 - below) * too_far * wanted.normalized();
   }
 
   // From hip to ankle, metres: as captured, or of a leg that is nearly straight.
   double longest() const { return std::max(reach, two_bone_reach(thigh, shank, kNearlyStraight)); }
+  // Likewise; as far as the foot is below its hip, the whole length.
+  double limit() const {
+    const double too_far = std::max(0.0, wanted.norm() - longest());
+    return std::min(thigh + shank, longest() + below * too_far);
+  }
+  double lack() const { return std::max(0.0, wanted.norm() - limit()); }
+  bool reached() const {
+    const double distance = (goal - upper.position).norm();
+    return distance < thigh + shank + kReached && distance > std::abs(thigh - shank) - kReached;
+  }
+
+  // Brings the goal within the limit, with this softness (TwoBoneGoal).
+  void extend_softly(double softness) {
+    const double distance = wanted.norm();
+    if (distance <= limit() - softness) return;
+    const double soft = std::min(limit(), soft_distance(distance, limit(), softness));
+    goal = upper.position + soft / distance * wanted;
+  }
 };
 
 // Metres by which the hip must be lowered for the ankle to be within `reach` of it, >= 0; if the
@@ -546,19 +568,25 @@ int apply(const PlantedBody& body, const std::vector<FootPath>& paths,
           const std::vector<double>& lowered, Clip& clip) {
   int out_of_reach = 0;
   std::array<Moves, 2> moves;
-  std::array<std::vector<double>, 2> knees;
+  std::array<std::vector<double>, 2> knees, softness;
   for (std::size_t i = 0; i < body.legs.size(); ++i) {
     knees[i] = knee_angles(clip, body.legs[i], paths[i], lowered);
+    if (!paths[i].extends_softly) continue;
+    for (int frame = 0; frame < clip.frame_count(); ++frame) {
+      const double metres = lowered[static_cast<std::size_t>(frame)];
+      softness[i].push_back(LegNow(clip, frame, body.legs[i], paths[i], metres).lack());
+    }
+    softness[i] = softness_of(std::move(softness[i]), body.leg_length, clip.rate);
   }
   for (int frame = 0; frame < clip.frame_count(); ++frame) {
     const auto f = static_cast<std::size_t>(frame);
     const Vec3 shift = -lowered[f] * Vec3::UnitY();
     bool reached = true;
     for (std::size_t i = 0; i < body.legs.size(); ++i) {
-      const LegNow now(clip, frame, body.legs[i], paths[i], lowered[f]);
+      LegNow now(clip, frame, body.legs[i], paths[i], lowered[f]);
+      reached = reached && now.reached();
+      if (!softness[i].empty()) now.extend_softly(softness[i][f]);
       moves[i] = moves_of(clip, frame, body.legs[i], now, paths[i].turn[f], knees[i][f]);
-      reached = reached &&
-                (moves[i][static_cast<std::size_t>(Body::foot)].then - now.goal).norm() < kReached;
     }
     if (!reached) ++out_of_reach;
     const auto positions = clip.frame_positions(frame);

@@ -66,8 +66,9 @@ inline constexpr double kNearlyStraight = 20 * kRadiansPerDegree;
 
 // The correction of one foot, [frames]; world space.
 struct FootPath {
-  std::vector<Vec3> turn;   // rotation vectors, to be put on the foot from the left
-  std::vector<Vec3> shift;  // metres, of the ankle
+  std::vector<Vec3> turn;       // rotation vectors, to be put on the foot from the left
+  std::vector<Vec3> shift;      // metres, of the ankle
+  bool extends_softly = false;  // the foot lags behind where its leg is too short
 };
 
 FootPath foot_path(const Clip& clip, const PlantedBody& body, const Leg& leg,

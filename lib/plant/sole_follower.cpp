@@ -273,6 +273,7 @@ double SoleFollower::standing_height(int frame) const {
 
 FootPath SoleFollower::path(const Clip& clip) const {
   FootPath path;
+  path.extends_softly = true;
   const Quat theirs = theirs_.axes(), own = own_.axes().conjugate();
   for (int f = 0; f < clip.frame_count(); ++f) {
     const Transform source = joint_at(*source_, f, theirs_.foot);

@@ -7,6 +7,7 @@
 
 #include "contacts/hip_widths.h"
 #include "core/index.h"
+#include "ik/soft_reach.h"
 #include "math/window.h"
 #include "retarget/actor_view_internal.h"
 #include "retarget/touch_keeping.h"
@@ -65,32 +66,6 @@ double elevation(const Vec3& v) {
 }
 
 }  // namespace
-
-int softening_reach(double rate) {
-  constexpr double kMax = 256;  // reached only at thousands of fps
-  return static_cast<int>(std::lround(std::min(0.12 * rate, kMax)));
-}
-
-std::vector<double> softened(const std::vector<double>& values, int reach) {
-  const int count = static_cast<int>(values.size());
-  const std::vector<double> widened = max_within(values, reach);
-  std::vector<double> result(values.size());
-  // Raised-cosine weights.
-  std::vector<double> weights;
-  double all = 0;
-  for (int k = -reach; k <= reach; ++k) {
-    weights.push_back(1 + std::cos(kPi * k / (reach + 1)));
-    all += weights.back();
-  }
-  for (int i = 0; i < count; ++i) {
-    double sum = 0;
-    for (int k = -reach; k <= reach; ++k) {
-      sum += weights[at(k + reach)] * widened[at(std::clamp(i + k, 0, count - 1))];
-    }
-    result[at(i)] = sum / all;
-  }
-  return result;
-}
 
 double lowest_of_foot(const Actor& actor, Role foot) {
   double lowest = std::numeric_limits<double>::max();

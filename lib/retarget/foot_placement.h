@@ -54,13 +54,6 @@ void add_lowest(const Clip& clip, const Actor& stance, std::vector<float>& lowes
 // add_lowest() gives. 0 without frames.
 double standing_height(std::vector<float> lowest);
 
-// The number of frames in 0.12 s at `rate` fps, at most 256.
-int softening_reach(double rate);
-
-// A smooth curve that is nowhere below `values` (within rounding): the max over `reach` neighbours
-// on either side, averaged over as many.
-std::vector<double> softened(const std::vector<double>& values, int reach);
-
 // The stance of a foot in a frame, each from 0 to 1.
 struct FootStance {
   double standing = 0;  // how far its place is kept

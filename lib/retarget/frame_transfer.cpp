@@ -6,7 +6,9 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
+#include "ik/soft_reach.h"
 #include "math/quaternion.h"
+#include "math/window.h"
 #include "retarget/actor_view_internal.h"
 
 namespace krok::retarget {
@@ -15,15 +17,7 @@ namespace {
 
 constexpr std::size_t kFramesATime = 64;
 constexpr int kShiftRounds = 2;
-// The softness with which a leg straightens, of what it is too short by, and at most, of the leg.
-constexpr double kSoftness = 1.5, kMaxSoftness = 0.06;
 constexpr double kSeat = 0.12;  // leg lengths, of the hips over the ground that one sits or lies on
-
-// Empty where all are 0.
-std::vector<double> softened_if_any(std::vector<double> values, int reach) {
-  if (std::ranges::all_of(values, [](double value) { return value == 0; })) return {};
-  return softened(values, reach);
-}
 
 class FrameTransfer {
  public:
@@ -321,15 +315,12 @@ class FrameTransfer {
     });
     const double most = 0.06 * plan_.leg_length;
     for (double& drop : drops) drop = std::min(drop, most);
-    const int reach = softening_reach(source_.rate);
-    drops = softened_if_any(std::move(drops), reach);
+    drops = softened_if_any(std::move(drops), softening_reach(source_.rate));
     for (std::size_t i = 0; i < ways.size(); ++i) {
       for (std::size_t f = 0; f < ways[i].size(); ++f) {
-        softness[i].push_back(
-            std::min(kSoftness * ways[i][f].short_by(drops.empty() ? 0 : drops[f]),
-                     kMaxSoftness * plan_.leg_length));
+        softness[i].push_back(ways[i][f].short_by(drops.empty() ? 0 : drops[f]));
       }
-      softness[i] = softened_if_any(std::move(softness[i]), reach);
+      softness[i] = softness_of(std::move(softness[i]), plan_.leg_length, source_.rate);
     }
     return drops;
   }

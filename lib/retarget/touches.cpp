@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/index.h"
+#include "ik/soft_reach.h"
+#include "math/window.h"
 #include "retarget/actor_view_internal.h"
 #include "retarget/foot_placement.h"
 

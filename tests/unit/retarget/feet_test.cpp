@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "ik/soft_reach.h"
+#include "math/window.h"
 #include "retarget/foot_placement.h"
 #include "samples/generator/walk.h"
 #include "tests/unit/retarget/actors.h"
@@ -22,14 +24,14 @@ samples::Walk walk_of(samples::WalkOptions options) {
 
 // A file may claim any rate; the frames that are looked at must not grow with it.
 TEST(Softening, ReachesAsFarAsTheRateAllows) {
-  EXPECT_EQ(retarget::softening_reach(100), 12);
-  EXPECT_EQ(retarget::softening_reach(1e11), 256);
-  EXPECT_EQ(retarget::softening_reach(1e-9), 0);
+  EXPECT_EQ(softening_reach(100), 12);
+  EXPECT_EQ(softening_reach(1e11), 256);
+  EXPECT_EQ(softening_reach(1e-9), 0);
   const std::vector<double> values = {0, 0, 0, 1, 0, 0, 0, 0};
-  const auto soft = retarget::softened(values, 2);
+  const auto soft = softened(values, 2);
   for (std::size_t i = 0; i < values.size(); ++i) EXPECT_GE(soft[i], values[i] - 1e-12) << i;
   EXPECT_NEAR(soft[3], 1, 1e-12);
-  EXPECT_EQ(retarget::softened({}, 256).size(), 0u);
+  EXPECT_EQ(softened({}, 256).size(), 0u);
 }
 
 // A figure of other proportions: `thigh`, `shank`, `foot` and `width` times those of a human.

@@ -242,6 +242,27 @@ double knee_step(const Clip& clip) {
   return most;
 }
 
+// A leg that is led too far was as straight as it may be, then bent by three times what the
+// source's does in a frame and more.
+TEST(ShortLegs, KneesOfActorsThatAreLedDoNotSnap) {
+  samples::WalkOptions options;
+  options.steps = 6;
+  options.stature = 1.5;
+  options.step_length = 0.8;
+  auto walk = samples::make_walk(options);
+  ASSERT_TRUE(walk.ok());
+  const Clip& source = walk->clip;
+  const Skeleton target = with_other_axes(chibi_skeleton(), 4);
+  const auto copy = transfer(source, target, {.feet = retarget::Feet::free});
+  ASSERT_TRUE(copy.ok());
+  const GroundBelow level = {[](const Vec3&) { return std::optional<double>(0); },
+                             [](const Vec3&) { return Vec3(Vec3::UnitY()); }};
+  const auto made = follow_feet(source, find_roles(source.skeleton), copy->clip, find_roles(target),
+                                copy->report.scale, level);
+  ASSERT_TRUE(made.ok());
+  EXPECT_LT(knee_step(made->clip), 2.6 * knee_step(source));
+}
+
 // A leg that is too short for its steps straightened from 25 degrees and more in a frame.
 TEST(ShortLegs, KneesDoNotSnapStraight) {
   samples::WalkOptions options;
