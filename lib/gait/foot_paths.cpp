@@ -25,9 +25,12 @@ constexpr double kShortestRamp = 0.06;                      // seconds
 constexpr int kShapes[][2] = {{3, 3},  {3, 5},  {5, 3},  {3, 9}, {9, 3},
                               {3, 15}, {15, 3}, {3, 24}, {24, 3}};
 constexpr double kMaxToesUp = 15 * kRadiansPerDegree;
-constexpr double kToesEdge = 0.25;      // of the bump: below, it does not raise the toes
-constexpr double kToesLeftCost = 300;   // per metre, of a radian times the exponents
-constexpr double kRamp = 0.35;          // of the time from strike to flat, and from flat to off
+constexpr double kToesEdge = 0.25;     // of the bump: below, it does not raise the toes
+constexpr double kToesLeftCost = 300;  // per metre, of a radian times the exponents
+constexpr double kRamp = 0.35;         // of the time from strike to flat, and from flat to off
+constexpr double kMaxHeld = 0.04;   // metres by which a foot is drawn back for the tip of its toes
+constexpr double kTipSlips = 0.05;  // metres, in the blend, of a tip that has left the ground
+constexpr double kLettingGo = 0.2;  // seconds after that
 constexpr double kTurningAside = 0.15;  // seconds, in which a foot turns aside in full
 
 double ramp_of(double lasts) {
@@ -164,21 +167,26 @@ void Swing::set_ends(const Ends& off, const Ends& strike) {
   way_ = to_ - from_;
   way_.y() = 0;
   way_ /= std::max(way_.norm(), 1e-9);
+  tip_ = sole_points(*leg_, off.wanted[0])[2];
+  blend_tip_ = sole_points(*leg_, off.blend[0])[2];
+  up_ = off.wanted[0].toes * (leg_->flat_toes * Vec3::UnitY());
   derive(off, 1, start_);
   derive(strike, -1, end_);
 }
 
-Vec3 Swing::detour_at(double part, const Detour& detour) const {
-  if (!(part > 0 && part < 1)) return Vec3::Zero();
+Vec3 Swing::detour_at(double time, const Detour& detour) const {
   Vec3 result = Vec3::Zero();
-  if (detour.lift != 0) result.y() = detour.lift * bump(part, detour.rise, detour.fall);
-  if (detour.hold != 0) {
-    result += detour.hold * (detour.hold < 0 ? bump(part, 3, 6) : bump(part, 6, 3)) * way_;
+  const double part = part_of(time), lifted = part_lifted(time);
+  if (detour.lift != 0 && part > 0 && part < 1) {
+    result.y() = detour.lift * bump(part, detour.rise, detour.fall);
+  }
+  if (detour.hold != 0 && lifted > 0 && lifted < 1) {
+    result += detour.hold * (detour.hold < 0 ? bump(lifted, 3, 6) : bump(lifted, 6, 3)) * way_;
   }
   return result;
 }
 
-FootPose Swing::at(double time, const FootPose& blend) const {
+FootPose Swing::free_at(double time, const FootPose& blend) const {
   const double length = strike_ - off_, since = time - off_, left = strike_ - time;
   // Velocities are matched within a short time, because blends reach their prints after the strike
   // and leave them before toe-off.
@@ -190,18 +198,64 @@ FootPose Swing::at(double time, const FootPose& blend) const {
       width * width * (start.acceleration * start_[2] + end.acceleration * end_[2]);
   FootPose foot;
   foot.foot.position = blend.foot.position + offset.head<3>();
-  foot.foot.position += detour_at(since / length, detour_);
   foot.foot.orientation.coeffs() =
       (blend.foot.orientation.coeffs() + offset.segment<4>(3)).normalized();
-  const double part = since / length;
-  if (detour_.toes_up != 0 && part > 0 && part < 1) {
-    const double angle = detour_.toes_up * bump(part, detour_.toes_rise, detour_.toes_fall);
-    const Quat up = leg_->sole.sole * from_rotation_vector(Vec3(-angle, 0, 0));
-    foot.foot.orientation = foot.foot.orientation * up * leg_->sole.sole.conjugate();
-  }
   Quat toes = blend.foot.orientation.conjugate() * blend.toes;
   toes.coeffs() = (toes.coeffs() + offset.tail<4>()).normalized();
   foot.toes = foot.foot.orientation * toes;
+  return foot;
+}
+
+Vec3 Swing::to_tip(const FootPose& foot) const {
+  const Vec3 way = tip_ - sole_points(*leg_, foot)[2];
+  return way - way.dot(up_) * up_;
+}
+
+double Swing::tip_stays_until(double until, std::span<const double> times,
+                              std::span<const FootPose> blend) const {
+  double stays = off_;
+  for (std::size_t i = 0; i < times.size() && times[i] <= until; ++i) {
+    if (times[i] <= off_) continue;
+    const Vec3 slipped = sole_points(*leg_, blend[i])[2] - blend_tip_;
+    const Vec3 held = to_tip(free_at(times[i], blend[i]));
+    if (slipped.norm() > kTipSlips || held.norm() > kMaxHeld) return stays;
+    stays = times[i];
+  }
+  return until;
+}
+
+void Swing::keep_tip(double until, const std::array<FootPose, 3>& blend, double spacing) {
+  lifted_ = until;
+  std::array<Vec3, 3> held;
+  for (std::size_t i = 0; i < 3; ++i) {
+    held[i] = to_tip(free_at(until - spacing * static_cast<double>(i), blend[i]));
+  }
+  held_[0] = held[0];
+  held_[1] = (3 * held[0] - 4 * held[1] + held[2]) / (2 * spacing);
+  held_[2] = (held[0] - 2 * held[1] + held[2]) / (spacing * spacing);
+}
+
+FootPose Swing::at(double time, const FootPose& blend) const {
+  FootPose foot = free_at(time, blend);
+  if (lifted_ > off_ && time > off_) {
+    if (time <= lifted_) {
+      foot.foot.position += to_tip(foot);
+    } else {
+      const double width = std::min(kLettingGo, strike_ - lifted_);
+      const Fading left = fading((time - lifted_) / width);
+      foot.foot.position += left.value * held_[0] + width * left.slope * held_[1] +
+                            width * width * left.acceleration * held_[2];
+    }
+  }
+  foot.foot.position += detour_at(time, detour_);
+  const double part = part_lifted(time);
+  if (detour_.toes_up != 0 && part > 0 && part < 1) {
+    const double angle = detour_.toes_up * bump(part, detour_.toes_rise, detour_.toes_fall);
+    const Quat up = leg_->sole.sole * from_rotation_vector(Vec3(-angle, 0, 0));
+    const Quat toes = foot.foot.orientation.conjugate() * foot.toes;
+    foot.foot.orientation = foot.foot.orientation * up * leg_->sole.sole.conjugate();
+    foot.toes = foot.foot.orientation * toes;
+  }
   return foot;
 }
 
@@ -218,7 +272,7 @@ double Swing::share_of_clearance(double part, const FootPose& foot) const {
 }
 
 bool Swing::is_to_be_clear(double time, const FootPose& foot) const {
-  return share_of_clearance((time - off_) / (strike_ - off_), foot) == 1;
+  return share_of_clearance(part_of(time), foot) == 1;
 }
 
 std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const double> times,
@@ -226,7 +280,7 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
                                       double from) const {
   std::vector<Lack> result;
   for (std::size_t i = 0; i < times.size(); ++i) {
-    const double u = (times[i] - off_) / (strike_ - off_);
+    const double u = part_of(times[i]);
     if (!(u > 0 && u < 1)) continue;
     const FootPose foot = at(times[i], blend[i]);
     const double wanted = (clearance + kBetweenFrames) * share_of_clearance(u, foot);
@@ -237,8 +291,8 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
       const auto found = ground_near(ground, point.x(), point.z(), from, leg_->length);
       if (!found || point.y() - found->height >= wanted) continue;
       const Vec3 ahead = foot.foot.orientation * (leg_->sole.sole * Vec3::UnitZ());
-      result.push_back(
-          {u, wanted - (point.y() - found->height), ahead.dot(point - foot.foot.position)});
+      result.push_back({u, part_lifted(times[i]), wanted - (point.y() - found->height),
+                        ahead.dot(point - foot.foot.position)});
     }
   }
   return result;
@@ -253,19 +307,20 @@ void Swing::raise_toes(std::span<const Lack> missing, Detour& detour) {
     if (lack.lever <= 0) {
       heel = lack.height;
     } else if (lack.height > heel) {
-      ahead.push_back({lack.part, lack.height - heel, lack.lever});
+      ahead.push_back({lack.part, lack.lifted, lack.height - heel, lack.lever});
     }
   }
   if (ahead.empty()) return;
   for (const auto& [rise, fall] : kShapes) {
     double angle = 0, left = 0;
     for (const Lack& lack : ahead) {
-      const double value = bump(lack.part, rise, fall);
+      const double value = bump(std::max(0.0, lack.lifted), rise, fall);
       if (value > kToesEdge) angle = std::max(angle, lack.height / (lack.lever * value));
     }
     angle = std::min(angle, kMaxToesUp);
     for (const Lack& lack : ahead) {
-      left = std::max(left, lack.height - angle * lack.lever * bump(lack.part, rise, fall));
+      left = std::max(
+          left, lack.height - angle * lack.lever * bump(std::max(0.0, lack.lifted), rise, fall));
     }
     const double cost = angle * (rise + fall) + kToesLeftCost * left;
     if (cost >= least) continue;

@@ -77,7 +77,7 @@ class Swing {
   // `matching`: seconds after the off, and before the strike, in which the foot takes on the
   // velocity of the blend's.
   Swing(const Leg& leg, double off, double strike, double matching)
-      : leg_(&leg), off_(off), strike_(strike), matching_(matching) {}
+      : leg_(&leg), off_(off), strike_(strike), matching_(matching), lifted_(off) {}
 
   // The foot in the blend and on its print, at toe-off and 1 and 2 `spacing` seconds before, or at
   // the strike and after.
@@ -86,6 +86,15 @@ class Swing {
     double spacing = 0;
   };
   void set_ends(const Ends& off, const Ends& strike);
+
+  // Until when, `until` at the latest, the tip of the toes stays where it is: as long as the
+  // blend's does, and the foot need not be drawn far for it. `blend` has its poses at `times` of
+  // the swing.
+  double tip_stays_until(double until, std::span<const double> times,
+                         std::span<const FootPose> blend) const;
+  // Keeps the tip where it is until `until`. `blend` has its poses then and 1 and 2 `spacing`
+  // before.
+  void keep_tip(double until, const std::array<FootPose, 3>& blend, double spacing);
 
   // Keeps the foot clear of the ground: raises it, and at the edges of stairs holds it back until
   // it is high enough, or moves it on before it comes down. `blend` has its poses at `times` of the
@@ -102,8 +111,12 @@ class Swing {
  private:
   using Offset = Eigen::Matrix<double, 11, 1>;  // position, rotation, toes' rotation in the foot
   static Offset offset_of(const FootPose& blend, const FootPose& wanted);
+  FootPose free_at(double time, const FootPose& blend) const;  // without tip and detour
+  Vec3 to_tip(const FootPose& foot) const;  // along the ground, from its tip to where that stays
+  double part_of(double time) const { return (time - off_) / (strike_ - off_); }
+  double part_lifted(double time) const { return (time - lifted_) / (strike_ - lifted_); }
   // Offsets that keep the foot clear of the ground: bumps u^a (1 - u)^b over the part u of the
-  // swing.
+  // swing, all but the lift from when the tip is lifted on.
   struct Detour {
     double lift = 0, hold = 0;  // metres up, and along the swing
     int rise = 3, fall = 3;     // exponents of the lift
@@ -112,19 +125,24 @@ class Swing {
   };
   // A point of the sole that is too low by `height` metres, `lever` ahead of the ankle.
   struct Lack {
-    double part, height, lever;
+    double part, lifted, height, lever;  // parts of the swing, and from when the tip is lifted
   };
   // The turn of the foot by which ball and tip lack no more than the heel does, as far as it goes.
   static void raise_toes(std::span<const Lack> missing, Detour& detour);
   double away(const FootPose& foot) const;  // metres from the nearer print, level
   // 0 to 1: the share of the clearance that is asked for at a part of the swing.
   double share_of_clearance(double part, const FootPose& foot) const;
-  Vec3 detour_at(double part, const Detour& detour) const;
+  Vec3 detour_at(double time, const Detour& detour) const;
   std::vector<Lack> lacks(const Terrain& ground, std::span<const double> times,
                           std::span<const FootPose> blend, double clearance, double from) const;
 
   const Leg* leg_;
   double off_, strike_, matching_;
+  double lifted_;                  // seconds, when the tip leaves the ground
+  Vec3 tip_ = Vec3::Zero();        // where it is until then
+  Vec3 up_ = Vec3::UnitY();        // of the ground there
+  Vec3 blend_tip_ = Vec3::Zero();  // the blend's at the off
+  std::array<Vec3, 3> held_ = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  // then, and derivatives
   std::array<Offset, 3> start_ = {}, end_ = {};   // value and two derivatives by time
   Vec3 from_ = Vec3::Zero(), to_ = Vec3::Zero();  // the ankle at both ends
   Vec3 way_ = Vec3::Zero();                       // level, from print to print, unit vector

@@ -274,6 +274,18 @@ Swing WalkBlock::make_swing(std::size_t step) const {
       blend.push_back(in_signs_of(parts_.leg_of(step), signs, frames.blend[i][index_of(side)]));
     }
   }
+  // In a run the toes leave with the ball.
+  const double toes_off = parts_.body.toes_off_of(step);
+  if (parts_.leg_of(step).toes >= 0 && first == step && toes_off < now.strike) {
+    const double until = swing.tip_stays_until(toes_off, times, blend);
+    if (until >= leaves + 2 * kSpacing) {
+      std::array<FootPose, 3> before;
+      for (std::size_t i = 0; i < 3; ++i) {
+        before[i] = blend_foot(step, until - kSpacing * static_cast<double>(i), side, signs);
+      }
+      swing.keep_tip(until, before, kSpacing);
+    }
+  }
   const double height =
       std::max(parts_.plan.grounded[step].heel.y(), parts_.plan.grounded[step + 2].heel.y());
   swing.clear(parts_.ground, times, blend, parts_.options.clearance, height);

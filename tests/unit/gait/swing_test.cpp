@@ -68,6 +68,53 @@ TEST(Swing, ToesAreRaisedByTheAnkleBeforeTheFoot) {
   EXPECT_LT(raised, 0.02);
 }
 
+// Would fail if the tip of the toes slid from when the ball leaves the ground till the toes do, by
+// 3 to 5 cm, or if the foot jumped when they do.
+TEST(Swing, TheTipOfTheToesStaysTillItLeaves) {
+  Leg leg = plain_leg();
+  leg.toes = 1;
+  constexpr double kUntil = kOff + 0.08;
+  const auto moving = [](double time, double speed) {
+    FootPose foot;
+    foot.foot.position = Vec3(0, kAnkle, speed * (time - kOff));
+    return foot;
+  };
+  Swing::Ends off, strike;
+  off.spacing = strike.spacing = 0.01;
+  std::vector<double> times;
+  std::vector<FootPose> slow, fast;
+  for (double time = kOff; time < kStrike; time += 0.01) {
+    times.push_back(time);
+    slow.push_back(moving(time, 0.3));
+    fast.push_back(moving(time, 1.5));
+  }
+  std::array<FootPose, 3> before;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double back = 0.01 * static_cast<double>(i);
+    off.blend[i] = moving(kOff - back, 0.3), off.wanted[i] = moving(kOff, 0);
+    strike.blend[i] = strike.wanted[i] = moving(kStrike + back, 0.3);
+    before[i] = moving(kUntil - back, 0.3);
+  }
+  Swing swing(leg, kOff, kStrike, 0.16);
+  swing.set_ends(off, strike);
+  // A tip that has left the ground in the blend is not kept.
+  EXPECT_LT(swing.tip_stays_until(kUntil, times, fast), kUntil);
+  ASSERT_EQ(swing.tip_stays_until(kUntil, times, slow), kUntil);
+  const Vec3 place = sole_points(leg, off.wanted[0])[2];
+  const FootPose free = swing.at(kUntil, before[0]);
+  EXPECT_GT((sole_points(leg, free)[2] - place).norm(), 0.005);
+  swing.keep_tip(kUntil, before, 0.01);
+  Vec3 last = place;
+  for (double time = kOff; time < kStrike; time += 0.001) {
+    const Vec3 tip = sole_points(leg, swing.at(time, moving(time, 0.3)))[2];
+    if (time <= kUntil) {
+      EXPECT_LT((tip - place).norm(), 1e-9) << time;
+    }
+    EXPECT_LT((tip - last).norm(), 0.001) << time;
+    last = tip;
+  }
+}
+
 // Would fail if a foot that is to be raised by two centimetres before it lands, as down slopes,
 // were moved past its print by 15 cm and back instead: its leg is then too short, and its knee
 // jumps.
