@@ -141,6 +141,11 @@ void convert_nodes(Conversion& to) {
       to.chain_of[index] = chain.parts;
     }
     to.node_of[chain.end] = index;
+    int inherits = 1;
+    const aiMetadata* data = chain.end->mMetaData;
+    if (data != nullptr && data->Get("InheritType", inherits) && inherits != 1) {
+      to.inherit_types.emplace(index, inherits);
+    }
     if (chain.has_geometry && chain.end->mNumMeshes > 0) {
       to.node_of[chain.end] = add_node(to, name + "_geometry", index, chain.geometry_to_node);
     }

@@ -49,6 +49,9 @@ struct WriteOptions {
   // grey. Must outlive the call. Textures need texture coordinates. Tangents are written where the
   // model has some; without them loaders compute those of a normal texture (glTF 2.0, 3.7.2.1).
   std::span<const Material> materials{};
+  // Whether parts that name no material have none, which loaders show as white metal: as a glTF
+  // file has it that is written again.
+  bool unnamed_is_none = false;
   // Eye nodes as children of their joints, named like "left_eye"; write_rig only.
   std::span<const Character::Eye> eyes{};
   // Sockets as nodes below their joints, and meshes below joints or sockets; write_rig only.

@@ -237,7 +237,7 @@ int index_between(std::string_view before, std::string_view pointer, std::string
 
 // Extensions whose data is read. Those of materials are read where they are on materials.
 bool is_shown(std::string_view extension) {
-  constexpr std::array kOthers = {"KHR_mesh_quantization", "KHR_texture_transform",
+  constexpr std::array kOthers = {"KHR_mesh_quantization", "KHR_texture_transform", kWebp, kBasisu,
                                   "KHR_lights_punctual",  // counted as lights
                                   "KHR_animation_pointer"};
   const auto is_it = [&](std::string_view other) { return extension == other; };

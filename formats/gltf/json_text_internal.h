@@ -22,6 +22,10 @@
 
 namespace krok::gltf {
 
+// Textures whose image is WebP, or KTX2 with Basis Universal.
+inline constexpr const char* kWebp = "EXT_texture_webp";
+inline constexpr const char* kBasisu = "KHR_texture_basisu";
+
 struct BufferEntry {
   std::uint64_t byte_length = 0;
   bool has_uri = false;

@@ -290,7 +290,7 @@ class MaterialReader {
       ++of_other_coordinates_;
       return texture;
     }
-    if (!has_image(info)) {
+    if (source_of(info) == nullptr) {
       ++without_image_;
       return texture;
     }
@@ -321,17 +321,26 @@ class MaterialReader {
     }
   }
 
-  bool has_image(const Json& info) const {
+  // The image of a texture: PNG or JPEG, else that of an extension; null for none.
+  const Json* source_of(const Json& info) const {
     const Json* entry = entry_of(parsed_.look, "textures", member(info, "index"));
-    return entry != nullptr && member(*entry, "source").is_number_unsigned();
+    if (entry == nullptr) return nullptr;
+    const Json& extensions = object_in(*entry, "extensions");
+    for (const Json* from :
+         {entry, &object_in(extensions, kWebp), &object_in(extensions, kBasisu)}) {
+      const Json& source = member(*from, "source");
+      if (source.is_number_unsigned()) return &source;
+    }
+    return nullptr;
   }
 
   // The image and sampler of a texture; empty without a usable image.
   Texture texture_of(const Json& info) {
     Texture texture;
     const Json* entry = entry_of(parsed_.look, "textures", member(info, "index"));
-    if (!has_image(info)) return texture;
-    texture.image = images_.get(entry->at("source").get<std::size_t>(), scene_.diagnostics);
+    const Json* source = source_of(info);
+    if (source == nullptr) return texture;
+    texture.image = images_.get(source->get<std::size_t>(), scene_.diagnostics);
     const Json* sampler = entry_of(parsed_.look, "samplers", member(*entry, "sampler"));
     if (sampler == nullptr || !texture) return texture;
     texture.wrap_u = wrap(*sampler, "wrapS");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/gltf/document_internal.h"
@@ -60,6 +61,12 @@ tinygltf::Material factors_of(const Material& from) {
 
 constexpr const char* kUnlit = "KHR_materials_unlit";
 constexpr const char* kTransform = "KHR_texture_transform";
+
+// What a texture needs for an image that is neither PNG nor JPEG; null otherwise.
+const char* extension_of_image(const tinygltf::Image& image) {
+  if (image.mimeType == media_type(ImageKind::webp)) return kWebp;
+  return image.mimeType == media_type(ImageKind::ktx2) ? kBasisu : nullptr;
+}
 
 // Defaults are not written.
 tinygltf::Value transform_of(const Texture& texture) {
@@ -121,8 +128,16 @@ Result<int> Document::add_texture(const Texture& texture) {
       textures_.emplace(std::pair(*image, sampler), static_cast<int>(gltf.textures.size()));
   if (made) {
     tinygltf::Texture added;
-    added.source = *image;
     added.sampler = sampler;
+    if (const char* extension = extension_of_image(gltf.images[at(*image)]); extension != nullptr) {
+      added.extensions[extension] = tinygltf::Value({{"source", tinygltf::Value(*image)}});
+      use_extension(extension);
+      if (std::ranges::find(gltf.extensionsRequired, extension) == gltf.extensionsRequired.end()) {
+        gltf.extensionsRequired.emplace_back(extension);  // there is no other image
+      }
+    } else {
+      added.source = *image;
+    }
     gltf.textures.push_back(std::move(added));
   }
   return place->second;
@@ -130,6 +145,7 @@ Result<int> Document::add_texture(const Texture& texture) {
 
 Result<int> Document::add_material(const std::string& name,
                                    const std::map<std::string, int>& attributes) {
+  if (name.empty() && options_.unnamed_is_none) return -1;
   const auto [place, made] = materials_.emplace(name, static_cast<int>(gltf.materials.size()));
   if (!made) return place->second;
   Material usual;

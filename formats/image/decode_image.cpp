@@ -15,6 +15,10 @@ Result<ImageInfo> checked_info(std::span<const std::byte> file, std::size_t most
   if (!facts) return facts.error();
   const auto width = static_cast<std::size_t>(facts->width);
   const auto height = static_cast<std::size_t>(facts->height);
+  if (facts->kind != ImageKind::png && facts->kind != ImageKind::jpeg) {
+    return Error("picture-kind", fmt::format("the image is {}", name_of(facts->kind)),
+                 "save it as PNG or JPEG, which can be shown and compared here");
+  }
   if (width * height <= most_pixels) return *facts;
   return Error("picture-size",
                fmt::format("the image has {} x {} pixels, the limit is {} in total", width, height,

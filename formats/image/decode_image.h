@@ -26,7 +26,7 @@ inline constexpr std::size_t kMaxPixels = std::size_t{1} << 26;
 // ignored, as glTF requires (glTF 2.0 Specification, section 3.8.3). Grey is expanded to RGB,
 // 16-bit channels keep their upper 8 bits, and alpha is 255 if there is none. Results are the same
 // on every machine. Codes: those of image_info(); picture-size for more than `most_pixels`;
-// picture-damaged if decoding fails; picture-kind for a CMYK JPEG.
+// picture-damaged if decoding fails; picture-kind for a CMYK JPEG, WebP and KTX2.
 Result<Pixels> decode(std::span<const std::byte> file, std::size_t most_pixels = kMaxPixels);
 
 struct GreyPixels {

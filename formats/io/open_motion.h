@@ -27,6 +27,10 @@ struct MotionOptions {
   // use only a part of the motion, which it is not in.
   bool rest_frame_is_note = false;
 
+  // Warns of an animation of a scene that moves morph targets, as a motion has joints alone (code
+  // motion-weights).
+  bool moving_faces_matter = false;
+
   // Gets the stretches of the joints, none for rigid ones. Without it they are dropped with a
   // warning (code anim-stretch): the one place where an operation on rigid joints says so.
   Stretches* stretches = nullptr;

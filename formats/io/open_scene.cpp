@@ -189,6 +189,16 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
   for (const int one : animations) {
     const auto sampling = character::choose_sampling(scene.animations[at(one)], {}, found);
     if (!sampling) return sampling.error();
+    const int targets = animated_targets(scene.animations[at(one)]);
+    if (options.moving_faces_matter && targets > 0) {
+      found.push_back(make_warning(
+          "motion-weights",
+          fmt::format("{} moves {}: not in the result", shown(animation_name(scene, at(one))),
+                      counted(targets, "morph target")),
+          "krok-import FILE --clip NAME --morph-weights W.csv -o OUT.anim writes their weights, "
+          "krok-skin --weights W.csv takes them",
+          path));
+    }
     Actor::Motion& motion = actor.motions.emplace_back();
     auto clip = character::make_motion(*evaluator, *rig, *roles, *place, one, *sampling,
                                        inputs.jobs, inputs.progress, found,

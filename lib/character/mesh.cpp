@@ -93,6 +93,7 @@ class MeshBuilder {
   bool is_wanted(const nodes::Instance& instance);
   Status check_growth() const;
   void report_what_is_left();
+  void leave_tangents_out(const char* why);
   void look_at_attributes();
   void add(const nodes::Instance& instance);
   void add_vertices(const nodes::Instance& instance);
@@ -198,8 +199,14 @@ void MeshBuilder::report_what_is_left() {
   }
 }
 
+void MeshBuilder::leave_tangents_out(const char* why) {
+  diagnostics_.push_back(make_warning(
+      "scene-tangents", fmt::format("tangents are left out, as {}", why),
+      "viewers make those that a normal texture needs (glTF 2.0, 3.7.2.1), with small differences"));
+}
+
 void MeshBuilder::look_at_attributes() {
-  with_tangents_ = !wanted_.empty();
+  std::size_t with_tangents = 0;
   for (const nodes::Instance& instance : wanted_) {
     const nodes::Primitive& shape = evaluator_.primitive(instance);
     with_normals_ = with_normals_ || shape.normals;
@@ -207,10 +214,11 @@ void MeshBuilder::look_at_attributes() {
     with_colours_ = with_colours_ || shape.colours;
     sets_ = std::clamp(shape.more_texture_coordinates.size() + 1, sets_,
                        std::size_t{Model::kMaxCoordinateSets});
-    with_tangents_ = with_tangents_ && shape.tangents;
+    with_tangents += shape.tangents ? 1 : 0;
     if (is_skinned(instance) && shape.influences_per_vertex > 4) influences_ = 8;
   }
-  with_tangents_ = with_tangents_ && with_normals_;
+  with_tangents_ = with_tangents > 0 && with_tangents == wanted_.size() && with_normals_;
+  if (with_tangents > 0 && !with_tangents_) leave_tangents_out("not all meshes have some");
   with_texture_ = with_texture_ || sets_ > 1;
   actor_.model.more_texture_coordinates.resize(sets_ - 1);
 }
@@ -331,7 +339,10 @@ Status MeshBuilder::finish() {
   const auto is_unit = [](const Vec4f& tangent) {
     return std::abs(tangent.head<3>().norm() - 1) < 1e-3f;
   };
-  if (!std::all_of(model.tangents.begin(), model.tangents.end(), is_unit)) model.tangents.clear();
+  if (!std::all_of(model.tangents.begin(), model.tangents.end(), is_unit)) {
+    leave_tangents_out("some are zero");
+    model.tangents.clear();
+  }
   model.influences_per_vertex = influences_;
   normalize_influences(model);
   return {};

@@ -96,7 +96,7 @@ void check_size(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& dia
       fmt::format("the character is {} m in size in the file's unit, which is not a plausible "
                   "{}size",
                   readable(size, 3), roles.humanoid ? "human " : ""),
-      "set another unit than the file's with --unit: mm, cm, in, ft or m"));
+      "krok-import --unit sets another than the file's: mm, cm, in, ft or m"));
 }
 
 void check_actor(const Skeleton& skeleton, const RoleMap& roles, Diagnostics& diagnostics) {

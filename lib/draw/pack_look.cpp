@@ -8,6 +8,11 @@ namespace krok::draw {
 
 namespace {
 
+bool is_unknown_to_browsers(const EncodedImage& image) {
+  const auto facts = image_info(image.bytes);
+  return facts && facts->kind == ImageKind::ktx2;
+}
+
 // Packs materials for three.js (page/src/look.js), and each image once.
 class LookPacker {
  public:
@@ -76,7 +81,9 @@ class LookPacker {
     const auto all = textures_of(material);
     for (std::size_t t = 0; t < all.size() && !body_.texture_coordinates.empty(); ++t) {
       const auto set = static_cast<std::size_t>(all[t]->set);
-      if (!*all[t] || set > body_.more_texture_coordinates.size() || set >= kSets) continue;
+      if (!*all[t] || is_unknown_to_browsers(*all[t]->image) ||
+          set > body_.more_texture_coordinates.size() || set >= kSets)
+        continue;
       auto texture = to_json(*all[t]);
       if (!texture) return texture.error();
       textures[kTextures[t]] = std::move(*texture);

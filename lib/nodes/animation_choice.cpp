@@ -129,6 +129,14 @@ bool changes(const Channel& channel) {
   return false;
 }
 
+int animated_targets(const Animation& animation) {
+  int targets = 0;
+  for (const Channel& channel : animation.channels) {
+    if (channel.path == Path::weights) targets += channel.width;
+  }
+  return targets;
+}
+
 std::vector<char> moved_nodes(const Scene& scene, const Animation& animation) {
   std::vector<char> moved(scene.nodes.size(), 0);
   for (const Channel& channel : animation.channels) {

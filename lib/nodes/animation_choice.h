@@ -55,6 +55,9 @@ Result<int> choose_animation(const Scene& scene, const std::string& wanted, cons
 // Whether keys of a channel differ by more than rounding: 1e-4; 1e-5 of the size of translations.
 bool changes(const Channel& channel);
 
+// The morph targets whose weights an animation sets, of all its nodes.
+int animated_targets(const Animation& animation);
+
 // [nodes] 1 where the node's transform relative to its parent changes.
 std::vector<char> moved_nodes(const Scene& scene, const Animation& animation);
 

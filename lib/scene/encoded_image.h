@@ -17,8 +17,10 @@ struct EncodedImage {
   std::vector<std::byte> bytes;  // of its file; empty if only the path is known
 };
 
-enum class ImageKind : unsigned char { png, jpeg };
+// The last two are written as they came: nothing here decodes them.
+enum class ImageKind : unsigned char { png, jpeg, webp, ktx2 };
 
+std::string_view name_of(ImageKind kind);       // "PNG"
 std::string_view media_type(ImageKind kind);    // "image/png"
 std::string_view extension_of(ImageKind kind);  // ".png"
 
@@ -29,10 +31,10 @@ struct ImageInfo {
 };
 inline constexpr int kMaxPixelsASide = 32768;
 
-// Reads the header of a PNG or JPEG file. Chunks or segments are walked without decoding, which
+// Reads the header of an image file. Chunks, segments or levels are walked without decoding, which
 // detects other file formats, truncated files and sizes out of range (codes picture-kind,
 // picture-damaged, picture-size); the pixel data is not checked. Sources: ISO/IEC 15948 (PNG),
-// ITU-T T.81 annex B (JPEG).
+// ITU-T T.81 annex B (JPEG), RFC 9649 (WebP), Khronos Group, KTX File Format 2.0.
 Result<ImageInfo> image_info(std::span<const std::byte> bytes);
 
 }  // namespace krok

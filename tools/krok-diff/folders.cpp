@@ -388,7 +388,14 @@ Result<int> run_folders(const Options& options, ToolContext& context) {
   const bool failed = some(FileStatus::unreadable);
   context.report.result = to_json(*outcome, options);
   if (!context.quiet) context.print(to_text(*outcome, options, context.verbose));
-  if (failed && !folders.keep_going) return unreadable_error(*outcome, folders);
+  if (failed && !folders.keep_going) {
+    // A page of an earlier run, left as it is, would say that all is well.
+    if (Status status = write_summary(*outcome, {}, options, context); !status) {
+      return status.error();
+    }
+    context.diagnose(unreadable_error(*outcome, folders));
+    return kExitTrouble;
+  }
 
   FolderUpdate update;
   if (folders.update && !failed) {

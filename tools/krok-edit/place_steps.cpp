@@ -107,9 +107,11 @@ bool take_root_motion(Edit& edit) {
   removed.emplace().velocity = velocity;
   edit.note("feet",
             {{"speed", velocity.norm()}, {"velocity", {velocity.x(), velocity.y(), velocity.z()}}},
-            velocity.isZero() ? "a loop in place whose feet do not walk: its velocity is 0 m/s"
-                              : "a loop in place; an engine moves it at the speed of its feet, " +
-                                    velocity_text(*removed));
+            !edit.roles.humanoid ? "a loop in place without known feet: its velocity is set to 0 "
+                                   "m/s, what moves it has to say the speed"
+            : velocity.isZero()  ? "a loop in place whose feet do not walk: its velocity is 0 m/s"
+                                : "a loop in place; an engine moves it at the speed of its feet, " +
+                                      velocity_text(*removed));
   return true;
 }
 

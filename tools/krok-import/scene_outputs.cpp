@@ -70,7 +70,8 @@ class ImageNames {
 // Removes the extension of an image file.
 std::string without_ending(const std::string& name) {
   const std::string ending = extension(name);
-  for (const char* known : {".png", ".jpg", ".jpeg", ".jpe", ".tga", ".bmp", ".tif", ".dds"}) {
+  for (const char* known :
+       {".png", ".jpg", ".jpeg", ".jpe", ".tga", ".bmp", ".tif", ".dds", ".webp", ".ktx2"}) {
     if (ending == known) return name.substr(0, name.size() - ending.size());
   }
   return name;
@@ -245,14 +246,6 @@ using registry::Kind;
 
 namespace {
 
-int animated_targets(const nodes::Animation& animation) {
-  int targets = 0;
-  for (const nodes::Channel& channel : animation.channels) {
-    if (channel.path == nodes::Path::weights) targets += channel.width;
-  }
-  return targets;
-}
-
 Json to_json(const ChosenClip& clip) {
   return {{"name", clip.name}, {"number", clip.animation}, {"reason", clip.why}};
 }
@@ -384,7 +377,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
       warn("import-still",
            fmt::format("{} does not move any joint of the skeleton", shown(chosen.name)));
     }
-    if (const int targets = animated_targets(animation); targets > 0 && options_.weights.empty()) {
+    if (const int targets = nodes::animated_targets(animation); targets > 0 && options_.weights.empty()) {
       warn("import-weights",
            fmt::format("{} moves {}: not written", shown(chosen.name),
                        counted(targets, "morph target")),

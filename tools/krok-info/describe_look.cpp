@@ -31,8 +31,7 @@ class ImageSizes {
   std::string look_at(const std::string& name) {
     const auto facts = facts_of(name);
     if (facts) {
-      const std::string_view kind = facts->kind == ImageKind::png ? "PNG" : "JPEG";
-      return fmt::format("{} x {} {}", facts->width, facts->height, kind);
+      return fmt::format("{} x {} {}", facts->width, facts->height, name_of(facts->kind));
     }
     Diagnostic warning = facts.error();
     warning.severity = Severity::warning;

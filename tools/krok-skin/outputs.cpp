@@ -109,6 +109,7 @@ gltf::WriteOptions write_options(const Subject& subject, const ToolContext& cont
   options.name = kMeshName;
   options.clip_name = subject.clip_name;
   options.materials = subject.materials;
+  options.unnamed_is_none = subject.unnamed_is_none;
   return options;
 }
 

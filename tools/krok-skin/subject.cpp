@@ -71,6 +71,8 @@ class Loader {
     if (!actor) return actor.error();
     subject_.model = std::move(actor->model);
     subject_.materials = std::move(actor->materials);
+    subject_.unnamed_is_none =
+        format.kind == registry::Kind::glb || format.kind == registry::Kind::gltf;
     subject_.eyes = std::move(actor->eyes);
     subject_.sockets = std::move(actor->sockets);
     subject_.morphs = std::move(actor->morphs);
@@ -185,7 +187,10 @@ class Loader {
   Result<Clip> open(const std::string& path, Stretches& stretches) {
     auto clip = [&] {
       const HiddenProgress hidden(context_);
-      return io::open_motion(path, context_, {.stretches = &stretches});
+      return io::open_motion(
+          path, context_,
+          {.moving_faces_matter = !subject_.morphs.names.empty() && options_.weights.empty(),
+           .stretches = &stretches});
     }();
     context_.progress->advance(1);
     if (!clip || !options_.retarget) return clip;

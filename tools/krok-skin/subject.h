@@ -24,6 +24,7 @@ struct Subject {
   int first_frame = 0, every = 1;  // of the motion as read, for file names
 
   std::vector<Material> materials;   // of the model's parts; for characters
+  bool unnamed_is_none = false;      // gltf::WriteOptions
   std::vector<Character::Eye> eyes;  // at joints of the model; for characters
   std::vector<Character::Socket> sockets;
 

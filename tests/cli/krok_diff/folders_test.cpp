@@ -136,8 +136,11 @@ TEST_F(KrokDiffFolders, OneOfFiveHundredCannotBeRead) {
   EXPECT_THAT(all.err, HasSubstr("1 file cannot be read: 1250.anim [batch-failed]"));
   EXPECT_THAT(all.out, HasSubstr("differs: 1499.anim: positions 1 mm"));
   EXPECT_THAT(all.out, HasSubstr("  the same          498\n"));
-  const ToolRun stopped = diff({"a", "b"});
+  // The report of an earlier run would say that all is well.
+  put("out.xml", "<testsuites/>\n");
+  const ToolRun stopped = diff({"a", "b", "--summary", "out.xml"});
   EXPECT_EQ(stopped.exit_code, 2);
+  EXPECT_THAT(get(path("out.xml")), AllOf(HasSubstr("errors=\"1\""), HasSubstr("<skipped")));
   EXPECT_THAT(stopped.err, HasSubstr("stopped at 1250.anim: the file cannot be read"));
   EXPECT_THAT(stopped.err, HasSubstr("--keep-going"));
   EXPECT_THAT(stopped.out, Not(HasSubstr("1499.anim")));

@@ -44,6 +44,19 @@ TEST_F(SkinMorphs, TheSkeletonMovesTheChangedShape) {
   tool("krok-diff", {"morphed.glb", "plain.glb"}, 1);
 }
 
+// A face that moves in the file was still in the result, without a word.
+TEST_F(SkinMorphs, AFaceThatAFilesAnimationMovesIsWarnedOf) {
+  tool("krok-skin", {"in.model", "in.anim", "--morph", "bent.exr", "--weights", "rising.csv", "-o",
+                     "moving.glb"});
+  const ToolRun lost = tool("krok-skin", {"moving.glb", "moving.glb", "-o", "out.glb"});
+  EXPECT_TRUE(has_code(lost.err, "motion-weights")) << lost.err;
+  const ToolRun given =
+      tool("krok-skin", {"moving.glb", "moving.glb", "--weights", "rising.csv", "-o", "out.glb"});
+  EXPECT_FALSE(has_code(given.err, "motion-weights")) << given.err;
+  const ToolRun other = tool("krok-skin", {"in.model", "moving.glb", "-o", "out.glb"});
+  EXPECT_FALSE(has_code(other.err, "motion-weights")) << "its mesh has no face";
+}
+
 TEST_F(SkinMorphs, WeightsAreTakenAtTheMotionsMoments) {
   const std::vector<std::string> rising = {"in.model", "in.anim",   "--morph",
                                            "bent.exr", "--weights", "rising.csv"};

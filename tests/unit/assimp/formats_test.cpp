@@ -383,6 +383,27 @@ TEST(Fbx, LayersThatAreBlendedAreWarnedOf) {
   EXPECT_TRUE(has_code(read_or_fail(folder.add("two.fbx", text)).diagnostics, "assimp-layers"));
 }
 
+// Maya's segment scale compensation: joints below a scaled one keep their size; Assimp scales them,
+// which was silent.
+TEST(Fbx, ScaleThatIsNotInheritedIsWarnedOf) {
+  const auto with = [](const char* scaling, int inherit_type) {
+    std::string text = FbxSample().text();
+    const std::string active = "P: \"RotationActive\", \"bool\", \"\", \"\",1\n";
+    const std::size_t first = text.find(active);
+    text.insert(text.find(active, first + 1),
+                fmt::format("P: \"InheritType\", \"enum\", \"\", \"\",{}\n", inherit_type));
+    text.insert(first,
+                fmt::format("P: \"Lcl Scaling\", \"Lcl Scaling\", \"\", \"A\",{}\n", scaling));
+    const Folder folder;
+    return has_code(read_or_fail(folder.add("scaled.fbx", text)).diagnostics, "assimp-inherit");
+  };
+  EXPECT_TRUE(with("2,2,2", 2));
+  EXPECT_FALSE(with("1,1,1", 2));
+  EXPECT_FALSE(with("2,2,2", 1));
+  EXPECT_TRUE(with("2,1,1", 0));
+  EXPECT_FALSE(with("2,2,2", 0));
+}
+
 // One take a stack: all are there by name, and one without curves is not lost silently.
 TEST(Fbx, SeveralTakes) {
   std::string text = FbxSample().text();

@@ -462,7 +462,10 @@ TEST(ImportedShape, ATangentThatIsZeroTakesTheOthersWithIt) {
     nodes::Scene scene = armature_scene();
     scene.meshes[0].primitives[0].tangents = shared(std::vector<Vec4f>(tangents));
     const auto evaluator = *nodes::Evaluator::create(scene);
-    EXPECT_EQ(import(scene, evaluator).actor.model.tangents.size(), zero ? 0u : 12u);
+    const Imported imported = import(scene, evaluator);
+    EXPECT_EQ(imported.actor.model.tangents.size(), zero ? 0u : 12u);
+    EXPECT_EQ(std::ranges::count(imported.diagnostics, "scene-tangents", &Diagnostic::code),
+              zero ? 1 : 0);
   }
 }
 

@@ -1,7 +1,9 @@
 // Would fail if a written glTF showed other materials than it was given, held pictures twice or
 // otherwise than byte for byte, or held what nothing uses.
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
 
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
@@ -293,6 +295,40 @@ TEST(GltfMaterials, ComeBackAsTheyWere) {
   }
   EXPECT_EQ(scene->meshes[0].primitives[0].material_index, 0);
   EXPECT_EQ(scene->meshes[0].primitives[1].material_index, 1);
+}
+
+// As web pages' files have them; would fail if a round trip lost them, or if a loader that knows
+// nothing of them took the bytes for PNG.
+TEST(GltfMaterials, WebpAndKtxComeBackWithTheirExtensions) {
+  auto materials = look();
+  materials[0].base_color_texture.image = test::image(test::webp());
+  materials[0].normal_texture.image = test::image(test::ktx2(4, 4, 16));
+  gltf::WriteOptions options;
+  options.materials = materials;
+  const auto glb = rig(dressed_model(), options);
+  const std::vector<std::string> required = glb.json["extensionsRequired"];
+  EXPECT_THAT(required, testing::UnorderedElementsAre("EXT_texture_webp", "KHR_texture_basisu"));
+  std::vector<std::string> types;
+  for (const nlohmann::json& texture : glb.json["textures"]) {
+    if (texture.contains("source")) continue;
+    const nlohmann::json& source = texture.at("extensions").items().begin().value().at("source");
+    types.push_back(glb.json["images"].at(source.get<std::size_t>()).at("mimeType"));
+  }
+  EXPECT_THAT(types, testing::UnorderedElementsAre("image/webp", "image/ktx2"));
+  const auto scene = read_with_materials(glb.bytes);
+  ASSERT_TRUE(scene.ok()) << scene.error().message;
+  EXPECT_EQ(scene->materials[0].base_color_texture.image->bytes, test::webp());
+  EXPECT_EQ(scene->materials[0].normal_texture.image->bytes, test::ktx2(4, 4, 16));
+}
+
+// A mesh without a material got a grey one when its file was written again.
+TEST(GltfMaterials, PartsWithoutOneKeepNone) {
+  Model model = dressed_model();
+  model.parts[0].material.clear();
+  gltf::WriteOptions options;
+  EXPECT_TRUE(rig(model, options).json["meshes"][0]["primitives"][0].contains("material"));
+  options.unnamed_is_none = true;
+  EXPECT_FALSE(rig(model, options).json["meshes"][0]["primitives"][0].contains("material"));
 }
 
 TEST(GltfMaterials, FaultsAreToldBeforeAnythingIsWritten) {
