@@ -215,6 +215,9 @@ class Loader {
     target_.skeleton = subject_.model.skeleton;
     target_roles_ = find_roles(target_.skeleton);
     how_.target_floor = floor_below(subject_.model.positions, target_.skeleton, target_roles_);
+    if (how_.target_floor) {
+      how_.target_feet = krok::retarget::points_of_feet(subject_.model, target_roles_);
+    }
     how_.jobs = context_.jobs;
   }
 
