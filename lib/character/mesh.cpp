@@ -200,9 +200,10 @@ void MeshBuilder::report_what_is_left() {
 }
 
 void MeshBuilder::leave_tangents_out(const char* why) {
-  diagnostics_.push_back(make_warning(
-      "scene-tangents", fmt::format("tangents are left out, as {}", why),
-      "viewers make those that a normal texture needs (glTF 2.0, 3.7.2.1), with small differences"));
+  diagnostics_.push_back(make_warning("scene-tangents",
+                                      fmt::format("tangents are left out, as {}", why),
+                                      "viewers make those that a normal texture needs (glTF 2.0, "
+                                      "3.7.2.1), with small differences"));
 }
 
 void MeshBuilder::look_at_attributes() {

@@ -377,7 +377,8 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
       warn("import-still",
            fmt::format("{} does not move any joint of the skeleton", shown(chosen.name)));
     }
-    if (const int targets = nodes::animated_targets(animation); targets > 0 && options_.weights.empty()) {
+    if (const int targets = nodes::animated_targets(animation);
+        targets > 0 && options_.weights.empty()) {
       warn("import-weights",
            fmt::format("{} moves {}: not written", shown(chosen.name),
                        counted(targets, "morph target")),
