@@ -123,8 +123,9 @@ struct OutputFile::State {
       const int why = errno;
       std::error_code unknown;
       if (!std::filesystem::is_directory(folder, unknown)) {
-        return file_error("file-unwritable", path, fmt::format("folder {} does not exist", folder),
-                          "create the folder first");
+        return file_error(
+            "file-unwritable", path, fmt::format("folder {} does not exist", folder),
+            target.ends_with('/') ? "a file is written: add its name" : "create the folder first");
       }
       return file_error("file-unwritable", path,
                         fmt::format("cannot be created: {}", system_text(why)));

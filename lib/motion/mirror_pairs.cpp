@@ -1,8 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "motion/ground_frame.h"
 #include "motion/mirror.h"
@@ -42,6 +46,16 @@ std::optional<std::vector<std::string>> other_side(std::vector<std::string> word
 
 // Sine of the angle from the plane of symmetry up to which a bone is one of the middle.
 constexpr double kSwung = 0.7;
+
+// What a name has beside letters and digits.
+std::string signs_of(std::string_view name) {
+  std::string signs;
+  std::ranges::copy_if(name, std::back_inserter(signs), [](char sign) {
+    const bool letter = (sign | 0x20) >= 'a' && (sign | 0x20) <= 'z';
+    return !letter && !(sign >= '0' && sign <= '9');
+  });
+  return signs;
+}
 
 class PairFinder {
  public:
@@ -99,8 +113,14 @@ class PairFinder {
       const auto wanted = other_side(name_tokens(skeleton_.names[at(j)]));
       if (!wanted) continue;
       const auto found = by_words.find(*wanted);
-      if (found == by_words.end() || found->second.size() != 1) continue;
-      if (const int other = found->second.front(); other != j && open(other)) pair(j, other);
+      if (found == by_words.end()) continue;
+      std::vector<int> others = found->second;
+      // Of "__brow.r" and "brow.r" the one that is written as this joint.
+      if (others.size() > 1) {
+        const std::string mine = signs_of(skeleton_.names[at(j)]);
+        std::erase_if(others, [&](int k) { return signs_of(skeleton_.names[at(k)]) != mine; });
+      }
+      if (others.size() == 1 && others[0] != j && open(others[0])) pair(j, others[0]);
     }
   }
 

@@ -370,7 +370,7 @@ class Planter {
   Error none() const {
     return Error(
         "plant-contacts", "no heel, ball or toe stands at any frame, so nothing can be planted",
-        contacts_ ? "the contacts given are not of feet; remove the file to have them found"
+        contacts_ ? "no contact of a foot is given; remove the file to have them found"
                   : "does the character walk in place, float, or jitter? krok-keys shows and edits "
                     "contacts, krok-edit --filter smooths");
   }

@@ -202,9 +202,9 @@ class Lister {
         fs::exists(io::address_of(input.text).file, missing)) {
       return;
     }
-    const bool blanks = input.text.find(' ') != std::string::npos;
+    const bool blanks = input.text.find_first_of(" ,;") != std::string::npos;
     Error error("file-missing", fmt::format("no such file: {}", shown(input.text)),
-                blanks ? "separate input, output and options by tabs, not blanks"
+                blanks ? "separate input, output and options by tabs, not blanks or commas"
                        : "check the path, or convert the other files with --keep-going");
     error.where = input.where;
     error.where.file = line_.manifest;

@@ -1,5 +1,7 @@
 #include "tools/krok-diff/options.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "core/file.h"
@@ -18,18 +20,24 @@ Result<int> run(const Options& given, ToolContext& context) {
   const auto begin = std::chrono::steady_clock::now();
   const auto outcome = compare_files(options, context);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  if (!outcome) return outcome.error();
+  FolderOutcome pair;
+  FileResult& file = pair.files.emplace_back();
+  file.path = base_name(options.second);
+  file.seconds = taken.count();
+  if (!outcome) {
+    const Error& error = outcome.error();
+    file.status = FileStatus::unreadable;
+    file.what = fmt::format("{} [{}]", error.message, error.code);
+    // A page of an earlier run, left as it is, would say that all is well.
+    if (error.code != "usage") (void)write_summary(pair, {}, options, context);
+    return error;
+  }
   context.report.result = to_json(*outcome, options.tolerance);
   if (!context.quiet) context.print(to_text(*outcome, options.tolerance));
   if (!options.summaries.empty()) {
-    FileResult file;
-    file.path = base_name(options.second);
     file.status = outcome->same ? FileStatus::same : FileStatus::differs;
     file.what = worst_of(*outcome);
-    file.seconds = taken.count();
     file.detail = detail_of(*outcome, options.tolerance);
-    FolderOutcome pair;
-    pair.files.push_back(std::move(file));
     if (Status status = write_summary(pair, {}, options, context); !status) return status.error();
   }
   return outcome->same ? kExitDone : kExitNo;

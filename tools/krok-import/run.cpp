@@ -12,6 +12,7 @@
 #include "core/result.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_capture.h"
 #include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
@@ -137,6 +138,10 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
     character::check_size(opened.frames.skeleton, capture.roles, capture.diagnostics);
   }
   std::optional<Clip> resampled;
+  if (opened.frames.frame_count == 0 && !io::format_of(input).companion) {
+    context.warn("import-empty", "the file has no frames: the motion is empty",
+                 "--save-model writes its skeleton alone");
+  }
   FrameSource frames = opened.frames;
   if (options.resample > 0) {
     auto made = resample(capture.clip, options.resample);

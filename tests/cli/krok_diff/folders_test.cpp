@@ -141,6 +141,9 @@ TEST_F(KrokDiffFolders, OneOfFiveHundredCannotBeRead) {
   const ToolRun stopped = diff({"a", "b", "--summary", "out.xml"});
   EXPECT_EQ(stopped.exit_code, 2);
   EXPECT_THAT(get(path("out.xml")), AllOf(HasSubstr("errors=\"1\""), HasSubstr("<skipped")));
+  const ToolRun two = diff({"a/1250.anim", "b/1250.anim", "--summary", "two.xml"});
+  EXPECT_EQ(two.exit_code, 2);
+  EXPECT_THAT(get(path("two.xml")), HasSubstr("errors=\"1\""));
   EXPECT_THAT(stopped.err, HasSubstr("stopped at 1250.anim: the file cannot be read"));
   EXPECT_THAT(stopped.err, HasSubstr("--keep-going"));
   EXPECT_THAT(stopped.out, Not(HasSubstr("1499.anim")));

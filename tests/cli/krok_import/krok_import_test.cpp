@@ -192,5 +192,13 @@ TEST_F(ImportTest, WrongValuesAreUsageErrors) {
   EXPECT_EQ(listing(), (std::vector<std::string>{"in.bvh"}));
 }
 
+// An export that lost its frames went through a batch without a word.
+TEST_F(ImportTest, AFileWithoutFramesIsWarnedOf) {
+  put("none.bvh", capture(0));
+  put("one.bvh", capture(1));
+  EXPECT_TRUE(has_code(run_here("krok-import", {"none.bvh", "-o", "a.anim"}).err, "import-empty"));
+  EXPECT_FALSE(has_code(run_here("krok-import", {"one.bvh", "-o", "a.anim"}).err, "import-empty"));
+}
+
 }  // namespace
 }  // namespace krok::test

@@ -107,6 +107,24 @@ TEST(MirrorPairs, ByPlacesWhereNamesTellNothing) {
   EXPECT_EQ(pairs.partners, pairs_of(test::human_skeleton()).partners);
 }
 
+// MakeHuman's faces: joints whose names differ from their parents' by signs alone, at places that
+// the reference pose has turned.
+TEST(MirrorPairs, NamesThatDifferBySignsAlone) {
+  Skeleton skeleton = test::human_skeleton();
+  const int head = skeleton.find("Head");
+  const Vec3 at_head = skeleton.reference[static_cast<std::size_t>(head)].position;
+  std::vector<int> brows;
+  for (const double x : {0.03, -0.03}) {
+    const std::string side = x > 0 ? ".l" : ".r";
+    const int root = skeleton.add("__brow" + side, head, {at_head + Vec3(x, 0.1, 0.05)});
+    brows.push_back(
+        skeleton.add("brow" + side, root, {at_head + Vec3(2 * x, x > 0 ? 0.1 : 0.3, 0)}));
+  }
+  const MirrorPairs pairs = pairs_of(skeleton);
+  EXPECT_TRUE(pairs.unpaired().empty());
+  EXPECT_EQ(pairs.partners[static_cast<std::size_t>(brows[0])], brows[1]);
+}
+
 TEST(MirrorPairs, WhatOneSideAloneHasIsUnpaired) {
   Skeleton skeleton = test::human_skeleton();
   const int hand = skeleton.find("RightHand");
