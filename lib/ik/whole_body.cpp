@@ -53,11 +53,50 @@ std::vector<HeldFoot> legs_without_goals(const Clip& clip, const RoleMap& roles,
   return legs;
 }
 
+namespace {
+
+// Metres along the bones from an ancestor to a joint.
+double way_below(const Skeleton& skeleton, int ancestor, int joint) {
+  double way = 0;
+  for (int j = joint; j != ancestor; j = skeleton.parents[at(j)]) {
+    way += skeleton.reference_local(j).position.norm();
+  }
+  return way;
+}
+
+// 1 for joints beside a goal's, such as the other fingers of a hand: they hang on its parent,
+// hardly farther away than what the goal moves. Held, they would hold that joint, too. [joints]
+std::vector<std::uint8_t> beside_goals(std::span<const KeyedGoal> goals, const Skeleton& skeleton) {
+  constexpr double kBeside = 1.5;
+  std::vector<std::uint8_t> beside(skeleton.names.size(), 0);
+  for (const KeyedGoal& goal : goals) {
+    const int parent =
+        goal.goal.kind == Goal::Kind::balance ? -1 : skeleton.parents[at(goal.goal.joint)];
+    if (parent <= 0) continue;
+    const std::vector<std::uint8_t> moved = subtree(skeleton, goal.goal.joint);
+    const std::vector<std::uint8_t> below = subtree(skeleton, parent);
+    double longest = 0;
+    for (std::size_t j = 0; j < moved.size(); ++j) {
+      if (moved[j] == 0) continue;
+      longest = std::max(longest, way_below(skeleton, parent, static_cast<int>(j)));
+    }
+    for (std::size_t j = 0; j < below.size(); ++j) {
+      if (below[j] == 0) continue;
+      const bool near = way_below(skeleton, parent, static_cast<int>(j)) <= kBeside * longest;
+      beside[j] |= near ? 1 : 0;
+    }
+  }
+  return beside;
+}
+
+}  // namespace
+
 std::vector<HeldFoot> ends_on_ground(const Clip& clip, std::span<const KeyedGoal> goals) {
   constexpr double kNear = 0.1;  // of the skeleton's size: ankles are ends, too
   const Skeleton& skeleton = clip.skeleton;
   const std::size_t joints = skeleton.names.size();
   const std::vector<std::uint8_t> sought = sought_by(goals, skeleton);
+  const std::vector<std::uint8_t> beside = beside_goals(goals, skeleton);
   std::vector<std::uint8_t> is_end(joints, 1);
   std::vector<float> lowest(joints, std::numeric_limits<float>::max());
   for (std::size_t j = 0; j < joints; ++j) {
@@ -70,7 +109,7 @@ std::vector<HeldFoot> ends_on_ground(const Clip& clip, std::span<const KeyedGoal
   const double ground = *std::ranges::min_element(lowest) + kNear * size_of(skeleton);
   std::vector<HeldFoot> ends;
   for (std::size_t j = 0; j < joints; ++j) {
-    if (is_end[j] == 0 || sought[j] != 0 || lowest[j] > ground) continue;
+    if (is_end[j] == 0 || sought[j] != 0 || beside[j] != 0 || lowest[j] > ground) continue;
     ends.push_back({-1, -1, static_cast<int>(j)});
   }
   return ends;

@@ -87,10 +87,10 @@ Result<int> bake(const Options& options, ToolContext& context) {
   }
 
   OutputSet outputs(context);
-  const Status status = options.as == As::targets
-                            ? add_targets(base->model, morphs, *weights, *format, outputs, context)
-                            : add_baked(base->model, motion_of(base->model, morphs, *weights),
-                                        *format, outputs, context);
+  const Status status =
+      options.as == As::targets
+          ? add_targets(*base, morphs, *weights, *format, outputs, context)
+          : add_baked(*base, motion_of(base->model, morphs, *weights), *format, outputs, context);
   if (!status) return status.error();
   if (Status step = outputs.finish(); !step) return step.error();
   report(*weights, context);

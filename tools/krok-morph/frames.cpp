@@ -261,7 +261,7 @@ Status add_motion(KeyShapes& keys, int frames, MotionFormat format, As as, Outpu
   if (as == As::targets) {
     MorphWeights weights = shares_of(keys, frames);
     leave_out_first(keys.shapes, weights);
-    return add_targets(keys.base.model, keys.shapes, weights, format, outputs, context);
+    return add_targets(keys.base, keys.shapes, weights, format, outputs, context);
   }
   const KeyFrameMesh mesh = mesh_of(keys);
   if (Status status = check(mesh); !status) return status;
@@ -271,7 +271,7 @@ Status add_motion(KeyShapes& keys, int frames, MotionFormat format, As as, Outpu
   motion.source = copies_of([&](int frame, const ShapeOutput& to) {
     shape_at(mesh, keys.join, keys.tension, frame / keys.rate, {to.positions, to.normals}, 1);
   });
-  return add_baked(keys.base.model, motion, format, outputs, context);
+  return add_baked(keys.base, motion, format, outputs, context);
 }
 
 void report(const KeyShapes& keys, int frames, ToolContext& context) {

@@ -13,22 +13,25 @@ namespace {
 // Larger baked files are an error.
 constexpr std::uint64_t kMaxBakedBytes = std::uint64_t{1} << 30;
 
-gltf::WriteOptions gltf_options(MotionFormat format, const ToolContext& context) {
+gltf::WriteOptions gltf_options(const ShapeFile& shape, MotionFormat format,
+                                const ToolContext& context) {
   gltf::WriteOptions options;
   options.binary = format == MotionFormat::glb;
   options.provenance = context.provenance();
   options.name = "shape";
+  options.materials = shape.materials;
+  options.unnamed_is_none = shape.source == Source::gltf;
   return options;
 }
 
-Status check_bakeable(const Model& model, int frames, const std::string& path) {
-  const std::uint64_t bytes = gltf::baked_bytes(model, frames);
+Status check_bakeable(const ShapeFile& shape, int frames, const std::string& path) {
+  const std::uint64_t bytes = gltf::baked_bytes(shape.model, frames, shape.materials);
   if (frames - 1 <= gltf::kMaxMorphTargets && bytes <= kMaxBakedBytes) return {};
   return Error("morph-clip-too-long",
                fmt::format("{} of {} need {} morph targets and {} MB; viewers support at most {}, "
                            "and the limit is {} MB",
                            counted(frames, "frame"),
-                           counted(model.vertex_count(), "vertex", "vertices"), frames - 1,
+                           counted(shape.model.vertex_count(), "vertex", "vertices"), frames - 1,
                            (bytes >> 20) + 1, gltf::kMaxMorphTargets, kMaxBakedBytes >> 20),
                "use --as targets or a .pc2 file for any length, or a lower --rate")
       .in_file(path);
@@ -52,23 +55,24 @@ Result<MotionFormat> motion_format(const std::string& path, bool exr) {
       .in_file(path);
 }
 
-Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat format,
+Status add_baked(const ShapeFile& shape, const MeshMotion& motion, MotionFormat format,
                  OutputSet& outputs, ToolContext& context) {
   if (format == MotionFormat::pc2) {
     return outputs.add(context.output, [&](OutputFile& file) {
-      return pc2::write(model, motion, {}, file, context.progress, context.jobs);
+      return pc2::write(shape.model, motion, {}, file, context.progress, context.jobs);
     });
   }
-  if (Status status = check_bakeable(model, motion.frames, context.output); !status) return status;
+  if (Status status = check_bakeable(shape, motion.frames, context.output); !status) return status;
   return outputs.add(context.output, [&](OutputFile& file) {
-    return gltf::write_baked(model, motion, gltf_options(format, context), file, context.progress,
-                             context.jobs);
+    return gltf::write_baked(shape.model, motion, gltf_options(shape, format, context), file,
+                             context.progress, context.jobs);
   });
 }
 
-Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
+Status add_targets(const ShapeFile& shape, const MorphSet& morphs, const MorphWeights& weights,
                    MotionFormat format, OutputSet& outputs, ToolContext& context) {
-  gltf::WriteOptions options = gltf_options(format, context);
+  gltf::WriteOptions options = gltf_options(shape, format, context);
+  const Model& model = shape.model;
   options.morphs = &morphs;
   options.weights = &weights;
   return outputs.add(context.output, [&](OutputFile& file) {

@@ -10,6 +10,7 @@
 #include "tools/cli/output_set.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"
+#include "tools/krok-morph/shape_file.h"
 
 namespace krok::cli::morph {
 
@@ -19,13 +20,13 @@ enum class MotionFormat { glb, gltf, pc2, exr };
 // An Error (code morph-format) for other extensions; `exr`: whether .exr is allowed.
 Result<MotionFormat> motion_format(const std::string& path, bool exr);
 
-// Adds the motion as baked shapes to the outputs: glTF or a PC2 point cache. An Error (code
-// morph-clip-too-long) for glTF beyond the limits of viewers.
-Status add_baked(const Model& model, const MeshMotion& motion, MotionFormat format,
+// Adds the motion of a mesh as baked shapes to the outputs: glTF or a PC2 point cache. An Error
+// (code morph-clip-too-long) for glTF beyond the limits of viewers.
+Status add_baked(const ShapeFile& shape, const MeshMotion& motion, MotionFormat format,
                  OutputSet& outputs, ToolContext& context);
 
 // Adds glTF with morph targets and weight keys, one per frame.
-Status add_targets(const Model& model, const MorphSet& morphs, const MorphWeights& weights,
+Status add_targets(const ShapeFile& shape, const MorphSet& morphs, const MorphWeights& weights,
                    MotionFormat format, OutputSet& outputs, ToolContext& context);
 
 // How far a target displaces a mesh, in metres.

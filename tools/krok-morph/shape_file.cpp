@@ -47,12 +47,12 @@ Result<ShapeFile> read_any(const InputFile& file, const Options& options, ToolCo
     return Error("morph-input", fmt::format("this is {}, expected .obj, .glb, .gltf or .model",
                                             registry::describe_content(file.bytes())));
   }
-  auto actor = io::open_actor(
-      file, context, {.with_materials = false, .with_morphs = with_morphs, .with_motions = false});
+  auto actor = io::open_actor(file, context, {.with_morphs = with_morphs, .with_motions = false});
   if (!actor) return actor.error();
   ShapeFile shape;
   shape.source = kind == Kind::model ? Source::model : Source::gltf;
   shape.model = std::move(actor->model);
+  shape.materials = std::move(actor->materials);
   shape.morphs = std::move(actor->morphs);
   return shape;
 }

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/file.h"
 #include "core/result.h"
+#include "scene/material.h"
 #include "scene/model.h"
 #include "scene/morph_set.h"
 #include "tools/cli/tool.h"
@@ -18,6 +20,7 @@ struct ShapeFile {
   std::string path;
   Source source = Source::model;
   Model model;
+  std::vector<Material> materials;  // of the model's parts, of a glTF file
   bool has_normals = false;  // from the file; otherwise the model's are computed from triangles
   MorphSet morphs;           // of a glTF file; otherwise none
 };

@@ -57,6 +57,19 @@ TEST_F(SkinMorphs, AFaceThatAFilesAnimationMovesIsWarnedOf) {
   EXPECT_FALSE(has_code(other.err, "motion-weights")) << "its mesh has no face";
 }
 
+// krok-morph wrote a grey mesh of a file with materials.
+TEST_F(SkinMorphs, WhatIsBakedOfAFileKeepsItsMaterials) {
+  tool("krok-skin", {"in.model", "-o", "base.gltf"});
+  json base = json::parse(get(path("base.gltf")));
+  base["materials"][0]["name"] = "leather";
+  put("base.gltf", base.dump());
+  for (const char* as : {"targets", "clip"}) {
+    tool("krok-morph",
+         {"bake", "base.gltf", "bent.exr", "--weights", "full.json", "--as", as, "-o", "out.gltf"});
+    EXPECT_EQ(json::parse(get(path("out.gltf")))["materials"][0]["name"], "leather") << as;
+  }
+}
+
 TEST_F(SkinMorphs, WeightsAreTakenAtTheMotionsMoments) {
   const std::vector<std::string> rising = {"in.model", "in.anim",   "--morph",
                                            "bent.exr", "--weights", "rising.csv"};
