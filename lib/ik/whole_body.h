@@ -22,8 +22,8 @@ std::vector<HeldFoot> legs_without_goals(const Clip& clip, const RoleMap& roles,
                                          std::span<const KeyedGoal> goals);
 
 // Of a skeleton without legs that have roles: what ends within a tenth of the skeleton's size over
-// the lowest place of `clip` and hangs on no goal's joint, nor beside it as a finger beside another,
-// each as a foot without a leg.
+// the lowest place of `clip` and hangs on no goal's joint, nor beside it as a finger beside
+// another, each as a foot without a leg.
 std::vector<HeldFoot> ends_on_ground(const Clip& clip, std::span<const KeyedGoal> goals);
 
 // The joint to shift: where legs and trunk part, or what carries that joint at hardly any distance
