@@ -39,9 +39,6 @@ struct Conversion {
   std::unordered_map<std::string, int> node_by_name;         // the first of each name
   std::unordered_map<int, std::vector<ChainPart>> chain_of;  // of FBX nodes with helper nodes
   std::unordered_map<std::string, int> node_of_chain_part;   // helper's name -> ours
-  // FBX's InheritType of nodes where it is not 1: 0 scales along the parent's axes after the node's
-  // own rotation, 2 does not take over the parent's scale (Maya's segment scale compensation).
-  std::map<int, int> inherit_types = {};
 
   void note(std::string code, std::string message, std::string hint = {});
   void warn(std::string code, std::string message, std::string hint = {});
@@ -73,7 +70,6 @@ void convert_animations(Conversion& conversion, const aiScene& source);
 void convert_space(Conversion& conversion);
 void report_same_names(Conversion& conversion);
 void report_takes(Conversion& conversion);
-void report_inheritance(Conversion& conversion);  // after animations
 // How well the keys of `conversion` hold the file's curves, by what was resampled of them before.
 void report_curves(Conversion& conversion, const std::optional<Resampling>& resampling);
 void rename_collada_nodes(Conversion& conversion);    // last: other steps use Assimp's names

@@ -66,6 +66,14 @@ Chain follow_chain(const aiNode* node) {
   return chain;
 }
 
+// FBX's InheritType, which is 0 of nodes that say nothing.
+Node::ParentScale parent_scale_of(const aiNode& node) {
+  int type = 0;
+  if (node.mMetaData != nullptr) (void)node.mMetaData->Get("InheritType", type);
+  if (type == 0) return Node::ParentScale::along_own_axes;
+  return type == 2 ? Node::ParentScale::compensated : Node::ParentScale::inherited;
+}
+
 // The parent of the children, below the helpers that undo the geometric transform.
 const aiNode* holder_of_children(const aiNode* node) {
   while (node->mNumChildren == 1 && is_helper(node->mChildren[0]->mName.C_Str()) &&
@@ -141,10 +149,8 @@ void convert_nodes(Conversion& to) {
       to.chain_of[index] = chain.parts;
     }
     to.node_of[chain.end] = index;
-    int inherits = 1;
-    const aiMetadata* data = chain.end->mMetaData;
-    if (data != nullptr && data->Get("InheritType", inherits) && inherits != 1) {
-      to.inherit_types.emplace(index, inherits);
+    if (to.kind == registry::Kind::fbx) {
+      to.scene.nodes.back().parent_scale = parent_scale_of(*chain.end);
     }
     if (chain.has_geometry && chain.end->mNumMeshes > 0) {
       to.node_of[chain.end] = add_node(to, name + "_geometry", index, chain.geometry_to_node);

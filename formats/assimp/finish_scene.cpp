@@ -7,9 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "core/index.h"
-#include "core/numbers.h"
-#include "core/text.h"
 #include "formats/assimp/collada_text_internal.h"
 #include "formats/assimp/conversion_internal.h"
 #include "formats/assimp/fbx_elements_internal.h"
@@ -110,44 +107,6 @@ void report_takes(Conversion& to) {
                       "their blend modes",
                       layers, takes),
           "if the motion looks wrong, merge the layers before exporting");
-}
-
-// Every format here multiplies transforms, FBX may say otherwise of scale.
-void report_inheritance(Conversion& to) {
-  constexpr double kRounding = 1e-4;
-  const auto scales = [&](int node, bool along_axes) {
-    const auto differs = [&](double x, double y, double z) {
-      const double from = along_axes ? x : 1;
-      return std::max({std::abs(x - from), std::abs(y - from), std::abs(z - from)}) > kRounding;
-    };
-    const Vec3& still = to.scene.nodes[at(node)].scale;
-    if (differs(still.x(), still.y(), still.z())) return true;
-    for (const Animation& animation : to.scene.animations) {
-      for (const Channel& channel : animation.channels) {
-        if (channel.node != node || channel.path != Path::scale || !channel.values) continue;
-        const std::vector<float>& values = *channel.values;
-        for (std::size_t k = 0; k + 2 < values.size(); k += 3) {
-          if (differs(static_cast<double>(values[k]), static_cast<double>(values[k + 1]),
-                      static_cast<double>(values[k + 2]))) {
-            return true;
-          }
-        }
-      }
-    }
-    return false;
-  };
-  std::vector<std::string> names;
-  for (const auto& [node, type] : to.inherit_types) {
-    const int parent = to.scene.nodes[at(node)].parent;
-    if (parent >= 0 && scales(parent, type == 0)) names.push_back(to.scene.nodes[at(node)].name);
-  }
-  if (names.empty()) return;
-  to.warn("assimp-inherit",
-          fmt::format("{}, such as {}: the parents' scale is inherited, which the file excludes "
-                      "(InheritType, Maya's segment scale compensation)",
-                      counted(names.size(), "node"), shown(names.front())),
-          "their positions and sizes are off where parents are scaled: export without scaled "
-          "joints, or with the scale baked");
 }
 
 void report_curves(Conversion& to, const std::optional<Resampling>& resampling) {

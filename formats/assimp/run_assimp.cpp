@@ -296,7 +296,6 @@ Result<nodes::Scene> run_assimp(std::vector<MemoryFile> files, Kind kind,
             fmt::format("{} meshes have no normals; smooth ones were computed", without_normals));
   }
   report_takes(to);
-  report_inheritance(to);
   report_curves(to, input->curves);
   report_what_is_missing(to);
   return std::move(to.scene);

@@ -179,6 +179,7 @@ constexpr auto kNodeFields = [](auto& io, auto& node) {
   io.numbers(node.translation);
   io.rotation(node.rotation);
   io.numbers(node.scale);
+  io.kind(node.parent_scale, Node::ParentScale::compensated, "a node's scale is of unknown kind");
   io.number(node.mesh);
   io.number(node.skin);
   io.number(node.camera);

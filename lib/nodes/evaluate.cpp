@@ -271,6 +271,32 @@ std::vector<double> Evaluator::key_times(int animation) const {
   return times;
 }
 
+namespace {
+
+// What is nearer to 1, or to a uniform scale, is rounding.
+constexpr double kSameScale = 1e-6;
+
+// A node that takes over its parent's scale along its own axes. `turn` is the parent's rotation to
+// the world, `above` all of its linear part.
+Mat3 along_own_axes(const Mat3& turn, const Mat3& above, const Quat& rotation, const Vec3& scale,
+                    const Mat3& to_parent) {
+  const Mat3 parent_scale = turn.transpose() * above;
+  const Mat3 uniform = parent_scale.trace() / 3 * Mat3::Identity();
+  if ((parent_scale - uniform).norm() <= kSameScale * parent_scale.norm()) return above * to_parent;
+  return turn * rotation.toRotationMatrix() * parent_scale * scale.asDiagonal();
+}
+
+// A node that its parent's scale places but does not reach.
+Mat3 compensated(const Mat3& above, const Vec3& parent_scale, const Mat3& to_parent) {
+  if ((parent_scale - Vec3::Ones()).cwiseAbs().maxCoeff() <= kSameScale) return above * to_parent;
+  constexpr double kMin = 1e-9;
+  const Vec3 compensation =
+      parent_scale.unaryExpr([](double value) { return std::abs(value) < kMin ? 1 : 1 / value; });
+  return above * compensation.asDiagonal() * to_parent;
+}
+
+}  // namespace
+
 void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
   const auto& nodes = scene_->nodes;
   out.node_translations.resize(nodes.size());
@@ -318,9 +344,17 @@ void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
       }
     }
   }
+  const bool own_scales = std::ranges::any_of(
+      nodes, [](const Node& node) { return node.parent_scale != Node::ParentScale::inherited; });
+  std::vector<Mat3> turned(own_scales ? nodes.size() : 0);  // to the world, without scale
   for (const int index : order_) {
     const auto i = static_cast<std::size_t>(index);
     const Node& node = nodes[i];
+    if (own_scales) {
+      const Mat3 turn = out.node_rotations[i].toRotationMatrix();
+      turned[i] =
+          node.parent < 0 ? turn : Mat3(turned[static_cast<std::size_t>(node.parent)] * turn);
+    }
     const Mat4 to_parent =
         node.has_matrix && !moved[i]
             ? node.matrix
@@ -329,6 +363,15 @@ void Evaluator::place_nodes(int animation, double time, Evaluation& out) const {
         node.parent < 0
             ? to_parent
             : Mat4(out.node_to_world[static_cast<std::size_t>(node.parent)] * to_parent);
+    if (node.parent < 0 || node.parent_scale == Node::ParentScale::inherited) continue;
+    const auto parent = static_cast<std::size_t>(node.parent);
+    const Mat3 above = out.node_to_world[parent].topLeftCorner<3, 3>();
+    const Mat3 linear = to_parent.topLeftCorner<3, 3>();
+    out.node_to_world[i].topLeftCorner<3, 3>() =
+        node.parent_scale == Node::ParentScale::compensated
+            ? compensated(above, out.node_scales[parent], linear)
+            : along_own_axes(turned[parent], above, out.node_rotations[i], out.node_scales[i],
+                             linear);
   }
 }
 

@@ -32,6 +32,11 @@ struct Node {
   Vec3 translation = Vec3::Zero();
   Quat rotation = Quat::Identity();  // unit
   Vec3 scale = Vec3::Ones();
+  // How the parent's scale reaches the node. glTF knows the first; FBX (InheritType; Autodesk, FBX
+  // SDK, Transformations sample): along the node's own axes, and all but that of the parent itself,
+  // as by Maya's segment scale compensation.
+  enum class ParentScale : unsigned char { inherited, along_own_axes, compensated };
+  ParentScale parent_scale = ParentScale::inherited;
   int mesh = -1;
   int skin = -1;
   int camera = -1;

@@ -383,10 +383,10 @@ TEST(Fbx, LayersThatAreBlendedAreWarnedOf) {
   EXPECT_TRUE(has_code(read_or_fail(folder.add("two.fbx", text)).diagnostics, "assimp-layers"));
 }
 
-// Maya's segment scale compensation: joints below a scaled one keep their size; Assimp scales them,
-// which was silent.
-TEST(Fbx, ScaleThatIsNotInheritedIsWarnedOf) {
-  const auto with = [](const char* scaling, int inherit_type) {
+// FBX's InheritType: Maya's segment scale compensation keeps joints below a scaled one as they are,
+// MotionBuilder scales them along their own axes. All were scaled along the parent's.
+TEST(Fbx, ScaleReachesChildrenAsTheFileSays) {
+  const auto spine = [](const char* scaling, int inherit_type) {
     std::string text = FbxSample().text();
     const std::string active = "P: \"RotationActive\", \"bool\", \"\", \"\",1\n";
     const std::size_t first = text.find(active);
@@ -395,13 +395,18 @@ TEST(Fbx, ScaleThatIsNotInheritedIsWarnedOf) {
     text.insert(first,
                 fmt::format("P: \"Lcl Scaling\", \"Lcl Scaling\", \"\", \"A\",{}\n", scaling));
     const Folder folder;
-    return has_code(read_or_fail(folder.add("scaled.fbx", text)).diagnostics, "assimp-inherit");
+    return node_to_world(read_or_fail(folder.add("scaled.fbx", text)), "Spine", -1, 0);
   };
-  EXPECT_TRUE(with("2,2,2", 2));
-  EXPECT_FALSE(with("1,1,1", 2));
-  EXPECT_FALSE(with("2,2,2", 1));
-  EXPECT_TRUE(with("2,1,1", 0));
-  EXPECT_FALSE(with("2,2,2", 0));
+  const Mat4 rigid = spine("1,1,1", 1), sheared = spine("2,1,1", 1);
+  const Mat4 compensated = spine("2,1,1", 2), along = spine("2,1,1", 0);
+  const auto linear = [](const Mat4& matrix) { return Mat3(matrix.topLeftCorner<3, 3>()); };
+  EXPECT_LT((linear(compensated) - linear(rigid)).norm(), 1e-5);
+  EXPECT_LT((linear(along) - linear(rigid) * Vec3(2, 1, 1).asDiagonal()).norm(), 1e-5);
+  EXPECT_GT((linear(along) - linear(sheared)).norm(), 0.1) << "the sample's joints are turned";
+  for (const Mat4& each : {compensated, along}) {
+    EXPECT_LT((each - sheared).col(3).norm(), 1e-3) << "places are scaled in all of them";
+  }
+  EXPECT_LT((spine("2,2,2", 0) - spine("2,2,2", 1)).norm(), 1e-3);
 }
 
 // One take a stack: all are there by name, and one without curves is not lost silently.
