@@ -67,7 +67,9 @@ FootBend::FootBend(const Actor& actor, Role foot, std::span<const FootPoint> poi
   const Vec3 ahead = actor.pose[at(toes[toes.size() / 2])].position - ankle.position;
   right_ = ankle.orientation.conjugate() * ahead.cross(kUp).stableNormalized();
   for (const int joint : toes) {
-    Toe& toe = toes_.emplace_back(joint, joints_below(actor.skeleton, joint));
+    Toe& toe = toes_.emplace_back();
+    toe.joint = joint;
+    toe.below = joints_below(actor.skeleton, joint);
     std::ranges::copy_if(points, std::back_inserter(toe.points), [&](const FootPoint& point) {
       return std::ranges::binary_search(toe.below, point.point.joint) &&
              (point.point.joint != joint || !point.point.offset.isZero(0));

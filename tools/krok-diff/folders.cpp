@@ -12,6 +12,7 @@
 #include "core/in_order.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "formats/registry/registry.h"
 #include "tools/cli/paths.h"
 #include "tools/krok-diff/compare_files.h"
