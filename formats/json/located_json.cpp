@@ -106,7 +106,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
     error_ = error_at(text_, offset, "json-syntax", "not valid JSON: " + what.substr(0, 200));
     const std::size_t before = text_.find_last_not_of(" \t\r\n", offset == 0 ? 0 : offset - 1);
     if (before < offset && text_[before] == ',' && (token.ends_with('}') || token.ends_with(']'))) {
-      error_->hint = "no comma is written after the last one: remove the one before";
+      error_->hint = "JSON has no comma after the last item: remove it";
     }
     return false;
   }

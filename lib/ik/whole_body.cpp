@@ -55,15 +55,6 @@ std::vector<HeldFoot> legs_without_goals(const Clip& clip, const RoleMap& roles,
 
 namespace {
 
-// Metres along the bones from an ancestor to a joint.
-double way_below(const Skeleton& skeleton, int ancestor, int joint) {
-  double way = 0;
-  for (int j = joint; j != ancestor; j = skeleton.parents[at(j)]) {
-    way += skeleton.reference_local(j).position.norm();
-  }
-  return way;
-}
-
 // 1 for joints beside a goal's, such as the other fingers of a hand: they hang on its parent,
 // hardly farther away than what the goal moves. Held, they would hold that joint, too. [joints]
 std::vector<std::uint8_t> beside_goals(std::span<const KeyedGoal> goals, const Skeleton& skeleton) {
@@ -75,15 +66,16 @@ std::vector<std::uint8_t> beside_goals(std::span<const KeyedGoal> goals, const S
     if (parent <= 0) continue;
     const std::vector<std::uint8_t> moved = subtree(skeleton, goal.goal.joint);
     const std::vector<std::uint8_t> below = subtree(skeleton, parent);
+    std::vector<double> way(below.size(), 0);  // metres along the bones from the parent
     double longest = 0;
-    for (std::size_t j = 0; j < moved.size(); ++j) {
-      if (moved[j] == 0) continue;
-      longest = std::max(longest, way_below(skeleton, parent, static_cast<int>(j)));
+    for (std::size_t j = at(parent) + 1; j < below.size(); ++j) {
+      if (below[j] == 0) continue;
+      way[j] = way[at(skeleton.parents[j])] +
+               skeleton.reference_local(static_cast<int>(j)).position.norm();
+      if (moved[j] != 0) longest = std::max(longest, way[j]);
     }
     for (std::size_t j = 0; j < below.size(); ++j) {
-      if (below[j] == 0) continue;
-      const bool near = way_below(skeleton, parent, static_cast<int>(j)) <= kBeside * longest;
-      beside[j] |= near ? 1 : 0;
+      beside[j] |= below[j] != 0 && way[j] <= kBeside * longest ? 1 : 0;
     }
   }
   return beside;

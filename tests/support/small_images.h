@@ -53,25 +53,24 @@ inline constexpr unsigned char kTransparentWebp[] = {
     0x74, 0xBA, 0x00, 0x04, 0x66, 0x80, 0x00, 0xFE, 0xED, 0xCE, 0xDF, 0xD6, 0xAA, 0x15,
     0x3C, 0x01, 0xEF, 0xFE, 0x7A, 0x67, 0xF5, 0xB7, 0xF1, 0xFF, 0x8C, 0x80, 0x00, 0x00};
 
-inline std::vector<std::byte> png() {
-  const auto bytes = std::as_bytes(std::span(kPng));
+inline std::vector<std::byte> copy_of(std::span<const unsigned char> file) {
+  const auto bytes = std::as_bytes(file);
   return {bytes.begin(), bytes.end()};
+}
+inline std::vector<std::byte> png() {
+  return copy_of(kPng);
 }
 inline std::vector<std::byte> jpeg() {
-  const auto bytes = std::as_bytes(std::span(kJpeg));
-  return {bytes.begin(), bytes.end()};
+  return copy_of(kJpeg);
 }
 inline std::vector<std::byte> webp() {
-  const auto bytes = std::as_bytes(std::span(kWebp));
-  return {bytes.begin(), bytes.end()};
+  return copy_of(kWebp);
 }
 inline std::vector<std::byte> lossy_webp() {
-  const auto bytes = std::as_bytes(std::span(kLossyWebp));
-  return {bytes.begin(), bytes.end()};
+  return copy_of(kLossyWebp);
 }
 inline std::vector<std::byte> transparent_webp() {
-  const auto bytes = std::as_bytes(std::span(kTransparentWebp));
-  return {bytes.begin(), bytes.end()};
+  return copy_of(kTransparentWebp);
 }
 // A header and one level of `size` bytes, which mean nothing (Khronos Group, KTX File Format 2.0).
 inline std::vector<std::byte> ktx2(unsigned width, unsigned height, unsigned size) {

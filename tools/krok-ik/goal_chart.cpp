@@ -1,7 +1,6 @@
 #include "tools/krok-ik/goal_chart.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <string>
