@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/csv/field.h"
 
 namespace krok::csv {
@@ -19,6 +20,16 @@ constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
 void add_value(float value, std::string& text) {
   text += ',';
   if (std::isfinite(value)) text += shortest(value);
+}
+
+// What each row begins with.
+std::string start_of_row(const FileColumn& motion) {
+  return motion.name.empty() ? std::string() : field(to_utf8(motion.name)) + ",";
+}
+
+std::string header_of(const FileColumn& motion, const std::string& columns) {
+  if (!motion.with_header) return {};
+  return (motion.name.empty() ? "" : "file,") + columns + "\n";
 }
 
 Status flush_long_text(std::string& text, OutputFile& file) {
@@ -59,10 +70,11 @@ Status write(const FrameSource& motion, OutputFile& file) {
 }
 
 Status write(std::span<const Contact> contacts, std::span<const std::string> names,
-             OutputFile& file) {
-  std::string text = "joint,start,end,x,y,z\n";
+             const FileColumn& motion, OutputFile& file) {
+  std::string text = header_of(motion, "joint,start,end,x,y,z");
   for (const Contact& contact : contacts) {
-    text += fmt::format("{},{},{}", field(names[static_cast<std::size_t>(contact.joint)]),
+    text += fmt::format("{}{},{},{}", start_of_row(motion),
+                        field(names[static_cast<std::size_t>(contact.joint)]),
                         shortest(contact.start), shortest(contact.end));
     for (int axis = 0; axis < 3; ++axis) (text += ',') += shortest(contact.place[axis]);
     text += '\n';
@@ -85,16 +97,17 @@ Status write(const MorphWeights& weights, OutputFile& file) {
   return file.write(text);
 }
 
-Status write_long(const SeriesTable& table, OutputFile& file) {
+Status write_long(const SeriesTable& table, const FileColumn& motion, OutputFile& file) {
   assert(table.values.size() == static_cast<std::size_t>(table.frames) * table.columns());
   std::vector<std::string> names;
   for (const std::string& item : table.items) names.push_back(field(item));
-  std::string text = "frame,time," + field(table.item_name);
-  for (const std::string& quantity : table.quantities) (text += ',') += field(quantity);
-  text += '\n';
+  std::string columns = "frame,time," + field(table.item_name);
+  for (const std::string& quantity : table.quantities) (columns += ',') += field(quantity);
+  std::string text = header_of(motion, columns);
+  const std::string row = start_of_row(motion);
   const float* value = table.values.data();
   for (int frame = 0; frame < table.frames; ++frame) {
-    const std::string start = fmt::format("{},{},", frame, shortest(frame / table.rate));
+    const std::string start = fmt::format("{}{},{},", row, frame, shortest(frame / table.rate));
     for (const std::string& name : names) {
       text += start + name;
       for (std::size_t q = 0; q < table.quantities.size(); ++q) add_value(*value++, text);
@@ -105,19 +118,20 @@ Status write_long(const SeriesTable& table, OutputFile& file) {
   return file.write(text);
 }
 
-Status write_wide(const SeriesTable& table, OutputFile& file) {
+Status write_wide(const SeriesTable& table, const FileColumn& motion, OutputFile& file) {
   assert(table.values.size() == static_cast<std::size_t>(table.frames) * table.columns());
-  std::string text = "frame,time";
+  std::string columns = "frame,time";
   for (const std::string& item : table.items) {
     for (const std::string& quantity : table.quantities) {
-      text += ',';
-      text += field(table.quantities.size() == 1 ? item : fmt::format("{}.{}", item, quantity));
+      columns += ',';
+      columns += field(table.quantities.size() == 1 ? item : fmt::format("{}.{}", item, quantity));
     }
   }
-  text += '\n';
+  std::string text = header_of(motion, columns);
+  const std::string row = start_of_row(motion);
   const float* value = table.values.data();
   for (int frame = 0; frame < table.frames; ++frame) {
-    text += fmt::format("{},{}", frame, shortest(frame / table.rate));
+    text += fmt::format("{}{},{}", row, frame, shortest(frame / table.rate));
     for (std::size_t c = 0; c < table.columns(); ++c) add_value(*value++, text);
     text += '\n';
     if (Status status = flush_long_text(text, file); !status) return status;

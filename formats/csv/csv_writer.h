@@ -14,6 +14,13 @@
 
 namespace krok::csv {
 
+// The rows of one of several motions in one table: a first column "file" with this name. Empty: no
+// such column.
+struct FileColumn {
+  std::string name;
+  bool with_header = true;  // of the table, before the rows
+};
+
 // Appends the header "frame,time,joint,x,y,z" and a row for each frame and joint, in that order, to
 // `file`; the caller commits. Frames are zero-based; time is frame / rate in seconds; x, y, z are
 // metres in Krok's axes. Numbers have the fewest digits that round-trip (time as a double,
@@ -27,7 +34,7 @@ Status write(const FrameSource& motion, OutputFile& file);
 // Contacts: the header "joint,start,end,x,y,z" and a row for each, in seconds and metres; `names`
 // are those of the joints.
 Status write(std::span<const Contact> contacts, std::span<const std::string> names,
-             OutputFile& file);
+             const FileColumn& motion, OutputFile& file);
 
 // Morph target weights: the header "frame,time," followed by the target names, then one row per
 // frame. Numbers, names and lines as above.
@@ -53,10 +60,10 @@ struct SeriesTable {
 // line break are quoted (RFC 4180). Lines end with LF.
 
 // "frame,time,joint,x,y,z" and a row for each frame and item.
-Status write_long(const SeriesTable& table, OutputFile& file);
+Status write_long(const SeriesTable& table, const FileColumn& motion, OutputFile& file);
 
 // "frame,time,LeftFoot.x,LeftFoot.y,..." and a row for each frame; of one quantity the names are
 // those of the items.
-Status write_wide(const SeriesTable& table, OutputFile& file);
+Status write_wide(const SeriesTable& table, const FileColumn& motion, OutputFile& file);
 
 }  // namespace krok::csv

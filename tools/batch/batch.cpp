@@ -443,7 +443,7 @@ class Batch {
     }
     std::string text;
     for (const OneOfMany::Message& message : outcome.run.messages) {
-      if (tally_.is_shown(message.code, file.input)) text += message.text;
+      if (messages_.is_shown(message.code, file.input)) text += message.text;
     }
     if (!text.empty()) write_message(console_.get(), text);
     if (report_.is_wanted()) report_.add(outcome.report);
@@ -486,9 +486,10 @@ class Batch {
       warning.severity = Severity::warning;
       context_.diagnose(std::move(warning));
     }
-    if (const std::string more = tally_.more_messages(); !more.empty()) {
+    if (const std::string more = messages_.more(); !more.empty()) {
       write_message(console_.get(), more);
     }
+    context_.end_messages();
     if (tally_.failed() > 0) context_.diagnose(tally_.failure(line_.keep_going));
     const std::string part =
         line_.shard.empty() ? "" : fmt::format(" of {} (part {})", list_.total, line_.shard);
@@ -518,6 +519,7 @@ class Batch {
   int jobs_of_a_file_ = 1;
   std::optional<ReadyLines> ready_lines_;
   BatchTally tally_;
+  AlikeMessages messages_;
   std::set<std::string> written_folders_;
   Status journal_trouble_;
 };

@@ -12,8 +12,6 @@ namespace {
 
 // Max number of failed files that are named.
 constexpr std::size_t kNamed = 10;
-// Max number of files whose messages of one code are printed.
-constexpr std::size_t kShown = 3;
 
 }  // namespace
 
@@ -26,25 +24,6 @@ void BatchTally::add(FileState state, const std::string& name, bool warned) {
   if (state == FileState::done && warned) ++warned_;
   ++counts_[static_cast<std::size_t>(state)];
   if (state == FileState::failed && failed_.size() < kNamed) failed_.push_back(name);
-}
-
-bool BatchTally::is_shown(const std::string& code, const std::string& name) {
-  if (code.empty()) return true;
-  Said& said = messages_[code];
-  if (said.last != name) ++said.files;
-  said.last = name;
-  return said.files <= kShown;
-}
-
-std::string BatchTally::more_messages() const {
-  std::string text;
-  for (const auto& [code, said] : messages_) {
-    if (said.files <= kShown) continue;
-    const std::size_t more = said.files - kShown;
-    text += fmt::format("  {} more {} such messages; -v and --json have all [{}]\n", more,
-                        more == 1 ? "file has" : "files have", code);
-  }
-  return text;
 }
 
 std::size_t BatchTally::left() const {

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -29,12 +28,6 @@ class BatchTally {
 
   void add(FileState state, const std::string& name, bool warned);
 
-  // Whether a file's message is printed: of warnings or errors with one code, those of the first
-  // few files.
-  bool is_shown(const std::string& code, const std::string& name);
-  // Lines that name the codes whose messages were not all printed, and in how many files.
-  std::string more_messages() const;
-
   std::size_t failed() const { return count(FileState::failed); }
   // {"files", "done", "with_warnings", "unchanged", "left_out" if any, "failed", "left"}
   Json result() const;
@@ -51,11 +44,6 @@ class BatchTally {
   std::array<std::size_t, 4> counts_{};
   std::size_t warned_ = 0;           // files that are done
   std::vector<std::string> failed_;  // names, the first few
-  struct Said {
-    std::size_t files = 0;
-    std::string last;  // the file that was counted last
-  };
-  std::map<std::string, Said> messages_;  // by code
 };
 
 }  // namespace krok::cli::batch

@@ -204,6 +204,7 @@ Status CommandLine::check_use_of_batch_options() const {
 
 Status CommandLine::open_folders() {
   left_out.clear();
+  of_folder = false;
   if (form_ != Form::single || spec_.folder_endings.empty()) return {};
   const bool each = spec_.each_animation && spec_.each_animation(output);
   for (CLI::Option* option : app_.get_options()) {
@@ -219,6 +220,7 @@ Status CommandLine::open_folders() {
         add(value);
         continue;
       }
+      of_folder = true;
       auto found = find_files_below(value);
       if (!found) return found.error();
       for (Diagnostic& diagnostic : keep_inputs(value, spec_.folder_endings, *found)) {

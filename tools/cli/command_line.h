@@ -73,6 +73,8 @@ class CommandLine {
 
   // What was left out of folders that were given as inputs.
   Diagnostics left_out;
+  // Whether a folder was.
+  bool of_folder = false;
 
   // The common options.
   std::string output;

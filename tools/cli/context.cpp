@@ -40,15 +40,23 @@ void ToolContext::diagnose(Diagnostic diagnostic) {
       !said_.insert(message_of(report.tool, diagnostic)).second) {
     return;
   }
-  const int alike = shown && !verbose ? ++alike_[diagnostic.code] : 1;
+  const std::string& file = diagnostic.where.file;
+  const bool of_few = !shown || verbose || one_of_many != nullptr || file.empty() ||
+                      by_file_.is_shown(diagnostic.code, file);
+  const int alike = shown && of_few && !verbose ? ++alike_[diagnostic.code] : 1;
   const std::string code = verbose ? std::string() : diagnostic.code;
-  if (shown && alike <= kMaxAlike) put_message(message_of(report.tool, diagnostic), code);
+  if (shown && of_few && alike <= kMaxAlike) put_message(message_of(report.tool, diagnostic), code);
   if (shown && alike == kMaxAlike + 1) {
     put_message(fmt::format("  more of these {} are not shown; -v and --json have all [{}]\n",
                             diagnostic.severity == Severity::error ? "errors" : "warnings", code),
                 code);
   }
   report.issues.push_back(std::move(diagnostic));
+}
+
+void ToolContext::end_messages() {
+  if (const std::string more = by_file_.more(); !more.empty()) put_message(more);
+  by_file_ = {};
 }
 
 void ToolContext::warn(std::string code, std::string message, std::string hint) {

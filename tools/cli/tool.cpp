@@ -157,9 +157,11 @@ int run_single(const CommandLine& line) {
   context.console = console.get();
   context.progress = console.get();
   for (const Diagnostic& diagnostic : line.left_out) context.diagnose(diagnostic);
+  context.of_folder = line.of_folder;
   const Status status = spec.check ? spec.check() : Status();
   const Result<int> done = status ? run_guarded(spec, context) : Result<int>(status.error());
   console->end();
+  context.end_messages();
   if (!done) {
     Error error = done.error();
     if (error.code == "file-directory" && spec.batch) {

@@ -14,6 +14,7 @@
 #include "formats/io/inputs.h"
 #include "formats/registry/registry.h"
 #include "scene/provenance.h"
+#include "tools/cli/alike_messages.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/report.h"
 
@@ -59,6 +60,7 @@ class ToolContext : public io::Inputs {
   std::vector<std::string> destinations;
   bool keep_going = false;              // see leave_out()
   std::set<std::string> left_out = {};  // inputs
+  bool of_folder = false;               // whether the inputs were given as a folder
   // Report path: --json=FILE, "-", or empty.
   std::string report_path;
   // Outputs of a single run that wait for its report; all are put in place together.
@@ -73,9 +75,11 @@ class ToolContext : public io::Inputs {
   Json result_options = Json::object();
 
   // Prints a diagnostic on standard error (notes only with -v, only errors with -q, without -v at
-  // most 20 warnings or errors with one code), prefixed with the tool's name if it has no file, and
-  // adds it to the report.
+  // most 20 warnings or errors with one code, and those of three files), prefixed with the tool's
+  // name if it has no file, and adds it to the report.
   void diagnose(Diagnostic diagnostic) override;
+  // Prints how many files had messages that were not printed.
+  void end_messages();
   using io::Inputs::diagnose;
   void warn(std::string code, std::string message, std::string hint = {});
 
@@ -140,6 +144,7 @@ class ToolContext : public io::Inputs {
  private:
   void put_message(const std::string& text, const std::string& code = {});
 
+  AlikeMessages by_file_;             // of a single run
   std::map<std::string, int> alike_;  // warnings and errors so far, by code
   std::set<std::string> said_;        // warnings so far
   std::set<std::string> written_;     // canonical paths that passed check_output

@@ -108,9 +108,9 @@ namespace {
 
 void declare(CommandOptions& command, Options& options) {
   command
-      .add_option("input IN", options.input,
+      .add_option("inputs IN", options.inputs,
                   "Motion: a .anim file, or a capture (BVH; AMC with its ASF beside it), read as "
-                  "by krok-import without options")
+                  "by krok-import without options; for one table in CSV several, or folders")
       .required();
   command.add(
       "--format FORMAT", options.format, choice<ExportFormat>(kFormats),
@@ -159,13 +159,15 @@ ToolSpec make_spec() {
   ToolSpec spec = spec_of("krok-export", options, declare, check, run);
   spec.summary = "Exports a motion as BVH, glTF, arrays of numpy or tables (CSV, OpenSim)";
   spec.details = "Tables have positions, angles, velocities, contacts and others.";
-  spec.inputs = "IN";
+  spec.inputs = "IN...";
   spec.examples = {
       {"krok-export walk.anim -o walk.glb", "the animated skeleton, for any glTF viewer"},
       {"krok-export walk.anim -o walk.csv",
        "frame,time,joint,x,y,z: one row per frame and joint, in metres"},
       {"krok-export walk.anim --what angles --layout wide -o angles.csv",
        "frame,time,hip_flexion_l,...: one row per frame, in degrees"},
+      {"krok-export motions --what angles -o all.csv",
+       "of all motions of a folder: file,frame,time,angle,degrees"},
       {"krok-export walk.anim -o walk.npz",
        "positions, quaternions, names, parents and contacts for numpy.load"},
       {"krok-export walk.anim -o walk.mot", "the same angles for OpenSim"},
@@ -174,7 +176,13 @@ ToolSpec make_spec() {
       {"krok-export walk.anim --format csv -o - | head", "the first rows"}};
   spec.default_output = [options] {
     const auto ending = extension_of(options->format);
-    return ending ? beside(options->input, *ending) : std::string();
+    return ending && options->inputs.size() == 1 ? beside(options->input(), *ending)
+                                                 : std::string();
+  };
+  spec.folder_endings = io::motion_endings();
+  spec.each_animation = [options](const std::string& output) {
+    const auto format = format_of(*options, output);
+    return format && *format == ExportFormat::csv;
   };
   spec.batch = {io::motion_endings(), [options] { return extension_of(options->format); }};
   return spec;

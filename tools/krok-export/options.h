@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "capture/conventions.h"
 #include "tools/cli/tool.h"
@@ -24,7 +25,7 @@ enum class What : unsigned char {
 enum class Layout : unsigned char { long_rows, wide };
 
 struct Options {
-  std::string input;
+  std::vector<std::string> inputs;  // several for a table in CSV alone
   ExportFormat format = ExportFormat::from_extension;
   Unit unit;                          // BVH
   int digits = 0;                     // BVH: decimal places of degrees and centimetres
@@ -35,6 +36,8 @@ struct Options {
   Layout layout = Layout::long_rows;  // CSV
   std::string map;                    // role map for angles and contacts, or empty
   bool bones = true;                  // glTF: add a thin mesh of the skeleton
+
+  const std::string& input() const { return inputs.front(); }
 
   // Whether an option, "--unit", was given; set by declare().
   std::function<bool(const char* option)> given;

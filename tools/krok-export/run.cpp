@@ -242,9 +242,9 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
   std::optional<gltf::JointTracks> tracks;
   Stretches stretches;
   const auto facts = io::stream_motion(
-      options.input, context,
+      options.input(), context,
       [&](const FrameSource& frames) -> Status {
-        if (frames.skeleton.empty()) return empty_error(options.input);
+        if (frames.skeleton.empty()) return empty_error(options.input());
         auto made = stretches.empty() ? gltf::joint_tracks(frames.skeleton, frames, context.jobs)
                                       : stretched_tracks(frames, stretches, context);
         if (!made) return made.error();
@@ -263,7 +263,7 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
   writing.provenance.conversions = facts->conversions;
   const bool bones = options.bones;
   writing.name = bones ? "bones" : "skeleton";
-  writing.clip_name = clip_name_of(options.input);
+  writing.clip_name = clip_name_of(options.input());
   const Status status = write_output(context, context.output, [&](OutputFile& file) {
     return bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
                  : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
@@ -277,8 +277,8 @@ Result<std::vector<Contact>> contacts_of(const Options& options, const Clip& cli
                                          ToolContext& context) {
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
-  auto keys = choose_keys(KeysChoice::automatic, options.input, name_of_input(options.input), clip,
-                          *find_roles, context);
+  auto keys = choose_keys(KeysChoice::automatic, options.input(), name_of_input(options.input()),
+                          clip, *find_roles, context);
   if (!keys) return keys.error();
   return *keys ? std::move((*keys)->contacts) : std::vector<Contact>();
 }
@@ -296,38 +296,113 @@ Result<csv::SeriesTable> series_of(What what, ExportFormat format, const Options
   const auto roles = (*find_roles)(clip.skeleton);
   if (!roles) return roles.error();
   auto table = angle_series(clip, *roles, format != ExportFormat::csv);
-  if (!table) return std::move(table.error()).in_file(options.input);
+  if (!table) return std::move(table.error()).in_file(options.input());
   return table;
 }
 
-// Tables. Without --what, CSV has positions and OpenSim's files have angles.
+// The table of a motion.
+struct MotionTable {
+  std::optional<std::vector<Contact>> contacts;  // a row for each, or
+  csv::SeriesTable series;
+  std::vector<std::string> joints;
+};
+
+// Without --what, CSV has positions and OpenSim's files have angles.
+What what_of(ExportFormat format, const Options& options) {
+  if (options.what != What::automatic) return options.what;
+  return format == ExportFormat::csv ? What::positions : What::angles;
+}
+
+Result<MotionTable> read_table(ExportFormat format, const Clip& clip, const Options& options,
+                               ToolContext& context) {
+  const What what = what_of(format, options);
+  MotionTable table;
+  if (format == ExportFormat::csv && what == What::contacts &&
+      options.layout == Layout::long_rows) {
+    auto contacts = contacts_of(options, clip, context);
+    if (!contacts) return contacts.error();
+    table.contacts = *std::move(contacts);
+    table.joints = clip.skeleton.names;
+    return table;
+  }
+  auto series = series_of(what, format, options, clip, context);
+  if (!series) return series.error();
+  table.series = *std::move(series);
+  return table;
+}
+
+Status write_rows(const MotionTable& table, Layout layout, const csv::FileColumn& motion,
+                  OutputFile& file) {
+  if (table.contacts) return csv::write(*table.contacts, table.joints, motion, file);
+  return layout == Layout::wide ? csv::write_wide(table.series, motion, file)
+                                : csv::write_long(table.series, motion, file);
+}
+
 Status write_table(ExportFormat format, const Clip& clip, const Options& options,
                    ToolContext& context) {
-  const bool opensim = format != ExportFormat::csv;
-  const What usual = opensim ? What::angles : What::positions;
-  const What what = options.what == What::automatic ? usual : options.what;
-  const Layout layout = options.layout;
-  if (!opensim && what == What::contacts && layout == Layout::long_rows) {
-    const auto contacts = contacts_of(options, clip, context);
-    if (!contacts) return contacts.error();
-    return write_output(context, context.output, [&](OutputFile& file) {
-      return csv::write(*contacts, clip.skeleton.names, file);
-    });
-  }
-  const bool is_angle = what == What::angles || what == What::local;
-  const auto table = series_of(what, format, options, clip, context);
+  const auto table = read_table(format, clip, options, context);
   if (!table) return table.error();
-  context.report.result["columns"] = table->items;
+  if (!table->contacts) context.report.result["columns"] = table->series.items;
   return write_output(context, context.output, [&](OutputFile& file) {
-    if (opensim) return opensim::write(*table, clip_name_of(options.input), is_angle, file);
-    return layout == Layout::wide ? csv::write_wide(*table, file) : csv::write_long(*table, file);
+    if (format == ExportFormat::csv) return write_rows(*table, options.layout, {}, file);
+    const What what = what_of(format, options);
+    return opensim::write(table->series, clip_name_of(options.input()),
+                          what == What::angles || what == What::local, file);
   });
+}
+
+// One table of all motions, in their order. Motions that cannot be read are reported and left out.
+Result<int> export_table_of_all(const Options& options, ToolContext& context) {
+  std::size_t motions = 0;
+  std::vector<std::string> columns;  // of the wide layout
+  OutputSet outputs(context);
+  context.progress->begin("exporting", options.inputs.size());
+  const Status status = outputs.add(context.output, [&](OutputFile& file) -> Status {
+    for (const std::string& path : options.inputs) {
+      Options one = options;
+      one.inputs = {path};
+      const auto table = [&]() -> Result<MotionTable> {
+        const HiddenProgress hidden(context);
+        const auto clip = io::open_motion(path, context);
+        if (!clip) return clip.error();
+        if (clip->skeleton.empty()) return empty_error(path);
+        return read_table(ExportFormat::csv, *clip, one, context);
+      }();
+      context.progress->advance(1);
+      if (!table) {
+        Error error = table.error();
+        if (error.where.file.empty()) error.where.file = path;
+        context.diagnose(std::move(error));
+        continue;
+      }
+      if (options.layout == Layout::wide) {
+        if (motions == 0) columns = table->series.items;
+        if (columns != table->series.items) {
+          return Error("export-columns", "has other joints than the motions before it",
+                       "--layout long has a row for each joint, whatever the skeleton")
+              .in_file(path);
+        }
+      }
+      Status written =
+          write_rows(*table, options.layout, {.name = path, .with_header = motions == 0}, file);
+      if (!written) return written;
+      ++motions;
+    }
+    if (motions == 0) return Error("export-none", "none of the motions can be read");
+    return {};
+  });
+  context.progress->end();
+  if (!status) return status.error();
+  if (Status put = outputs.finish(); !put) return put.error();
+  context.report.result["motions"] = motions;
+  context.log(fmt::format("{}: {} of {} motions", context.output, motions, options.inputs.size()));
+  return motions == options.inputs.size() ? kExitDone : kExitPartly;
 }
 
 // The same of a long take, as krok-keys detects them in parts.
 Result<std::vector<Contact>> contacts_in_parts(const Options& options, const FrameSource& frames,
                                                ToolContext& context) {
-  auto keys = read_keys_beside(options.input, frames, context);
+  auto keys = read_keys_beside(options.input(), frames, context);
   if (!keys) return keys.error();
   if (*keys) return std::move((*keys)->keys.contacts);
   const auto find_roles = io::open_role_map(options.map, context);
@@ -337,14 +412,14 @@ Result<std::vector<Contact>> contacts_in_parts(const Options& options, const Fra
   auto take =
       find_in_long_take(frames, *roles, context.jobs, context.progress, {.contacts_alone = true});
   if (!take) return take.error();
-  context.diagnose_in(options.input, take->warnings);
+  context.diagnose_in(options.input(), take->warnings);
   return std::move(take->keys.contacts);
 }
 
 // Arrays of numpy, with the contacts of the sidecar or those detected; none for a skeleton without
 // legs. A long take is not held in memory.
 Result<io::MotionSummary> export_npz(const Options& options, ToolContext& context) {
-  const auto input = context.open_long_input(options.input);
+  const auto input = context.open_long_input(options.input());
   if (!input) return input.error();
   const io::ChecksumAtEnd checksum(*input, context);
   std::optional<OutputSet> outputs;
@@ -360,7 +435,7 @@ Result<io::MotionSummary> export_npz(const Options& options, ToolContext& contex
   auto facts = io::stream_motion(
       *input, context,
       [&](const FrameSource& frames) -> Status {
-        if (frames.skeleton.empty()) return empty_error(options.input);
+        if (frames.skeleton.empty()) return empty_error(options.input());
         // Contacts of a motion in place are found in the motion as it travels.
         if (input->bytes().size() >= kLongTake && !provenance().removed_root_motion) {
           return write(frames, contacts_in_parts(options, frames, context));
@@ -394,11 +469,12 @@ Result<io::MotionSummary> export_frames(
     const std::function<Status(const FrameSource& frames, OutputFile& file)>& write,
     const std::function<void(const Skeleton& skeleton)>& note) {
   std::optional<OutputSet> outputs;
-  auto facts = io::stream_motion(options.input, context, [&](const FrameSource& frames) -> Status {
-    if (frames.skeleton.empty()) return empty_error(options.input);
-    outputs.emplace(context);
-    return outputs->add(context.output, [&](OutputFile& file) { return write(frames, file); });
-  });
+  auto facts =
+      io::stream_motion(options.input(), context, [&](const FrameSource& frames) -> Status {
+        if (frames.skeleton.empty()) return empty_error(options.input());
+        outputs.emplace(context);
+        return outputs->add(context.output, [&](OutputFile& file) { return write(frames, file); });
+      });
   if (!facts) return facts;
   note(facts->skeleton);
   if (Status status = outputs->finish(); !status) return status.error();
@@ -429,9 +505,9 @@ Result<io::MotionSummary> export_others(ExportFormat format, const Options& opti
         [](const FrameSource& frames, OutputFile& file) { return csv::write(frames, file); },
         [](const Skeleton&) {});
   }
-  auto clip = io::open_motion(options.input, context);
+  auto clip = io::open_motion(options.input(), context);
   if (!clip) return clip.error();
-  if (clip->skeleton.empty()) return empty_error(options.input);
+  if (clip->skeleton.empty()) return empty_error(options.input());
   io::MotionSummary facts = facts_of(*clip);
   if (Status status = write_table(format, *clip, options, context); !status) return status.error();
   return facts;
@@ -463,10 +539,16 @@ Result<int> run(const Options& options, ToolContext& context) {
   const auto format = format_of(options, context.output);
   if (!format) {
     // A file without a motion is the larger mistake.
-    const auto motion = io::open_motion(options.input, context);
+    const auto motion = io::open_motion(options.input(), context);
     return motion ? format.error() : motion.error();
   }
   if (Status status = check_for(*format, options); !status) return status.error();
+  if (options.inputs.size() > 1 || context.of_folder) {
+    if (*format == ExportFormat::csv) return export_table_of_all(options, context);
+    return usage("several motions are given for one file",
+                 "-o OUT.csv is one table of all; --out-dir DIR writes a file of each; krok-skin "
+                 "puts many clips into one .glb");
+  }
   const bool is_glb = *format == ExportFormat::glb;
   std::optional<Reduction> reduction;
   const auto motion = is_glb || *format == ExportFormat::gltf

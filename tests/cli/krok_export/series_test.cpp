@@ -170,6 +170,43 @@ TEST_F(ExportSeries, ContactsAreARowEachOrAColumnEach) {
   }
 }
 
+// If this fails, a table of a folder is refused, mixes up or loses motions, or is not the rows of
+// the single tables with the file in front.
+TEST_F(ExportSeries, AFolderIsOneTableWithTheFileInFront) {
+  std::filesystem::create_directories(path("takes"));
+  std::filesystem::copy_file(path("walk.anim"), path("takes/a.anim"));
+  put("takes/broken.bvh", "HIERARCHY\n");
+  const ToolRun one = run_here("krok-export", {"takes", "-o", "all.csv"});
+  EXPECT_EQ(one.exit_code, 3) << one.err;
+  EXPECT_EQ(rows("all.csv").at(1).at(0), "takes/a.anim") << "a column also of a single motion";
+  std::filesystem::rename(path("takes/broken.bvh"), path("broken.bvh"));
+  std::filesystem::copy_file(path("walk.anim"), path("takes/b.anim"));
+  for (const std::string what : {"positions", "contacts", "angles"}) {
+    for (const std::string layout : {"long", "wide"}) {
+      const Rows single = exported({"--what", what, "--layout", layout});
+      const ToolRun run =
+          run_here("krok-export", {"takes", "--what", what, "--layout", layout, "-o", "all.csv"});
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+      Rows expected = {single[0]};
+      expected[0].insert(expected[0].begin(), "file");
+      for (const std::string file : {"takes/a.anim", "takes/b.anim"}) {
+        for (std::size_t r = 1; r < single.size(); ++r) {
+          expected.push_back(single[r]);
+          expected.back().insert(expected.back().begin(), file);
+        }
+      }
+      EXPECT_EQ(rows("all.csv"), expected) << what << ' ' << layout;
+    }
+  }
+  put("takes/chain.bvh", capture(5));
+  const ToolRun wide = run_here("krok-export", {"takes", "--layout", "wide", "-o", "all.csv"});
+  EXPECT_EQ(wide.exit_code, 2);
+  EXPECT_TRUE(has_code(wide.err, "export-columns")) << wide.err;
+  const ToolRun glb = run_here("krok-export", {"takes", "-o", "all.glb"});
+  EXPECT_EQ(glb.exit_code, 2);
+  EXPECT_THAT(glb.err, testing::HasSubstr("--out-dir"));
+}
+
 TEST_F(ExportSeries, OptionsOfTablesAreForTables) {
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"-o", "x.glb", "--what", "angles"},
