@@ -261,20 +261,46 @@ void read_numbered_limbs(const Skeleton& skeleton, std::vector<JointName>& names
   }
 }
 
-// German letters in ASCII, as they are written where there are none: "Fuß" is "Fuss".
-std::string without_umlauts(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kLetters = {
-      {{"\u00e4", "ae"},
-       {"\u00f6", "oe"},
-       {"\u00fc", "ue"},
-       {"\u00df", "ss"},
-       {"\u00c4", "Ae"},
-       {"\u00d6", "Oe"},
-       {"\u00dc", "Ue"}}};
+struct Spelling {
+  std::string_view text, in_ascii;
+};
+
+// German letters as they are written where there are none ("Fuß" is "Fuss"), and the names of MMD's
+// standard skeleton; those that others are part of come first.
+constexpr std::array kSpellings = {
+    Spelling{"ä", "ae"},           Spelling{"ö", "oe"},           Spelling{"ü", "ue"},
+    Spelling{"ß", "ss"},           Spelling{"Ä", "Ae"},           Spelling{"Ö", "Oe"},
+    Spelling{"Ü", "Ue"},           Spelling{"左", " left "},      Spelling{"右", " right "},
+    Spelling{"手首", " wrist "},   Spelling{"足首", " ankle "},   Spelling{"つま先", " toe "},
+    Spelling{"ひじ", " elbow "},   Spelling{"肘", " elbow "},     Spelling{"ひざ", " knee "},
+    Spelling{"膝", " knee "},      Spelling{"捩", " twist "},     Spelling{"補助", " helper "},
+    Spelling{"ダミー", " dummy "}, Spelling{"親指", " thumb "},   Spelling{"人指", " index "},
+    Spelling{"人差指", " index "}, Spelling{"中指", " middle "},  Spelling{"薬指", " ring "},
+    Spelling{"小指", " little "},  Spelling{"上半身", " spine "}, Spelling{"肩", " shoulder "},
+    Spelling{"腕", " arm "},       Spelling{"手", " hand "},      Spelling{"足", " leg "},
+    Spelling{"腰", " waist "},     Spelling{"首", " neck "},      Spelling{"頭", " head "},
+    Spelling{"目", " eye "}};
+
+// Letters, digits and signs as wide as a Japanese letter, U+FF01 to U+FF5E, in ASCII.
+void narrow(std::string& name) {
+  for (std::size_t at = name.find('\xef'); at != std::string::npos;
+       at = name.find('\xef', at + 1)) {
+    if (at + 2 >= name.size()) return;
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(name[at + i]); };
+    const int code = (byte(1) - 0xbc) * 0x40 + byte(2) - 0x80;
+    if (code >= 1 && code <= 0x5e) name.replace(at, 3, 1, static_cast<char>(code + 0x20));
+  }
+}
+
+std::string in_ascii(std::string_view name) {
   std::string result(name);
-  for (const auto& [letter, ascii] : kLetters) {
-    for (std::size_t at = result.find(letter); at != std::string::npos; at = result.find(letter)) {
-      result.replace(at, letter.size(), ascii);
+  if (std::ranges::none_of(name, [](char c) { return static_cast<unsigned char>(c) >= 0x80; })) {
+    return result;
+  }
+  narrow(result);
+  for (const auto& [text, ascii] : kSpellings) {
+    for (std::size_t at = result.find(text); at != std::string::npos; at = result.find(text)) {
+      result.replace(at, text.size(), ascii);
     }
   }
   return result;
@@ -296,7 +322,7 @@ std::vector<std::string> name_tokens(std::string_view full_name) {
   if (space != std::string_view::npos && space + 1 < full_name.size()) {
     full_name.remove_prefix(space + 1);
   }
-  const std::string name = without_umlauts(full_name);
+  const std::string name = in_ascii(full_name);
   const auto at = [&](std::size_t i) { return static_cast<unsigned char>(name[i]); };
   Tokens tokens;
   bool open = false;

@@ -293,16 +293,25 @@ RoleMap roles_from_names(const Skeleton& skeleton, std::vector<JointName> names)
   return RoleFinder(skeleton, std::move(names)).find();
 }
 
+namespace {
+
+bool is_of_limb(Role role) {
+  return role >= Role::left_collar && role <= Role::right_toes;
+}
+
+}  // namespace
+
 RoleMap find_roles(const Skeleton& skeleton) {
   RoleMap map = roles_from_names(skeleton, read_joint_names(skeleton));
-  const bool nothing_found = std::all_of(map.roles.begin(), map.roles.end(), [](Role role) {
-    return role == Role::none || role == Role::end;
-  });
-  if (!nothing_found) return map;
+  if (map.humanoid) return map;
   auto names = names_from_shape(skeleton);
   if (!names) return map;
   RoleMap by_shape = roles_from_names(skeleton, std::move(*names));
-  return by_shape.humanoid ? by_shape : map;
+  // The shape must not contradict a limb that has a name.
+  const bool agrees = std::ranges::equal(map.roles, by_shape.roles, [](Role name, Role shape) {
+    return !is_of_limb(name) || name == shape;
+  });
+  return by_shape.humanoid && agrees ? by_shape : map;
 }
 
 }  // namespace krok

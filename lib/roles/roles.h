@@ -94,11 +94,12 @@ std::vector<Role> missing_roles(const RoleMap& map);
 
 // Detects the roles of a skeleton's joints from their names (iPi, CMU, MotionBuilder, Mixamo,
 // Xsens, Rokoko, OptiTrack, Perception Neuron, iClone, Daz, Biovision, Poser and Second Life,
-// MakeHuman, Biped, Unreal; prefixes and namespaces are ignored), checked against the hierarchy: a
-// hand must descend from an arm, an arm from the trunk; the hips are where legs and spine meet,
-// unless a joint above is named hips. If the names give no limb, roles come from the shape of the
-// reference pose, provided that it is clearly humanoid. Unidentified joints get Role::none; without
-// any limb all joints do, except end sites. Never fails. The skeleton must pass check(), but may
+// MakeHuman, Biped, Unreal, MMD; prefixes and namespaces are ignored), checked against the
+// hierarchy: a hand must descend from an arm, an arm from the trunk; the hips are where legs and
+// spine meet, unless a joint above is named hips. If the names give no whole body, roles come from
+// the shape of the reference pose, provided that it is clearly humanoid and no limb's name
+// contradicts it. Unidentified joints get Role::none; without any limb all joints do, except end
+// sites. Never fails. The skeleton must pass check(), but may
 // have any unit and axes.
 RoleMap find_roles(const Skeleton& skeleton);
 

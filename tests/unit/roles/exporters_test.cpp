@@ -318,6 +318,17 @@ const Scheme kSchemes[] = {
      "left_collar=l_sternoclavicular left_upper_arm=l_shoulder left_lower_arm=l_elbow "
      "left_hand=l_wrist left_upper_leg=l_hip left_lower_leg=l_knee left_foot=l_ankle "
      "left_toes=l_midtarsal"},
+    {"mmd",
+     "全ての親 .センター ..グルーブ ...腰 ....上半身 .....上半身2 ......首 .......頭 ........左目 "
+     "........右目 ......左肩 .......左腕 ........左腕捩 .........左ひじ ..........左手捩 "
+     "...........左手首 ............左親指０ ............左人指１ .............左人指２ ......右肩 "
+     ".......右腕 ........右腕捩 .........右ひじ ..........右手捩 ...........右手首 "
+     "............右親指０ ............右人指１ .............右人指２ ....下半身 .....左足 "
+     "......左ひざ .......左足首 ........左つま先 .....右足 ......右ひざ .......右足首 "
+     "........右つま先 .左足ＩＫ ..左つま先ＩＫ .右足ＩＫ ..右つま先ＩＫ",
+     "root=全ての親 hips=腰 spine=上半身 chest=上半身2 neck=首 head=頭 left_collar=左肩 "
+     "left_upper_arm=左腕 left_lower_arm=左ひじ left_hand=左手首 left_fingers=左親指０ "
+     "left_upper_leg=左足 left_lower_leg=左ひざ left_foot=左足首 left_toes=左つま先"},
     {"no_collars_no_neck",
      "hips .spine ..head ..left_arm ...left_forearm ....left_hand ..right_arm ...right_forearm "
      "....right_hand .left_leg ..left_knee ...left_ankle .right_leg ..right_knee ...right_ankle",

@@ -189,6 +189,26 @@ TEST(Roles, AnUnnamedPersonIsKnownByShape) {
   EXPECT_GE(map.joint(Role::left_collar), 0);
 }
 
+// If this fails, a person some of whose joints are named in a language that is not known has no
+// whole body, or a shape overrules what names say.
+TEST(Roles, TheShapeFillsInWhereNamesAreKnownInPart) {
+  Skeleton skeleton = unnamed_actor(1.4);
+  const RoleMap whole = find_roles(skeleton);
+  const auto rename = [&](Role role, const char* name) {
+    skeleton.names[static_cast<std::size_t>(whole.joint(role))] = name;
+  };
+  rename(Role::left_upper_arm, "LeftArm");
+  rename(Role::left_lower_arm, "LeftForeArm");
+  rename(Role::left_hand, "LeftHand");
+  EXPECT_EQ(find_roles(skeleton).roles, whole.roles);
+  rename(Role::left_upper_arm, "RightArm");
+  rename(Role::left_lower_arm, "RightForeArm");
+  rename(Role::left_hand, "RightHand");
+  const RoleMap contradicted = find_roles(skeleton);
+  EXPECT_FALSE(contradicted.humanoid);
+  EXPECT_EQ(contradicted.joint(Role::right_hand), whole.joint(Role::left_hand));
+}
+
 // An animal on four legs has its "hands" on the ground: sides are not guessed there.
 TEST(Roles, AnUnnamedActorWithItsHandsOnTheGroundIsLeftAlone) {
   EXPECT_FALSE(find_roles(unnamed_actor(0.1)).humanoid);
