@@ -1,66 +1,78 @@
-#include "roles/role_finder_internal.h"
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
+
+#include "roles/role_finder_internal.h"
 
 namespace krok {
 
 namespace {
 
-using Chain = std::vector<int>;
+using Chain = std::vector<int>;  // joints, parents first
 
+// Two limbs that mirror each other, from the joint that both hang on.
 struct Pair {
-  Chain first, second;
+  int joint = -1;
+  std::array<Chain, 2> limbs;
+  double reach = 0;
 };
+
+// The joints of a limb that move its parts: shoulder, elbow, wrist; hip, knee, ankle.
+using LimbJoints = std::array<int, 3>;
+using BothLimbs = std::array<LimbJoints, 2>;
+
+// Shares of a limb's length; thigh and shank, upper arm and forearm are about as long.
+constexpr double kSameBone = 0.15;      // of the longer of two bones
+constexpr double kShortBone = 0.06;     // parts of a foot, collars
+constexpr double kShortestPair = 0.25;  // of the longest limb
+constexpr double kSteep = 0.8;          // cosine, of a leg's bones with its way down
+constexpr double kUnequalBones = 3;     // what a difference of two bones costs, over its length
 
 class ShapeFinder {
  public:
   explicit ShapeFinder(const Skeleton& skeleton)
       : skeleton_(skeleton), children_(skeleton.children()), reach_(skeleton.names.size(), 0.0) {
     for (std::size_t j = reach_.size(); j-- > 1;) {
-      const auto parent = static_cast<std::size_t>(skeleton.parents[j]);
+      const auto parent = at(skeleton.parents[j]);
       reach_[parent] = std::max(reach_[parent], reach_[j] + bone(static_cast<int>(j)));
     }
   }
 
-  std::optional<std::vector<JointName>> find() {
-    for (int hips = 0; hips < skeleton_.joint_count(); ++hips) {
-      const auto legs = mirrored_pair(hips, kLegJoints);
-      if (!legs) continue;
-      for (int chest = hips; (chest = leading_on(chest, *legs)) >= 0;) {
-        const auto arms = mirrored_pair(chest, kArmJoints);
-        if (!arms) continue;
-        const int head = leading_on(chest, *arms);
-        if (head < 0) break;
-        return name_actor(hips, *legs, chest, *arms, head);
+  std::optional<std::vector<JointName>> find() const {
+    const std::vector<Pair> pairs = mirrored_pairs();
+    for (const Pair& legs : pairs) {
+      for (const Pair& arms : pairs) {
+        if (legs.joint == arms.joint || on_limb(legs.joint, arms) || on_limb(arms.joint, legs)) {
+          continue;
+        }
+        if (auto names = name_actor(legs, arms)) return names;
       }
     }
     return std::nullopt;
   }
 
  private:
-  static constexpr int kLegJoints = 3;  // upper leg, lower leg, foot
-  static constexpr int kArmJoints = 3;  // upper arm, lower arm, hand
-
-  static std::size_t at(int joint) { return static_cast<std::size_t>(joint); }
   const Vec3& place(int joint) const { return skeleton_.reference[at(joint)].position; }
   bool is_end(int joint) const { return skeleton_.end_sites[at(joint)] != 0; }
+  double distance(int a, int b) const { return (place(a) - place(b)).norm(); }
   double bone(int joint) const {
     const int parent = skeleton_.parents[at(joint)];
-    return parent < 0 ? 0.0 : (place(joint) - place(parent)).norm();
+    return parent < 0 ? 0.0 : distance(joint, parent);
   }
 
-  // `joint` and its descendants down to the first branch, without end sites.
+  // The child with the longest branch, end sites included; -1 if there is none.
+  int main_child(int joint) const {
+    int best = -1;
+    for (const int child : children_[at(joint)]) {
+      if (best < 0 || bone(child) + reach_[at(child)] > bone(best) + reach_[at(best)]) best = child;
+    }
+    return best;
+  }
+
+  // A joint and its main descendants, without end sites.
   Chain chain_from(int joint) const {
     Chain chain;
-    while (joint >= 0 && !is_end(joint)) {
-      chain.push_back(joint);
-      const auto& below = children_[at(joint)];
-      if (below.size() != 1) break;
-      joint = below.front();
-    }
+    for (; joint >= 0 && !is_end(joint); joint = main_child(joint)) chain.push_back(joint);
     return chain;
   }
 
@@ -68,104 +80,181 @@ class ShapeFinder {
     if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double longer = std::max(bone(a[i]), bone(b[i]));
-      if (std::abs(bone(a[i]) - bone(b[i])) > 0.15 * longer + 1e-9) return false;
+      const double allowed = std::max(kSameBone * longer, 0.5 * kShortBone * reach_[at(a[0])]);
+      if (std::abs(bone(a[i]) - bone(b[i])) > allowed) return false;
     }
-    return (place(a.front()) - place(b.front())).norm() > 0;
+    return distance(a.back(), b.back()) > 0;
   }
 
-  // The longest two mirrored branches below a joint.
-  std::optional<Pair> mirrored_pair(int joint, int least_joints) const {
-    const auto& below = children_[at(joint)];
-    if (below.size() < 3 || below.size() > 8) return std::nullopt;
-    std::optional<Pair> best;
-    for (std::size_t i = 0; i < below.size(); ++i) {
-      for (std::size_t k = i + 1; k < below.size(); ++k) {
-        Pair pair{chain_from(below[i]), chain_from(below[k])};
-        if (static_cast<int>(pair.first.size()) < least_joints) continue;
-        if (!mirrored(pair.first, pair.second)) continue;
-        if (!best || reach_[at(below[i])] > reach_[at(best->first.front())]) best = std::move(pair);
+  // Of each joint the longest pair of at least three joints, the longest pair first.
+  std::vector<Pair> mirrored_pairs() const {
+    std::vector<Pair> pairs;
+    for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
+      Pair best;
+      const auto& below = children_[at(joint)];
+      if (below.size() > kMaxChildren) continue;
+      for (std::size_t i = 0; i < below.size(); ++i) {
+        for (std::size_t k = i + 1; k < below.size(); ++k) {
+          const double reach = bone(below[i]) + reach_[at(below[i])];
+          Chain a = chain_from(below[i]), b = chain_from(below[k]);
+          if (a.size() < 3 || reach <= best.reach || !mirrored(a, b)) continue;
+          best = {joint, {std::move(a), std::move(b)}, reach};
+        }
+      }
+      if (best.joint >= 0) pairs.push_back(std::move(best));
+    }
+    std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
+    while (!pairs.empty() && pairs.back().reach < kShortestPair * pairs.front().reach) {
+      pairs.pop_back();
+    }
+    if (pairs.size() > kMaxPairs) pairs.resize(kMaxPairs);
+    return pairs;
+  }
+
+  bool on_limb(int joint, const Pair& pair) const {
+    for (; joint >= 0; joint = skeleton_.parents[at(joint)]) {
+      if (joint == pair.limbs[0].front() || joint == pair.limbs[1].front()) return true;
+    }
+    return false;
+  }
+
+  // The last joint below `joint` on the longest branch.
+  int tip_of(int joint) const {
+    for (int below = main_child(joint); below >= 0; below = main_child(joint)) joint = below;
+    return joint;
+  }
+
+  // Of `chain` up to `last`, the upper and the middle joint that share the way to it evenly.
+  LimbJoints halves(const Chain& chain, std::size_t first, std::size_t last) const {
+    LimbJoints best = {-1, -1, chain[last]};
+    double highest = -HUGE_VAL;
+    for (std::size_t u = first; u < last; ++u) {
+      for (std::size_t m = u + 1; m < last; ++m) {
+        const double upper = distance(chain[u], chain[m]), lower = distance(chain[m], chain[last]);
+        const double score = upper + lower - kUnequalBones * std::abs(upper - lower);
+        if (score <= highest) continue;
+        highest = score;
+        best = {chain[u], chain[m], chain[last]};
       }
     }
     return best;
   }
 
-  // The child of a trunk joint with the longest branch, other than the two of the pair; -1 if none.
-  int leading_on(int joint, const Pair& besides) const {
+  // From the first to the last of the long bones that lead down.
+  LimbJoints leg_of(const Chain& chain, const Vec3& down) const {
+    const double length = reach_[at(chain.front())];
+    std::size_t first = chain.size(), last = 0;
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      const Vec3 along = place(chain[i]) - place(chain[i - 1]);
+      if (along.norm() < kShortBone * length || along.dot(down) < kSteep * along.norm()) continue;
+      first = std::min(first, i - 1);
+      last = i;
+    }
+    return last > 0 ? halves(chain, first, last) : LimbJoints{-1, -1, -1};
+  }
+
+  // To where fingers part, else to the end of the last long bone.
+  LimbJoints arm_of(const Chain& chain) const {
+    const double length = reach_[at(chain.front())];
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < chain.size(); ++i) {
+      if (bone(chain[i]) >= kShortBone * length) last = i;
+      // Twist joints end before the next joint, fingers beyond it.
+      const bool parts = std::ranges::any_of(children_[at(chain[i])], [&](int child) {
+        return i + 1 < chain.size() && child != chain[i + 1] && !is_end(child) &&
+               bone(child) + reach_[at(child)] > bone(chain[i + 1]);
+      });
+      if (parts && reach_[at(chain[i])] < 0.5 * length) {
+        last = i;
+        break;
+      }
+    }
+    return halves(chain, 0, last);
+  }
+
+  std::optional<std::vector<JointName>> name_actor(const Pair& legs, const Pair& arms) const {
+    const Vec3 trunk = place(arms.joint) - place(legs.joint);
+    if (!(trunk.norm() > 0)) return std::nullopt;
+    const Vec3 up = trunk.normalized();
+    BothLimbs leg, arm;
+    for (std::size_t side = 0; side < 2; ++side) {
+      leg[side] = leg_of(legs.limbs[side], -up);
+      arm[side] = arm_of(arms.limbs[side]);
+      if (leg[side][1] < 0 || arm[side][1] < 0) return std::nullopt;
+    }
+    const auto forward = facing(legs, leg, arm, up);
+    const int neck = leading_on(arms, up);
+    if (!forward || neck < 0) return std::nullopt;
+    const Vec3 left = up.cross(*forward);
+
+    std::vector<JointName> names(skeleton_.names.size());
+    int head = neck;  // follows the branch to its end or first fork (the face)
+    while (children_[at(head)].size() == 1) {
+      const int next = children_[at(head)].front();
+      if (is_end(next) || bone(next) < 0.02 * trunk.norm()) break;
+      names[at(head)] = {Part::neck, Side::middle};
+      head = next;
+    }
+    names[at(head)] = {Part::head, Side::middle};
+    constexpr LimbParts kLeg = {Part::upper_leg, Part::lower_leg, Part::foot};
+    constexpr LimbParts kArm = {Part::upper_arm, Part::lower_arm, Part::hand};
+    if (!name_pair(leg, kLeg, left, names) || !name_pair(arm, kArm, left, names)) return {};
+    return names;
+  }
+
+  using LimbParts = std::array<Part, 3>;
+  bool name_pair(const BothLimbs& limbs, const LimbParts& parts, const Vec3& left,
+                 std::vector<JointName>& names) const {
+    const double apart = (place(limbs[0][0]) - place(limbs[1][0])).dot(left);
+    if (!(std::abs(apart) > 0)) return false;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      names[at(limbs[0][i])] = {parts[i], apart > 0 ? Side::left : Side::right};
+      names[at(limbs[1][i])] = {parts[i], apart > 0 ? Side::right : Side::left};
+    }
+    return true;
+  }
+
+  // The child of the arms' joint that leads upwards, -1 if there is none.
+  int leading_on(const Pair& arms, const Vec3& up) const {
     int best = -1;
-    for (const int child : children_[at(joint)]) {
-      if (is_end(child) || child == besides.first.front() || child == besides.second.front())
-        continue;
+    for (const int child : children_[at(arms.joint)]) {
+      if (is_end(child) || on_limb(child, arms)) continue;
+      if ((place(tip_of(child)) - place(arms.joint)).dot(up) <= 0) continue;
       if (best < 0 || reach_[at(child)] > reach_[at(best)]) best = child;
     }
     return best;
   }
 
-  // Arms: the last three joints of the chain. Legs: the first three, without a short first bone.
-  std::optional<std::vector<JointName>> name_actor(int hips, const Pair& legs, int chest,
-                                                   const Pair& arms, int neck) const {
-    const auto leg = [&](const Chain& chain) {
-      const bool short_first = chain.size() > 3 && (place(chain[1]) - place(chain[0])).norm() <
-                                                       0.15 * reach_[at(chain.front())];
-      return Chain(chain.begin() + (short_first ? 1 : 0), chain.end());
-    };
-    const Chain a = leg(legs.first);
-    const Chain b = leg(legs.second);
-    if (a.size() < 3 || arms.first.size() > 4) return std::nullopt;
-    const auto forward_and_up = stance(hips, chest, a[2], b[2], arms, neck);
-    if (!forward_and_up) return std::nullopt;
-    const Vec3 left = forward_and_up->second.cross(forward_and_up->first);
-
-    std::vector<JointName> names(skeleton_.names.size());
-    names[at(hips)] = {Part::hips, Side::middle};
-    int head = neck;  // follows the branch to its end or first fork (the face)
-    while (children_[at(head)].size() == 1 && !is_end(children_[at(head)].front())) {
-      names[at(head)] = {Part::neck, Side::middle};
-      head = children_[at(head)].front();
+  // The way across `up` to the joint below `joint` that is farthest from it.
+  Vec3 farthest_aside(int joint, const Vec3& up) const {
+    Vec3 best = Vec3::Zero();
+    std::vector<int> left = children_[at(joint)];
+    while (!left.empty()) {
+      const int below = left.back();
+      left.pop_back();
+      left.insert(left.end(), children_[at(below)].begin(), children_[at(below)].end());
+      Vec3 along = place(below) - place(joint);
+      along -= along.dot(up) * up;
+      if (along.norm() > best.norm()) best = along;
     }
-    names[at(head)] = {Part::head, Side::middle};
-    if (!name_pair(names, {a, b}, {Part::upper_leg, Part::lower_leg, Part::foot}, left)) return {};
-    const auto arm = [](const Chain& chain) { return Chain(chain.end() - 3, chain.end()); };
-    if (!name_pair(names, {arm(arms.first), arm(arms.second)},
-                   {Part::upper_arm, Part::lower_arm, Part::hand}, left)) {
-      return {};
-    }
-    return names;
+    return best;
   }
 
-  bool name_pair(std::vector<JointName>& names, const Pair& pair, const std::array<Part, 3>& parts,
-                 const Vec3& left) const {
-    const double apart = (place(pair.first.front()) - place(pair.second.front())).dot(left);
-    if (!(std::abs(apart) > 0)) return false;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-      names[at(pair.first[i])] = {parts[i], apart > 0 ? Side::left : Side::right};
-      names[at(pair.second[i])] = {parts[i], apart > 0 ? Side::right : Side::left};
-    }
-    return true;
-  }
-
-  // Forward and up, if the pose is upright as a person's; empty otherwise.
-  std::optional<std::pair<Vec3, Vec3>> stance(int hips, int chest, int foot_a, int foot_b,
-                                              const Pair& arms, int neck) const {
-    const Vec3 ground = 0.5 * (place(foot_a) + place(foot_b));
-    const Vec3 legs = place(hips) - ground;
-    const Vec3 trunk = place(chest) - place(hips);
-    const double height = legs.norm();
-    if (!(height > 0) || !(trunk.norm() > 0)) return std::nullopt;
-    const Vec3 up = legs / height;
-    const double hands =
-        0.5 * (place(arms.first.back()) + place(arms.second.back()) - 2 * ground).dot(up);
-    const bool upright = trunk.normalized().dot(up) > 0.8 && hands > 0.5 * height &&
-                         (place(neck) - place(hips)).dot(up) > 0;
-    if (!upright) return std::nullopt;
+  // Where the feet point, if the pose is upright as a person's; empty otherwise.
+  std::optional<Vec3> facing(const Pair& legs, const BothLimbs& leg, const BothLimbs& arm,
+                             const Vec3& up) const {
+    const Vec3 ground = 0.5 * (place(leg[0][2]) + place(leg[1][2]));
+    const Vec3 stance = place(legs.joint) - ground;
+    const double height = stance.norm();
+    const double hands = 0.5 * (place(arm[0][2]) + place(arm[1][2]) - 2 * ground).dot(up);
+    if (!(stance.dot(up) > 0.8 * height) || !(hands > 0.5 * height)) return std::nullopt;
     Vec3 toes = Vec3::Zero();
-    for (const int foot : {foot_a, foot_b}) {
-      if (children_[at(foot)].empty()) return std::nullopt;
-      const Vec3 along = place(children_[at(foot)].front()) - place(foot);
-      toes += along - along.dot(up) * up;
-    }
+    for (const LimbJoints& limb : leg) toes += farthest_aside(limb[2], up);
     if (!(toes.norm() > 0.05 * height)) return std::nullopt;
-    return std::pair(Vec3(toes.normalized()), up);
+    return toes.normalized();
   }
+
+  static constexpr std::size_t kMaxChildren = 16, kMaxPairs = 8;
 
   const Skeleton& skeleton_;
   std::vector<std::vector<int>> children_;
