@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "capture/exporter.h"
 #include "capture/far_values.h"
@@ -46,6 +49,29 @@ Rotations rotations_of(const Hierarchy& hierarchy, const SampleRows& rows) {
 }
 
 constexpr std::size_t kMaxSamples = 200;
+
+// The root's height over the origin, over that above the lowest joint: 1 for who stands on the
+// ground. None where it stays the same or changes as in a motion in place.
+std::optional<double> root_scale(std::span<const Vec3> samples, std::size_t joints,
+                                 const Vec3& up) {
+  std::vector<double> heights, scales;
+  for (std::size_t first = 0; first < samples.size(); first += joints) {
+    const auto pose = samples.subspan(first, joints);
+    const auto height = [&](const Vec3& place) { return place.dot(up); };
+    const double root = height(pose.front());
+    const double reach = root - height(*std::ranges::min_element(pose, {}, height));
+    if (!(reach > 0)) continue;
+    heights.push_back(root);
+    scales.push_back(root / reach);
+  }
+  if (scales.size() < 3) return std::nullopt;
+  std::ranges::sort(heights);
+  std::ranges::sort(scales);
+  const double middle = heights[heights.size() / 2];
+  const double range = heights[heights.size() * 9 / 10] - heights[heights.size() / 10];
+  if (!(range > 1e-3 * middle && range < 0.5 * middle)) return std::nullopt;
+  return scales[scales.size() / 2];
+}
 
 class ConventionChooser {
  public:
@@ -95,6 +121,7 @@ class ConventionChooser {
                          confidence_name(positions.choice.confidence), positions.choice.reason),
              guess ? "use --positions absolute or additive if this is wrong" : "");
     }
+    warn_of_root_scale();
     if (Status status = make_conversion(); !status) return status.error();
     return chosen_;
   }
@@ -273,9 +300,24 @@ class ConventionChooser {
       take_mark(conventions);
     }
     apply_given(file_.options, conventions);
+    root_scale_ = root_scale(sample_positions, pose.size(), direction_vector(conventions.up));
     chosen_.usual_distance =
         usual_distance(sample_positions, pose.size()) * conventions.unit.metres;
     return {};
+  }
+
+  // Of files whose positions are in another unit than their offsets, as scripts write them.
+  void warn_of_root_scale() {
+    constexpr std::array kScales = {0.001, 0.01, 0.0254, 39.37, 100.0, 1000.0};
+    for (const double scale : kScales) {
+      if (!root_scale_ || std::abs(std::log(*root_scale_ / scale)) > 0.2) continue;
+      report(
+          Severity::warning, "bvh-position-unit",
+          fmt::format("the positions seem to be in another unit than the offsets: the root is at "
+                      "{} of its height over the feet",
+                      readable(*root_scale_, 3)),
+          fmt::format("multiply the position channels by {} if so", readable(1 / scale, 3)));
+    }
   }
 
   // The final choice, after a detection of the axes with the first one.
@@ -317,6 +359,7 @@ class ConventionChooser {
   Hierarchy& hierarchy_;
   Capture& capture_;
   std::optional<Exporter> exporter_;
+  std::optional<double> root_scale_;
   ChosenConventions chosen_;
 };
 

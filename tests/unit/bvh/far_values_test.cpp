@@ -151,5 +151,27 @@ TEST(FarValues, ARootThatStandsFarAwayIsToldWithoutAChannel) {
   EXPECT_EQ(told->message.find("Xrotation"), std::string::npos) << told->message;
 }
 
+// If this fails, a body whose positions are in metres and offsets in centimetres walks on the spot,
+// silently, or one that is right is doubted.
+TEST(PositionUnit, IsThatOfTheOffsets) {
+  const auto warned = [](double scale, double bob) {
+    std::string rows;
+    for (int f = 0; f < 12; ++f) {
+      const double height = scale * (95 + bob * std::sin(f));
+      rows += "0 " + std::to_string(height) + " " + std::to_string(scale * f) + " 0 0 0 90 0 0\n";
+    }
+    std::string leg = kArm;
+    leg.replace(leg.find("OFFSET 1 0 0"), 12, "OFFSET 0 -45 0");
+    leg.replace(leg.find("OFFSET 2 0 0"), 12, "OFFSET -50 0 0");
+    const Capture capture = read_ok(leg + motion(12, rows));
+    return find(capture.diagnostics, "bvh-position-unit") != nullptr;
+  };
+  EXPECT_FALSE(warned(0, 2)) << "in place";
+  EXPECT_FALSE(warned(1, 2));
+  EXPECT_TRUE(warned(0.01, 2));
+  EXPECT_TRUE(warned(100, 2));
+  EXPECT_FALSE(warned(0.01, 200)) << "sways about the origin";
+}
+
 }  // namespace
 }  // namespace krok::bvh
