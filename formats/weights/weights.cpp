@@ -301,14 +301,33 @@ Result<WeightFile> read(std::string_view text, const std::string& path,
   return file;
 }
 
+std::optional<Diagnostic> implausible_weight(const MorphCurves& curves) {
+  constexpr double kMaxPlausible = 10;
+  for (std::size_t t = 0; t < curves.curves.size(); ++t) {
+    for (const double weight : curves.curves[t].weights) {
+      if (std::abs(weight) <= kMaxPlausible) continue;
+      return make_warning("morph-weights",
+                          fmt::format("the weight of {} is {}, where 1 is the whole target",
+                                      curves.names[t], readable(weight)),
+                          "divide per cent by 100");
+    }
+  }
+  return std::nullopt;
+}
+
 Result<MorphWeights> read_weights(std::string_view text, const std::string& path,
                                   const MorphSet& morphs, std::optional<double> rate) {
   const auto file = read(text, path, morphs.names);
   if (!file) return file.error();
-  const double chosen = rate.value_or(file->rate.value_or(kUsualRate));
-  const auto frames = frames_of(file->curves, chosen);
+  return sampled(*file, path, rate);
+}
+
+Result<MorphWeights> sampled(const WeightFile& file, const std::string& path,
+                             std::optional<double> rate) {
+  const double chosen = rate.value_or(file.rate.value_or(kUsualRate));
+  const auto frames = frames_of(file.curves, chosen);
   if (!frames) return Error(frames.error()).in_file(path);
-  auto weights = sample(file->curves, chosen, *frames);
+  auto weights = sample(file.curves, chosen, *frames);
   if (!weights) return std::move(weights).error().in_file(path);
   return weights;
 }

@@ -28,11 +28,17 @@ struct WeightFile {
 Result<WeightFile> read(std::string_view text, const std::string& path,
                         std::span<const std::string> targets);
 
+// A warning of the first weight over 10, where 1 is the whole target: of per cent. Code
+// morph-weights.
+std::optional<Diagnostic> implausible_weight(const MorphCurves& curves);
+
 // The same, sampled at even times from 0 to the last time in the file: at `rate`, or else the rate
 // of the file, or else 30 fps. A table with even times from 0 is returned unchanged at its own
 // rate. Usable with a motion of any length: weights_at() holds the last weights.
 Result<MorphWeights> read_weights(std::string_view text, const std::string& path,
                                   const MorphSet& morphs, std::optional<double> rate = {});
+Result<MorphWeights> sampled(const WeightFile& file, const std::string& path,
+                             std::optional<double> rate = {});
 
 // The JSON Schema of such files.
 std::string schema();

@@ -45,6 +45,16 @@ TEST_F(Mistakes, OptionsWithoutTheirValue) {
   EXPECT_EQ(run_here("krok-edit", {"in.bvh", "--heading", "-90deg", "-o", "a.anim"}).exit_code, 0);
 }
 
+// Would fail if a low-pass that flattens a motion, or a focal length as an angle, got no word.
+TEST_F(Mistakes, ValuesOfAnotherKind) {
+  EXPECT_THAT(refused("krok-cam", {"in.bvh", "--follow", "Root", "--fov", "50mm", "-o", "a.cam"}),
+              HasSubstr("--lens 50mm"));
+  const ToolRun run = run_here(
+      "krok-edit", {"in.bvh", "--filter", "butterworth", "--cutoff", "0.2", "-o", "a.anim"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_TRUE(has_code(run.err, "edit-cutoff")) << run.err;
+}
+
 // Would fail if a folder as input led to an error about the folder, once -o were added.
 TEST_F(Mistakes, FoldersAreForBatchesAndFoldersAreNoFiles) {
   std::filesystem::create_directory(path("takes"));

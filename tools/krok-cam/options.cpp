@@ -44,6 +44,20 @@ Result<Orbit> parse_orbit(const std::string& text) {
   return error;
 }
 
+ValueKind<double> field_of_view() {
+  ValueKind<double> kind = angle({3, 179});
+  kind.read = [read = kind.read](const std::string& text) -> Result<double> {
+    auto value = read(text);
+    if (!value && text.ends_with("mm")) {
+      Error error = std::move(value).error();
+      error.hint = fmt::format("a focal length is --lens {}", text);
+      return error;
+    }
+    return value;
+  };
+  return kind;
+}
+
 void declare_subject(CommandOptions& command, Options& o) {
   command.group("Filming a motion");
   command
@@ -113,7 +127,7 @@ void declare_image(CommandOptions& command, Options& o) {
   command.add(
       "--distance", o.distance, length({0, 1e4, true}),
       "Distance from the point it looks at; default: the shortest that frames the character");
-  command.add("--fov", o.fov, angle({3, 179}), "Vertical field of view", "40deg")
+  command.add("--fov", o.fov, field_of_view(), "Vertical field of view", "40deg")
       .not_with("--lens");
   command.add("--lens MM", o.lens, number({0.1, 1e5}, "mm"),
               "The same as a focal length in millimetres, for an image 24 mm high");

@@ -236,6 +236,12 @@ Status filter_jitter(const Options& options, ToolContext& context,
     metrics["kind"] = "butterworth";
     metrics["cutoff"] = low_pass->cutoff;
     metrics["order"] = low_pass->order;
+    if (low_pass->cutoff < 1) {
+      context.warn("edit-cutoff",
+                   fmt::format("a cutoff of {} Hz removes most of a motion, not jitter alone",
+                               readable(low_pass->cutoff)),
+                   "6 Hz is usual for walks, 10 Hz and more for what is fast");
+    }
     line = fmt::format("filtered: Butterworth, {} Hz, order {}, zero phase",
                        readable(low_pass->cutoff), low_pass->order);
   } else {

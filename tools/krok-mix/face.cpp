@@ -86,6 +86,9 @@ class FaceMaker {
     if (!file) return missing(path, file.error());
     auto weights = weights::read(file->text(), path, targets_);
     if (!weights) return weights.error();
+    if (auto warning = weights::implausible_weight(weights->curves)) {
+      context_.diagnose_in(path, {*std::move(warning)});
+    }
     return face::item_of(std::move(weights->curves));
   }
 

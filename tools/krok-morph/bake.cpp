@@ -15,8 +15,6 @@ namespace krok::cli::morph {
 
 namespace {
 
-constexpr float kMaxPlausible = 10;  // times a target
-
 MeshMotion motion_of(const Model& model, const MorphSet& morphs, const MorphWeights& weights) {
   MeshMotion motion;
   motion.frames = weights.frame_count();
@@ -73,17 +71,12 @@ Result<int> bake(const Options& options, ToolContext& context) {
     return status.error();
   const auto weights_file = context.open_input(options.weights);
   if (!weights_file) return weights_file.error();
-  const auto weights =
-      weights::read_weights(weights_file->text(), options.weights, morphs, options.rate);
+  const auto given = weights::read(weights_file->text(), options.weights, morphs.names);
+  if (!given) return given.error();
+  const auto weights = weights::sampled(*given, options.weights, options.rate);
   if (!weights) return weights.error();
-  for (std::size_t i = 0; i < weights->values.size(); ++i) {
-    if (std::abs(weights->values[i]) <= kMaxPlausible) continue;
-    context.warn(
-        "morph-weights",
-        fmt::format("the weight of {} is {}, where 1 is the whole target",
-                    weights->names[i % weights->names.size()], readable(weights->values[i])),
-        "divide per cent by 100");
-    break;
+  if (auto warning = weights::implausible_weight(given->curves)) {
+    context.diagnose_in(options.weights, {*std::move(warning)});
   }
 
   OutputSet outputs(context);

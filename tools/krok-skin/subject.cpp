@@ -128,6 +128,9 @@ class Loader {
       if (!file) return file.error();
       auto weights = weights::read(file->text(), path, subject_.morphs.names);
       if (!weights) return weights.error();
+      if (auto warning = weights::implausible_weight(weights->curves)) {
+        context_.diagnose_in(path, {*std::move(warning)});
+      }
       result = std::move(*weights);
     }
     for (std::size_t t = 0; t < rest_weights_.size(); ++t) {
@@ -268,6 +271,11 @@ class Loader {
       *clip = cut(*clip, 0, last, options_.every);
     }
     Subject::Motion other{names_.make(clip_name(i)), std::move(*clip), std::move(stretches), {}};
+    if (!options_.clip_names[i].empty() && other.name != options_.clip_names[i]) {
+      context_.warn("skin-name", fmt::format("another clip is named {}; that of {} is {}",
+                                             shown(options_.clip_names[i]),
+                                             base_name(options_.motions[i]), other.name));
+    }
     if (options_.has_weights_by_clip()) {
       const auto weights = weights_of(i);
       if (!weights) return weights.error();

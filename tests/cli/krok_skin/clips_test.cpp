@@ -72,6 +72,14 @@ TEST_F(SkinClips, MotionsWithoutTheMeshHaveTheSameJoints) {
   }
 }
 
+// If this fails, a name that is given twice is changed without a word.
+TEST_F(SkinClips, ANameGivenTwiceIsWarnedOf) {
+  const ToolRun twice =
+      tool("krok-skin", {"hero.character", "go=in.anim", "go=run.anim", "-o", "x.gltf"});
+  EXPECT_TRUE(has_code(twice.err, "skin-name")) << twice.err;
+  EXPECT_THAT(names(gltf("x.gltf")["animations"]), ElementsAre("go", "go_2"));
+}
+
 TEST_F(SkinClips, ARigIsTheDefaultAndAPointCacheIsBaked) {
   tool("krok-skin", {"in.model", "in.anim", "-o", "rig.gltf"});
   EXPECT_TRUE(gltf("rig.gltf").contains("skins"));

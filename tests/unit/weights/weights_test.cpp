@@ -47,6 +47,20 @@ TEST(Weights, KeysAreWhatTheSpecSays) {
   EXPECT_NEAR(weight_at(time, 1.25), 0.25, 1e-12);
 }
 
+// If this fails, weights in per cent throw a face a hundred times too far without a word.
+TEST(Weights, PerCentIsDoubted) {
+  const auto doubted = [](const char* last) {
+    std::string text = kKeys;
+    text.replace(text.find("[2, 1]"), 6, last);
+    const auto file = read(text, "w.json", kTargets);
+    EXPECT_TRUE(file.ok());
+    return file && implausible_weight(file->curves);
+  };
+  EXPECT_FALSE(doubted("[2, 1.5]"));
+  EXPECT_TRUE(doubted("[2, 80]"));
+  EXPECT_TRUE(doubted("[2, -80]"));
+}
+
 TEST(Weights, MistakesInKeysAreFoundWhereTheyAre) {
   const test::Mistake mistakes[] = {
       {"weights/1", "weights/2", "weights-structure 2:13"},
