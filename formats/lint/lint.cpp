@@ -68,6 +68,8 @@ json::Object<Faults> baseline_table() {
   fault.field("joint", &KnownFault::joint, json::text());
   fault.field("from", &KnownFault::from, json::number(0, kLatest), "seconds").required();
   fault.field("to", &KnownFault::to, json::number(0, kLatest), "seconds").required();
+  fault.field("near", &KnownFault::near, json::boolean(), "nearly a fault")
+      .written_if([](const KnownFault& of) { return of.near; });
   json::Object<Faults> file;
   file.file("krok.lint-baseline/1", "Faults that are known (krok.lint-baseline/1)");
   file.lines(2);

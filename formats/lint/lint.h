@@ -32,6 +32,7 @@ struct KnownFault {
   std::string file;  // name without folder and ending
   std::string rule, joint;
   double from = 0, to = 0;  // seconds
+  bool near = false;        // nearly a fault
 };
 
 // Codes lint-structure and lint-value with line and column.

@@ -23,6 +23,7 @@ constexpr double kMinChange = 0.0025;   // metres, of a bone
 constexpr double kShortestBone = 0.02;  // metres
 constexpr double kLongEnough = 0.1;     // seconds beyond a limit
 constexpr double kForwards = 0.7;       // cosine to where the toes point
+constexpr double kPointed = 0.5;        // of a foot's length, ahead of the shin
 constexpr double kLookAt = 30;          // poses a second that limits are checked in
 
 Finding finding_of(Rule rule, const Series& series, double value) {
@@ -125,7 +126,9 @@ double knee_bent_forwards(std::span<const Vec3f> places, const LegJoints& leg) {
   // Nearly all bend backwards: bend.dot(forwards) below, but for its size.
   if (foot.dot(shin) * thigh.dot(shin) < foot.dot(thigh) * shin.squaredNorm()) return 0;
   thigh.normalize(), shin.normalize();
-  const Vec3 forwards = (foot - foot.dot(shin) * shin).normalized();
+  const Vec3 ahead = foot - foot.dot(shin) * shin;
+  if (ahead.norm() < kPointed * foot.norm()) return 0;  // toes point along the shin
+  const Vec3 forwards = ahead.normalized();
   const Vec3 bend = shin.dot(thigh) * shin - thigh;  // at a right angle to the shin, too
   if (!(bend.norm() > 1e-6) || bend.normalized().dot(forwards) < kForwards) return 0;
   return std::atan2(bend.norm(), shin.dot(thigh)) / kRadiansPerDegree;

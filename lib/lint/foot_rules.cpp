@@ -18,6 +18,7 @@ namespace {
 constexpr double kNear = 0.03;            // metres above the support, of points that may carry
 constexpr double kRising = 0.25;          // metres per second; faster up or down is a step
 constexpr double kFastest = 1.7;          // metres per second; faster is a swing, not a slide
+constexpr double kSpeedTime = 0.07;       // seconds over which speeds are measured
 constexpr double kShortestSlide = 0.1;    // seconds
 constexpr double kStepEnd = 0.06;         // seconds in which a foot lands or leaves, at least
 constexpr double kLongestStepEnd = 0.15;  // the same, while it is much faster than at its slowest
@@ -32,6 +33,9 @@ constexpr double kStanding = 0.45;        // of the legs' length, of hips over a
 constexpr double kKnees = 0.85;           // of the same; less is a bent leg
 constexpr double kLean = 0.7;             // of a bent leg's height, its length along the ground
 constexpr double kOffFloor = 0.1;         // metres over the lowest contact
+constexpr double kLift = 0.012;           // metres; a foot that is lifted by more steps
+constexpr double kLongestLift = 0.3;      // seconds
+constexpr double kSeldom = 0.1;           // of the time; feet that stand for less show no ground
 constexpr double kUneven = 0.1;           // metres, of heights of contacts on level ground
 constexpr double kFloor = 2;              // times the threshold, of the floor's height
 constexpr double kUpright = 0.8;          // of the legs' length, height of the hips
@@ -50,11 +54,20 @@ struct Soles {
   // the air.
   std::vector<std::array<int, 2>> carrying;
   std::vector<std::array<int, 2>> standing;  // the same, -1 also where the foot lands or leaves
+  // [frames][FootSide], metres per second: that of the slowest place between the carrying point and
+  // the foot's others, about which the foot turns.
+  std::vector<std::array<Vec3, 2>> slips;
+  // [FootSide][frames], of feet whose points are all estimated, from where their joint turns to:
+  // the joint, which rests where the foot does. Otherwise empty.
+  std::array<std::vector<Vec3>, 2> ankles, ankle_velocities;
 
-  double speed(int track, int frame) const { return velocities[at(track)][at(frame)].norm(); }
+  std::size_t side(int track) const {
+    return static_cast<std::size_t>(found.tracks[at(track)].point.side);
+  }
+  const Vec3& slip(int track, int frame) const { return slips[at(frame)][side(track)]; }
+  double speed(int track, int frame) const { return slip(track, frame).norm(); }
   bool stays(int track, int frame) const {
-    return track >= 0 &&
-           standing[at(frame)][static_cast<std::size_t>(found.tracks[at(track)].point.side)] >= 0;
+    return track >= 0 && standing[at(frame)][side(track)] >= 0;
   }
   // The slower of two feet, -1 for none.
   int slower(const std::array<int, 2>& feet, int frame) const {
@@ -86,17 +99,47 @@ bool stands(const Series& series, const Soles& soles, int track, int frame) {
          hips.y() - leg.y() < soles.floor + kOffFloor * series.scale;
 }
 
-std::array<int, 2> carrying(const Series& series, const Soles& soles, int frame) {
+// The shortest of the vectors from `a` to `b`: the movement of the place of a foot about which it
+// turns, if its ends move by these. At most `part` of the way to `b`.
+Vec3 shortest_between(const Vec3& a, const Vec3& b, double part = 1) {
+  const Vec3 way = b - a;
+  const double square = way.squaredNorm();
+  return square > 0 ? Vec3(a + std::clamp(-a.dot(way) / square, 0.0, part) * way) : a;
+}
+
+// How much of the way from a point to one that is higher is near the support.
+double low_part(double height, double other, double limit) {
+  return other <= limit ? 1 : std::clamp((limit - height) / (other - height), 0.0, 1.0);
+}
+
+std::array<int, 2> carrying(const Series& series, Soles& soles, int frame) {
   std::array<int, 2> slowest = {-1, -1};
+  const double near = kNear * series.scale;
+  const auto velocity = [&](int track) -> const Vec3& {
+    return soles.velocities[at(track)][at(frame)];
+  };
   for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
     const PointTrack& track = soles.found.tracks[at(t)];
-    if (track.height[at(frame)] > kNear * series.scale ||
+    if (track.height[at(frame)] > near ||
         std::abs(soles.rises[at(t)][at(frame)]) > kRising * series.scale ||
-        soles.speed(t, frame) > kFastest * series.scale || !stands(series, soles, t, frame)) {
+        velocity(t).norm() > kFastest * series.scale || !stands(series, soles, t, frame)) {
       continue;
     }
-    int& best = slowest[static_cast<std::size_t>(track.point.side)];
-    if (best < 0 || soles.speed(t, frame) < soles.speed(best, frame)) best = t;
+    int& best = slowest[soles.side(t)];
+    if (best < 0 || velocity(t).norm() < velocity(best).norm()) best = t;
+  }
+  for (const int best : slowest) {
+    if (best < 0) continue;
+    Vec3& slip = soles.slips[at(frame)][soles.side(best)] = velocity(best);
+    for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
+      if (soles.side(t) != soles.side(best)) continue;
+      const double part = low_part(soles.found.tracks[at(best)].height[at(frame)],
+                                   soles.found.tracks[at(t)].height[at(frame)], near);
+      const Vec3 turning = shortest_between(velocity(best), velocity(t), part);
+      if (turning.squaredNorm() < slip.squaredNorm()) slip = turning;
+    }
+    const auto& of_ankle = soles.ankle_velocities[soles.side(best)];
+    if (!of_ankle.empty()) slip = shortest_between(slip, of_ankle[at(frame)]);
   }
   return slowest;
 }
@@ -125,13 +168,30 @@ void take_out_step_ends(const Series& series, std::size_t side, Soles& soles) {
   }
 }
 
+// A point of each foot none of whose points a joint marks.
+std::vector<SolePoint> unmarked_feet(std::span<const PointTrack> tracks) {
+  std::vector<SolePoint> feet;
+  for (const FootSide side : {FootSide::left, FootSide::right}) {
+    const auto is_of = [&](const PointTrack& track) { return track.point.side == side; };
+    const auto is_marked = [&](const PointTrack& track) {
+      return is_of(track) && !track.point.estimated;
+    };
+    const auto first = std::ranges::find_if(tracks, is_of);
+    if (first != tracks.end() && std::ranges::none_of(tracks, is_marked)) {
+      feet.push_back(first->point);
+    }
+  }
+  return feet;
+}
+
 std::optional<Soles> soles_of(const Series& series) {
   auto found = find_contacts(series.clip, series.roles);
   if (!found) return std::nullopt;
-  Soles soles{*std::move(found), {}, {}, {}, INFINITY, {}, {}};
+  Soles soles;
+  soles.found = *std::move(found);
   for (const PointTrack& track : soles.found.tracks) {
     soles.places.push_back(track_of(series.clip, track.point, soles.found.leg_length));
-    std::vector<Vec3> velocities = velocities_of(soles.places.back(), series.rate, 0.07);
+    std::vector<Vec3> velocities = velocities_of(soles.places.back(), series.rate, kSpeedTime);
     std::vector<double>& rises = soles.rises.emplace_back();
     for (Vec3& velocity : velocities) {
       rises.push_back(velocity.y());
@@ -139,9 +199,17 @@ std::optional<Soles> soles_of(const Series& series) {
     }
     soles.velocities.push_back(std::move(velocities));
   }
+  for (const SolePoint& point : unmarked_feet(soles.found.tracks)) {
+    const auto side = static_cast<std::size_t>(point.side);
+    soles.ankles[side] =
+        track_of(series.clip, {point.side, point.part, point.joint}, soles.found.leg_length);
+    soles.ankle_velocities[side] = velocities_of(soles.ankles[side], series.rate, kSpeedTime);
+    for (Vec3& velocity : soles.ankle_velocities[side]) velocity.y() = 0;
+  }
   for (const Stay& stay : soles.found.stays) {
     soles.floor = std::min(soles.floor, stay.place.y());
   }
+  soles.slips.assign(at(series.frames), {Vec3::Zero(), Vec3::Zero()});
   for (int f = 0; f < series.frames; ++f) soles.carrying.push_back(carrying(series, soles, f));
   soles.standing = soles.carrying;
   for (const std::size_t side : {0, 1}) take_out_step_ends(series, side, soles);
@@ -165,7 +233,7 @@ class Slides {
       frames_.emplace_back(f, slowest);
       const auto [left, right] = soles_.carrying[at(f)];
       if (left >= 0 && right >= 0) {
-        const Vec3 a = velocity(left, f), b = velocity(right, f);
+        const Vec3 a = soles_.slip(left, f), b = soles_.slip(right, f);
         ++both_;
         if ((a - b).norm() < kTogether * std::max(a.norm(), b.norm())) ++together_;
       }
@@ -174,8 +242,22 @@ class Slides {
   }
 
  private:
-  const Vec3& velocity(int track, int frame) const {
-    return soles_.velocities[at(track)][at(frame)];
+  // Whether the foot is higher for a short time, `frame`, at which it is fastest, among it, than
+  // before and after: a low step.
+  bool is_lifted(int frame) const {
+    if (static_cast<int>(frames_.size()) > series_.frames_in(kLongestLift, 1)) return false;
+    const auto place = std::ranges::find(frames_, frame, &std::pair<int, int>::first);
+    const auto& places = soles_.places[at(place->second)];
+    const int reach = series_.frames_in(kLongestStepEnd, 1);
+    const double height = places[at(frame)].y() - kLift * series_.scale;
+    const auto is_lower = [&](int first, int last) {
+      for (int f = std::max(0, first); f <= std::min(series_.frames - 1, last); ++f) {
+        if (places[at(f)].y() < height) return true;
+      }
+      return false;
+    };
+    return is_lower(frames_.front().first - reach, frame) &&
+           is_lower(frame, frames_.back().first + reach);
   }
   // Whether the hips hardly move while feet slide, as in a motion in place.
   bool hips_stay(int first, int last, const Vec3& slid) const {
@@ -191,7 +273,7 @@ class Slides {
       Vec3 way = Vec3::Zero();
       double fastest = 0;
       for (const auto& [f, track] : frames_) {
-        way += velocity(track, f) / series_.rate;
+        way += soles_.slip(track, f) / series_.rate;
         if (soles_.speed(track, f) <= fastest) continue;
         fastest = soles_.speed(track, f), finding.worst = f;
         finding.joint = soles_.found.tracks[at(track)].point.joint;
@@ -204,7 +286,7 @@ class Slides {
       if (hips_stay(finding.first, finding.last, way)) {
         finding.detail += ", hips stay: --treadmill if the ground moves";
       }
-      if (finding.value > finding.threshold) found_.push_back(finding);
+      if (finding.value > finding.threshold && !is_lifted(finding.worst)) found_.push_back(finding);
     }
     frames_.clear();
     both_ = together_ = 0;
@@ -228,7 +310,7 @@ void find_creep(const Series& series, const Soles& soles, std::vector<Finding>& 
   for (int f = 0; f < series.frames; ++f) {
     const int track = soles.slower(soles.carrying[at(f)], f);
     if (soles.stays(track, f) && soles.speed(track, f) < kCreeping * series.scale) {
-      slowest[at(f)] = track, way[at(f)] = soles.velocities[at(track)][at(f)] / series.rate;
+      slowest[at(f)] = track, way[at(f)] = soles.slip(track, f) / series.rate;
     } else {
       nearest_step = f;
       for (int g = std::max(0, f - margin); g < f; ++g) way[at(g)].setZero();
@@ -270,8 +352,19 @@ void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& 
     const int last = std::min(series.frames - 1,
                               static_cast<int>(std::floor((stay.end - margin) * series.rate)));
     if (last - first < 3 || !stands(series, soles, stay.track, (first + last) / 2)) continue;
-    Vec3 moved = places[at(last)] - places[at(first)];
-    moved.y() = 0;
+    const auto level_way = [&](const std::vector<Vec3>& of) -> Vec3 {
+      const Vec3 way = of[at(last)] - of[at(first)];
+      return {way.x(), 0, way.z()};
+    };
+    const Vec3 way = level_way(places);
+    Vec3 moved = way;
+    for (std::size_t t = 0; t < soles.places.size(); ++t) {
+      if (soles.found.tracks[t].point.side != track.point.side) continue;
+      const Vec3 turning = shortest_between(way, level_way(soles.places[t]));
+      if (turning.squaredNorm() < moved.squaredNorm()) moved = turning;
+    }
+    const auto& ankle = soles.ankles[soles.side(stay.track)];
+    if (!ankle.empty()) moved = shortest_between(moved, level_way(ankle));
     Finding finding;
     finding.rule = Rule::foot_slide;
     finding.joint = track.point.joint;
@@ -287,6 +380,7 @@ void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& 
 struct Level {
   double height = 0;
   double spread = 0;  // of the middle 80 % of the time that feet stand
+  double seconds = 0;
   bool known = false;
 };
 
@@ -311,7 +405,7 @@ Level level_of(const Soles& soles, int track = -1) {
     }
     return heights.back().first;
   };
-  return {at_part(0.5), at_part(0.9) - at_part(0.1), true};
+  return {at_part(0.5), at_part(0.9) - at_part(0.1), total, true};
 }
 
 class GroundRule {
@@ -323,7 +417,15 @@ class GroundRule {
                                   [](const PointTrack& track) { return !track.point.estimated; });
     for (int t = 0; t < static_cast<int>(soles.places.size()); ++t) {
       const Level own = series.options.ground ? Level() : level_of(soles, t);
+      longest_ = std::max(longest_, own.seconds);
       lower_.push_back(own.known ? std::clamp(level_.height - own.height, 0.0, limit_) : 0);
+    }
+    for (const Stay& stay : soles.found.stays) {
+      const std::size_t side = soles.side(stay.track);
+      if (soles.ankles[side].empty()) continue;
+      const auto middle = static_cast<int>(0.5 * (stay.start + stay.end) * series.rate);
+      const double height = soles.ankles[side][at(std::min(middle, series.frames - 1))].y();
+      ankle_levels_[side] = std::min(ankle_levels_[side], height);
     }
   }
 
@@ -331,6 +433,10 @@ class GroundRule {
     if (!series_.options.ground) {
       if (!level_.known) {
         out_.notes.emplace_back("ground: no foot stands anywhere, so the ground is not known");
+        return;
+      }
+      if (longest_ < kSeldom * series_.frames / series_.rate) {
+        out_.notes.emplace_back("ground: feet stand too seldom to show where the ground is");
         return;
       }
       if (level_.spread > kUneven * series_.scale) {
@@ -385,7 +491,11 @@ class GroundRule {
         const Vec3& place = soles_.places[t][at(f)];
         const auto ground = ground_at(place);
         if (!ground || *ground - lower_[t] - place.y() <= deep) continue;
-        const double depth = depth_of(place, *ground - lower_[t]);
+        double depth = depth_of(place, *ground - lower_[t]);
+        const std::size_t side = soles_.side(static_cast<int>(t));
+        if (!series_.options.ground && !soles_.ankles[side].empty()) {
+          depth = std::min(depth, ankle_levels_[side] - soles_.ankles[side][at(f)].y());
+        }
         if (depth > deep) deep = depth, here = soles_.found.tracks[t].point.joint;
       }
       if (deep > limit_) {
@@ -434,7 +544,8 @@ class GroundRule {
         if (first < 0) first = f;
         if (over > highest) highest = over, worst = f;
       } else if (first >= 0) {
-        if (f - first >= shortest && series_.fall(first, f - 1) < kMinFall) {
+        if (f - first >= shortest && series_.fall(first, f - 1) < kMinFall &&
+            series_.fall(first, f - 1, true) < kMinFall) {
           add("hovering", first, f - 1, worst, highest, limit_);
         }
         first = -1, highest = 0;
@@ -446,11 +557,14 @@ class GroundRule {
   const Soles& soles_;
   MotionFaults& out_;
   Level level_;
+  double longest_ = 0;  // seconds that one point of the soles stands
   double limit_ = 0;
   bool marked_ = false;  // joints mark points of the soles; what is estimated sinks nowhere then
   // [tracks], metres below the level that a point stands: the height of ankles and balls over the
   // sole is not known.
   std::vector<double> lower_;
+  // [FootSide], of the lowest contact of a foot without marked points.
+  std::array<double, 2> ankle_levels_ = {INFINITY, INFINITY};
 };
 
 }  // namespace

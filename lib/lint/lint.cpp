@@ -102,9 +102,13 @@ int Series::frames_in(double seconds, int at_least) const {
   return std::max(at_least, static_cast<int>(std::lround(seconds * rate)));
 }
 
-double Series::fall(int first, int last) const {
+double Series::fall(int first, int last, bool all) const {
   const auto height = [&](int f) {
-    return static_cast<double>(clip.frame_positions(f)[at(carrier)].y());
+    const auto places = clip.frame_positions(f);
+    if (!all) return static_cast<double>(places[at(carrier)].y());
+    double sum = 0;
+    for (const Vec3f& place : places) sum += place.y();
+    return sum / joints;
   };
   const int middle = (first + last) / 2, reach = std::min(middle - first, last - middle);
   const double seconds = reach / rate;

@@ -23,6 +23,10 @@ constexpr std::size_t kMinSwings = 2, kMinFlights = 2;
 constexpr double kSwingSpeed = 0.2;    // of a foot's fastest speed; slower is a stance
 constexpr double kShortestStep = 0.5;  // metres that a foot moves in a swing
 constexpr double kLongestStep = 5;
+constexpr double kSameWay = 0.5;    // cosine between the ways of steps of a gait
+constexpr float kHipsGo = 0.5F;     // of the steps' length
+constexpr double kMinRate = 10;     // frames per second; less do not show how long a swing lasts
+constexpr double kNextSwing = 2.5;  // times a swing's duration, from it to the other foot's
 // Hips fall a little faster than bodies: arms and legs fall slower. Median of 59 captured runs.
 constexpr double kFall = 10.8;      // metres per second squared
 constexpr double kFlying = 0.2;     // of the time that a foot swings, in a run
@@ -56,6 +60,7 @@ void find_doubled(const Series& series, MotionFaults& out) {
 struct Swing {
   int first = 0, end = 0;
   double seconds = 0;
+  Vec3f way = Vec3f::Zero();  // of the foot, level
 };
 
 std::vector<Swing> swings_of(const Series& series, Role role) {
@@ -79,7 +84,9 @@ std::vector<Swing> swings_of(const Series& series, Role role) {
     const bool fast = speeds[at(f)] > limit;
     if (fast && first < 0) first = f;
     if (fast || first < 0) continue;
-    const double way = (place(f) - place(first - 1)).norm() / series.scale;
+    Vec3f moved = place(f) - place(first - 1);
+    const double way = moved.norm() / series.scale;
+    moved.y() = 0;
     if (first > 1 && way > kShortestStep && way < kLongestStep && is_below_hips((first + f) / 2)) {
       // Fractions of frames at both ends.
       const auto crossing = [&](int a, int b) {
@@ -87,11 +94,38 @@ std::vector<Swing> swings_of(const Series& series, Role role) {
         return rise > 0 ? std::abs(speeds[at(b)] - limit) / rise : 0.5;
       };
       const double part = crossing(first - 1, first) + crossing(f, f - 1);
-      swings.push_back({first, f, (f - 1 - first + part) / series.rate});
+      swings.push_back({first, f, (f - 1 - first + part) / series.rate, moved});
     }
     first = -1;
   }
   return swings;
+}
+
+// Swings as in a gait, feet in turns and each the way of the one before and the one after, which
+// the hips go, too; nothing where most are otherwise, as in fights and dances.
+std::vector<double> gait_swings(const Series& series, const std::vector<Swing>& left,
+                                const std::vector<Swing>& right) {
+  std::vector<std::pair<Swing, bool>> all;  // and whether it is the right foot's
+  for (const Swing& swing : left) all.emplace_back(swing, false);
+  for (const Swing& swing : right) all.emplace_back(swing, true);
+  std::ranges::sort(all, {}, [](const auto& one) { return one.first.first; });
+  const auto hips = [&](int f) { return series.clip.frame_positions(f)[at(series.carrier)]; };
+  const auto follows = [&](std::size_t i) {
+    const auto& [a, a_right] = all[i];
+    const auto& [b, b_right] = all[i + 1];
+    const Vec3f way = 0.5F * (a.way + b.way);
+    const bool travels = way.dot(hips(b.end) - hips(a.first)) > kHipsGo * way.squaredNorm();
+    return travels && a_right != b_right && b.first - a.first < kNextSwing * (a.end - a.first) &&
+           a.way.dot(b.way) > kSameWay * a.way.norm() * b.way.norm();
+  };
+  std::vector<double> seconds;
+  for (std::size_t i = 0; i < all.size() && all.size() > 1; ++i) {
+    if ((i == 0 || follows(i - 1)) && (i + 1 == all.size() || follows(i))) {
+      seconds.push_back(all[i].first.seconds);
+    }
+  }
+  if (2 * seconds.size() < all.size()) seconds.clear();
+  return seconds;
 }
 
 // How fast the hips fall while both feet swing, as in runs; nothing of walks.
@@ -133,12 +167,9 @@ bool has_proportions_of_people(const Series& series) {
 
 // Runs by how fast they fall, and walks by how long their swings take.
 void find_speed(const Series& series, MotionFaults& out) {
-  if (!has_proportions_of_people(series)) return;
+  if (series.rate < kMinRate || !has_proportions_of_people(series)) return;
   const auto left = swings_of(series, Role::left_foot), right = swings_of(series, Role::right_foot);
-  std::vector<double> seconds;
-  for (const auto* swings : {&left, &right}) {
-    for (const Swing& swing : *swings) seconds.push_back(swing.seconds);
-  }
+  const std::vector<double> seconds = gait_swings(series, left, right);
   if (seconds.size() < kMinSwings) return;
   const auto falls = falls_of(series, left, right);
   const bool runs = !falls.empty();

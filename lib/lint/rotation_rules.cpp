@@ -74,9 +74,10 @@ constexpr std::array<Template, 3> kTemplates = {
     {{PopKind::spike, 3, {1, -2, 1, 0}, {2.2F, 3}, {1, 2}, 1.5F},
      {PopKind::spike, 4, {1, -1, -1, 1}, {2.4F, 4}, {1.2F, 3}, 1.5F},
      {PopKind::step, 2, {1, -1, 0, 0}, {3.5F, 5}, {1.6F, 3}, 1.7F}}};
-// Toes spring back within a frame or two when they leave the ground.
+// Toes spring back within a frame or two when they leave the ground, and feet slap on it.
 constexpr Clearness kOfToes = {3, 4};
-constexpr float kMinOverUsual = 2, kMinOverRest = 1;  // of all of them
+constexpr auto kSlap = static_cast<float>(20 * kRadiansPerDegree);  // at most, of a foot
+constexpr float kMinOverUsual = 2, kMinOverRest = 1;                // of all of them
 constexpr double kAround = 10;  // seconds before and after in which a jump is unlike others
 
 // A place where a template was tried.
@@ -88,13 +89,14 @@ struct Match {
 class PopFinder {
  public:
   // `around`: frames before and after that a jump is compared with.
-  PopFinder(std::span<const Vec3f> turns, float threshold, int block, int around, bool toes,
+  // `springs`: changes of speed up to which the joint is judged as toes are.
+  PopFinder(std::span<const Vec3f> turns, float threshold, int block, int around, float springs,
             std::vector<float>& sizes)
       : turns_(turns),
         threshold_(threshold),
         block_(block),
         around_(around),
-        toes_(toes),
+        springs_(springs),
         sizes_(sizes) {}
 
   std::vector<Pop> find() {
@@ -200,8 +202,9 @@ class PopFinder {
       score = std::min(value / (kTimesNeighbours * std::max(rest, 1e-6F)),
                        value / (kTimesUsual * std::max(usual, 1e-6F)));
     } else {
-      if (!toes_) score = clear_by(shape.alone);
-      float other = score >= 1 ? 0 : clear_by(toes_ ? kOfToes : shape.unlike_others);
+      const bool toes = value < springs_;
+      if (!toes) score = clear_by(shape.alone);
+      float other = score >= 1 ? 0 : clear_by(toes ? kOfToes : shape.unlike_others);
       if (other >= 1) {
         const float elsewhere = largest_elsewhere(shape, first, value / shape.unlike);
         other = std::min(other, value / (shape.unlike * elsewhere + 1e-6F));
@@ -228,7 +231,7 @@ class PopFinder {
     for (int begin = -1; begin < 1 && first == 1; ++begin) try_at(spike, begin);
     if (first + spike.length >= frames) try_at(spike, first);
     // A change of speed alone.
-    if (!toes_ && best.score < 1 && first >= 3 && first + 3 < frames &&
+    if (sizes_[at(first)] >= springs_ && best.score < 1 && first >= 3 && first + 3 < frames &&
         sizes_[at(first)] > kTimesUsual * usual &&
         sizes_[at(first)] > kTimesNeighbours * largest_beside(first, first)) {
       best = {{PopKind::kink, first, first, first, sizes_[at(first)]}, 1};
@@ -239,7 +242,7 @@ class PopFinder {
   std::span<const Vec3f> turns_;
   float threshold_;
   int block_, around_;
-  bool toes_;
+  float springs_;
   std::vector<float>& sizes_;
 };
 
@@ -314,14 +317,15 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
     if (!series.has(Rule::pop)) continue;
     const Role role = series.roles.roles[at(j)];
     const bool toes = role == Role::left_toes || role == Role::right_toes;
+    const bool feet = role == Role::left_foot || role == Role::right_foot;
     // A change of speed is at most twice the largest speed.
     if (4.001F * series.largest[at(j)] < limit * limit) continue;
-    PopFinder finder(turns, limit, block, around, toes, sizes);
+    PopFinder finder(turns, limit, block, around, toes ? INFINITY : feet ? kSlap : 0.0F, sizes);
     for (const Pop& pop : finder.find()) add(pop, j, false);
   }
   if (series.has(Rule::pop)) {
-    PopFinder finder(series.steps, static_cast<float>(kMinPath * series.scale), block, around,
-                     false, sizes);
+    PopFinder finder(series.steps, static_cast<float>(kMinPath * series.scale), block, around, 0,
+                     sizes);
     for (const Pop& pop : finder.find()) {
       if (pop.kind != PopKind::kink) add(pop, series.carrier, true);
     }
@@ -329,6 +333,7 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
   // A flip is a pop, too, and what belongs to one rest frame is neither.
   const bool rest = std::ranges::any_of(
       out.findings, [](const Finding& finding) { return finding.rule == Rule::rest_frame; });
+  std::erase_if(flips, [&](const Finding& flip) { return rest && flip.first == 0; });
   std::erase_if(pops, [&](const Finding& pop) {
     return (rest && pop.first <= 2) || std::ranges::any_of(flips, [&](const Finding& flip) {
              return flip.joint == pop.joint && flip.last >= pop.first && flip.first <= pop.last;

@@ -72,4 +72,15 @@ Settings::Settings() {
   }
 }
 
+Settings near_limits(const Settings& settings) {
+  Settings near = settings;
+  near.enabled.fill(false);
+  for (const Rule rule : {Rule::foot_slide, Rule::drift, Rule::ground}) {
+    const auto i = static_cast<std::size_t>(rule);
+    near.enabled[i] = settings.enabled[i];
+    near.thresholds[i] *= 0.65;
+  }
+  return near;
+}
+
 }  // namespace krok::lint

@@ -67,4 +67,8 @@ struct Settings {
   double threshold(Rule rule) const { return thresholds[static_cast<std::size_t>(rule)]; }
 };
 
+// The rules of feet among those of `settings`, alone, with 0.65 times the limits: what they find is
+// over the limit or nearly so, and may be over it in a copy at another rate.
+Settings near_limits(const Settings& settings);
+
 }  // namespace krok::lint

@@ -27,8 +27,9 @@ struct Series {
   // twice the vector part of its quaternion, [frames]; the first is zero.
   std::vector<Vec3f> turns_of(int joint) const;
   int frames_in(double seconds, int at_least) const;
-  // The hips' mean acceleration downwards, metres per second squared of legs of 0.86 m.
-  double fall(int first, int last) const;
+  // The hips' mean acceleration downwards, metres per second squared of legs of 0.86 m; `all`: that
+  // of the mean of all joints.
+  double fall(int first, int last, bool all = false) const;
 
   bool has(Rule rule) const { return options.settings.has(rule); }
   double threshold(Rule rule) const { return options.settings.threshold(rule); }

@@ -20,6 +20,7 @@ using krok::lint::Finding;
 constexpr double kNear = 0.25;  // seconds
 // Other rates and exports move values by so much: with a baseline, faults count from there on.
 constexpr double kDoubtful = 1.15;  // times the limit
+constexpr double kNearlyKnown = 2;  // times the limit, of what was nearly over it
 
 std::string stem_of(const LintedFile& file) {
   const std::string stem = to_utf8(std::filesystem::path(file.path).stem().string());
@@ -63,10 +64,12 @@ std::vector<std::string> fingerprints_of(const LintedFile& file) {
 std::vector<lint_files::KnownFault> known_faults(const std::vector<LintedFile>& files) {
   std::vector<lint_files::KnownFault> known;
   for (const LintedFile& file : files) {
-    for (const Finding& finding : file.findings) {
-      known.push_back({stem_of(file), std::string(facts_of(finding.rule).id),
-                       file.joint_of(finding), file.seconds(finding.first),
-                       file.seconds(finding.last)});
+    for (const auto* findings : {&file.findings, &file.near}) {
+      for (const Finding& finding : *findings) {
+        known.push_back({stem_of(file), std::string(facts_of(finding.rule).id),
+                         file.joint_of(finding), file.seconds(finding.first),
+                         file.seconds(finding.last), findings == &file.near});
+      }
     }
   }
   return known;
@@ -79,6 +82,7 @@ void leave_out_known(const std::vector<lint_files::KnownFault>& known, LintedFil
     if (excess > 1 && excess < kDoubtful) return true;
     return std::ranges::any_of(known, [&](const lint_files::KnownFault& fault) {
       return fault.file == stem && fault.rule == facts_of(finding.rule).id &&
+             (!fault.near || (finding.threshold > 0 && excess < kNearlyKnown)) &&
              overlap(fault.from, fault.to, file.seconds(finding.first), file.seconds(finding.last));
     });
   });

@@ -199,6 +199,14 @@ Status lint_frames(const FrameSource& motion, const Clip* whole,
   file.findings.insert(file.findings.end(), std::make_move_iterator(faults->findings.begin()),
                        std::make_move_iterator(faults->findings.end()));
   file.notes = std::move(faults->notes);
+  if (!options.save_baseline.empty()) {
+    krok::lint::MotionOptions lower = mine;
+    lower.settings = krok::lint::near_limits(mine.settings);
+    auto near = whole != nullptr ? Result(judge(*whole, lower))
+                                 : krok::lint::lint_long_take(motion, lower, 1, judge);
+    if (!near) return near.error();
+    file.near = std::move(near->findings);
+  }
   if (how.settings.has(krok::lint::Rule::duplicate)) {
     file.signature = krok::lint::signature_of(motion, *roles);
   }

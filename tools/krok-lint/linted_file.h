@@ -25,6 +25,7 @@ struct LintedFile {
   std::string animation;                      // empty for the only one
   std::optional<Error> error;                 // why it cannot be read
   std::vector<krok::lint::Finding> findings;  // the worst first
+  std::vector<krok::lint::Finding> near;      // of lower limits, for baselines
   std::vector<std::string> notes;
   Diagnostics diagnostics;          // of the reader
   std::vector<std::string> joints;  // names
@@ -65,12 +66,12 @@ std::string fingerprint_of(const LintedFile& file, std::string_view rule, int nu
 // Those of a file's findings, in their order.
 std::vector<std::string> fingerprints_of(const LintedFile& file);
 
-// What --save-baseline writes.
+// What --save-baseline writes: faults, and what is nearly one.
 std::vector<lint_files::KnownFault> known_faults(const std::vector<LintedFile>& files);
 
 // Takes out findings of the same file name and rule that overlap one of the baseline's in time,
 // within a quarter of a second: the worst joint of a fault and its ends may change when a motion is
-// resampled.
+// resampled, as may its value: what was nearly a fault hides those of less than twice their limit.
 void leave_out_known(const std::vector<lint_files::KnownFault>& known, LintedFile& file);
 
 // Takes out what the sidecar beside each motion, NAME.lint.json, suppresses. A sidecar that cannot

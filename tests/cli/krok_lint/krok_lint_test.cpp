@@ -126,6 +126,31 @@ TEST_F(KrokLint, BaselinesHoldUnderExportResamplingAndUnits) {
   }
 }
 
+// Would fail if what is nearly a fault, and a little over its limit in a copy at another rate, were
+// a new fault; one that was far below is.
+TEST_F(KrokLint, BaselinesKnowWhatIsNearlyAFault) {
+  Clip clip = write_walk(8);
+  LocalMotion local = local_motion(clip);
+  for (Vec3& place : local.joint_positions(0)) place.x() = place.z() = 0;
+  set_local_motion(local, clip);
+  write("slow.anim", clip);
+  const ToolRun all = run_here("krok-lint", {"slow.anim", "--only", "foot-slide", "--json"});
+  const json report = json::parse(all.out);
+  const double slide = report["result"]["files"][0]["faults"][0]["value"].get<double>();
+  const auto lint = [&](double limit, const std::string& option) {
+    const json rule = {{"rule", "foot-slide"}, {"limit", limit}};
+    write_text("limit.json", json({{"schema", "krok.lint-profile/1"}, {"rules", {rule}}}).dump());
+    return run_here("krok-lint", {"slow.anim", "--only", "foot-slide", "--profile", "limit.json",
+                                  option, "known.json"})
+        .exit_code;
+  };
+  for (const double times : {1.2, 2.0}) {
+    ASSERT_EQ(lint(times * slide, "--save-baseline"), 0);
+    EXPECT_EQ(lint(slide / 1.3, "--baseline"), times < 1.5 ? 0 : 1) << times;
+    EXPECT_EQ(lint(slide / 2.2, "--baseline"), 1) << times;
+  }
+}
+
 TEST_F(KrokLint, ReportsAreWhatOtherProgramsRead) {
   write_spiked("spi ked.anim");
   write_text("broken.bvh", "HIERARCHY\nROOT");

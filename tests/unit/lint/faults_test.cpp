@@ -567,6 +567,169 @@ TEST(LintFaults, FeetThatSlowDownOnTheGroundLand) {
   }
 }
 
+// A walker who stands on the right foot, the left one lifted, and is moved as a whole: `place` of
+// each second, metres and radians about the vertical through `pivot` metres ahead of the ankle.
+Clip stander(double pivot, const std::function<std::pair<Vec3, double>(double seconds)>& place) {
+  Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip& c) {
+    for (int j = 0; j < m.joints; ++j) {
+      std::ranges::fill(m.joint_orientations(j), m.joint_orientations(j)[0]);
+    }
+    std::ranges::fill(m.joint_positions(0), m.joint_positions(0)[0]);
+    for (Quat& leg : m.joint_orientations(c.skeleton.find("LeftUpLeg"))) leg = leg * turn(60);
+  });
+  const Vec3f ankle = clip.positions[at(clip.skeleton.find("RightFoot"))];
+  const Vec3f toes = clip.positions[at(clip.skeleton.find("RightToeBase"))];
+  Vec3f ahead = toes - ankle;
+  ahead.y() = 0;
+  const Vec3f centre = ankle + static_cast<float>(pivot) * ahead.normalized();
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const auto [moved, angle] = place(f / clip.rate);
+    const Quatf turned = from_rotation_vector(Vec3(0, angle, 0)).cast<float>();
+    for (Vec3f& joint : clip.frame_positions(f)) {
+      joint = centre + turned * (joint - centre) + moved.cast<float>();
+    }
+    for (Quatf& joint : clip.frame_orientations(f)) joint = turned * joint;
+  }
+  return clip;
+}
+
+bool slides(const Clip& clip) {
+  const auto faults = faults_of(clip);
+  return std::ranges::any_of(
+      faults.findings, [](const lint::Finding& found) { return found.rule == Rule::foot_slide; });
+}
+
+// Would fail if heel and toes, which move where a foot turns about the place between them, slid.
+TEST(LintFaults, FeetThatTurnOnTheirSolesDoNotSlide) {
+  const auto turns = [](double seconds) {
+    return std::pair(Vec3(Vec3::Zero()), 1.2 * std::clamp(2 * (seconds - 2), 0.0, 1.0));
+  };
+  EXPECT_FALSE(slides(stander(0.05, turns)));
+  EXPECT_TRUE(slides(stander(0.5, turns)));
+}
+
+// Would fail if a foot that is lifted by 2 cm and put down 8 cm farther on slid there.
+TEST(LintFaults, LowStepsAreNoSlides) {
+  for (const double lift : {0.0, 0.02}) {
+    const Clip clip = stander(0, [&](double seconds) {
+      const double part = std::clamp((seconds - 2) / 0.24, 0.0, 1.0);
+      const double eased = part * part * (3 - 2 * part);
+      return std::pair(Vec3(0.08 * eased, lift * 4 * eased * (1 - eased), 0), 0.0);
+    });
+    EXPECT_EQ(slides(clip), lift == 0) << lift;
+  }
+}
+
+// Would fail if the way of heels and toes, which hang on the ankle where no joint marks them, were
+// taken for that of the foot: it tilts by 35 degrees here, as one that a sensor on it shows.
+TEST(LintFaults, FeetWithoutToesStandWhereTheirAnklesDo) {
+  const Clip walk = stander(0, [](double) { return std::pair(Vec3(Vec3::Zero()), 0.0); });
+  Clip clip;
+  clip.rate = walk.rate;
+  std::vector<int> kept;
+  for (int j = 0; j < walk.joint_count(); ++j) {
+    if (walk.skeleton.names[at(j)].find("Toe") != std::string::npos) continue;
+    const int parent = walk.skeleton.parents[at(j)];
+    const auto place = std::ranges::find(kept, parent);
+    clip.skeleton.add(walk.skeleton.names[at(j)],
+                      parent < 0 ? parent : static_cast<int>(place - kept.begin()),
+                      walk.skeleton.reference[at(j)], walk.skeleton.end_sites[at(j)] != 0);
+    kept.push_back(j);
+  }
+  const int foot = clip.skeleton.find("RightFoot");
+  for (int f = 0; f < walk.frame_count(); ++f) {
+    for (const int j : kept) {
+      clip.positions.push_back(walk.frame_positions(f)[at(j)]);
+      clip.orientations.push_back(walk.frame_orientations(f)[at(j)]);
+    }
+    const double part = std::clamp((f - 120) / 120.0, 0.0, 1.0);
+    const Vec3 axis = 35 * kRadiansPerDegree * part * Vec3::UnitX();
+    Quatf& turned = clip.frame_orientations(f)[at(foot)];
+    turned = turned * from_rotation_vector(axis).cast<float>();
+  }
+  EXPECT_FALSE(slides(clip));
+  EXPECT_EQ(find(faults_of(clip), Rule::ground, 240), nullptr) << listed(clip, faults_of(clip));
+}
+
+// Would fail if steps to and fro, as of fights and dances, were a gait: these go as a walk does and
+// every two steps back again.
+TEST(LintFaults, StepsToAndFroAreNoGait) {
+  constexpr int kTurn = 80;  // frames
+  const Clip walk = usual_walk();
+  for (const bool returns : {false, true}) {
+    Clip clip = walk;
+    for (int f = 0; f < clip.frame_count() && returns; ++f) {
+      const int part = f % (2 * kTurn), from = 60 + std::min(part, 2 * kTurn - part);
+      std::ranges::copy(walk.frame_positions(from), clip.frame_positions(f).begin());
+      std::ranges::copy(walk.frame_orientations(from), clip.frame_orientations(f).begin());
+    }
+    clip.rate *= 2;
+    const auto faults = faults_of(clip);
+    EXPECT_EQ(find(faults, Rule::frame_rate, 0) == nullptr, returns) << listed(clip, faults);
+  }
+}
+
+// Would fail if toes that point along the shin, as a dancer's, said which way a knee bends.
+TEST(LintFaults, PointedToesDoNotBendKnees) {
+  Clip clip = usual_walk();
+  const auto joint = [&](const char* name) { return at(clip.skeleton.find(name)); };
+  const std::size_t thigh = joint("LeftUpLeg"), knee = joint("LeftLeg"), foot = joint("LeftFoot");
+  for (const float back : {0.2F, 2.0F}) {
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      const auto places = clip.frame_positions(f);
+      const Vec3f shin = (places[foot] - places[knee]).normalized();
+      const Vec3f bend = shin - (places[knee] - places[thigh]).normalized();
+      places[joint("LeftToeBase")] = places[foot] + 0.15F * (shin + back * bend.normalized());
+    }
+    const auto faults = faults_of(clip);
+    const bool found = std::ranges::any_of(
+        faults.findings, [](const lint::Finding& one) { return one.rule == Rule::joint_limit; });
+    EXPECT_EQ(found, back > 1) << listed(clip, faults);
+  }
+}
+
+// Would fail if two contacts of a take in the air, as of climbers, were taken for the ground.
+TEST(LintFaults, FeetThatSeldomStandShowNoGround) {
+  for (const int stands : {20, 200}) {
+    const Clip clip = stander(0, [&](double seconds) {
+      const double hanging = std::max(0.0, seconds - stands / 60.0);
+      const Vec3 swing(std::sin(12 * hanging), 0, std::cos(12 * hanging));
+      return std::pair(Vec3(0.3 * swing + Vec3(0, std::min(0.5, 4 * hanging), 0)), 0.0);
+    });
+    EXPECT_EQ(find(faults_of(clip), Rule::ground, 240) != nullptr, stands == 200)
+        << listed(clip, faults_of(clip));
+  }
+}
+
+// Would fail if who turns over in the air, with the hips at one height, hung there.
+TEST(LintFaults, BodiesFallThoughTheirHipsDoNot) {
+  const Clip standing = stander(0, [](double) { return std::pair(Vec3(Vec3::Zero()), 0.0); });
+  for (const bool falls : {false, true}) {
+    Clip clip = standing;
+    for (int f = 0; f < 30; ++f) {
+      const double seconds = f / clip.rate;
+      const auto fall = static_cast<float>(falls ? 4.9 * seconds * (0.5 - seconds) : 0);
+      for (Vec3f& place : clip.frame_positions(kAt + f)) place.y() += 0.3F + fall;
+      clip.frame_positions(kAt + f)[0].y() -= fall;
+    }
+    EXPECT_EQ(find(faults_of(clip), Rule::ground, kAt + 10) == nullptr, falls);
+  }
+}
+
+// Would fail if the way from a rest frame to the motion were also a joint that turns over.
+TEST(LintFaults, RestFramesAreNoFlips) {
+  Clip clip = usual_walk();
+  const Quatf round = from_rotation_vector(Vec3(0, 2, 0)).cast<float>();
+  for (int j = 0; j < clip.joint_count(); ++j) {
+    const Transform& rest = clip.skeleton.reference[at(j)];
+    clip.frame_positions(0)[at(j)] = round * rest.position.cast<float>();
+    clip.frame_orientations(0)[at(j)] = round * rest.orientation.cast<float>();
+  }
+  const auto faults = faults_of(clip);
+  EXPECT_NE(find(faults, Rule::rest_frame, 0), nullptr) << listed(clip, faults);
+  EXPECT_EQ(find(faults, Rule::flip, 0), nullptr) << listed(clip, faults);
+}
+
 TEST(LintRules, RunOnlyIfEnabledAndByTheirLimits) {
   const Clip clip = changed(usual_walk(), seeded_faults().front().change);
   lint::MotionOptions options;
