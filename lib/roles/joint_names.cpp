@@ -306,6 +306,13 @@ std::string in_ascii(std::string_view name) {
   return result;
 }
 
+// Of names such as "Arm:Left:Upper", where what is before is no namespace.
+bool is_part_of_a_limb(std::string_view name) {
+  constexpr std::array<std::string_view, 8> kParts = {"Upper", "Lower", "Left", "Right",
+                                                      "upper", "lower", "left", "right"};
+  return std::ranges::find(kParts, name) != kParts.end();
+}
+
 }  // namespace
 
 bool names_no_shape(std::string_view name) {
@@ -319,7 +326,8 @@ bool names_no_shape(std::string_view name) {
 
 std::vector<std::string> name_tokens(std::string_view full_name) {
   const std::size_t space = full_name.find_last_of(":|");
-  if (space != std::string_view::npos && space + 1 < full_name.size()) {
+  if (space != std::string_view::npos && space + 1 < full_name.size() &&
+      !is_part_of_a_limb(full_name.substr(space + 1))) {
     full_name.remove_prefix(space + 1);
   }
   const std::string name = in_ascii(full_name);

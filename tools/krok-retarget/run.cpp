@@ -17,6 +17,7 @@
 #include "formats/registry/registry.h"
 #include "gait/shown_prints.h"
 #include "plant/follow_feet.h"
+#include "retarget/limb_ends.h"
 #include "retarget/stance.h"
 #include "retarget/take_pool.h"
 #include "tools/cli/folder_inputs.h"
@@ -34,8 +35,9 @@ namespace {
 constexpr double kSunk = 0.05;  // metres: steeper ground than that which its feet stood on
 
 struct Target {
-  Clip clip;   // without frames if it is a model
-  Model mesh;  // without vertices if it is a motion
+  Clip clip;      // without frames if it is a model
+  Model mesh;     // without vertices if it is a motion
+  int added = 0;  // joints of `clip` behind those of the mesh, for its limbs' ends
 };
 
 Result<Target> read_target(const std::string& path, ToolContext& context) {
@@ -53,7 +55,8 @@ Result<Target> read_target(const std::string& path, ToolContext& context) {
     return target;
   }
   target.mesh = std::move(actor->model);
-  target.clip.skeleton = target.mesh.skeleton;
+  target.clip.skeleton = krok::retarget::with_limb_ends(target.mesh);
+  target.added = target.clip.skeleton.joint_count() - target.mesh.skeleton.joint_count();
   return target;
 }
 
@@ -336,10 +339,12 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
         stand_on_ground(options, *whole, *source_roles, *target_roles, *result, context);
     if (!standing) return std::move(standing).error().in_file(options.input);
     followed = *std::move(standing);
+    krok::retarget::give_to_parents(target->clip.skeleton, target->added, followed->contacts);
     result->frames = frames_of(followed->clip);
   } else if (context.output.empty()) {
     if (Status status = read_through(result->frames, context.jobs); !status) return status;
   }
+  result->frames = krok::retarget::without_last_joints(std::move(result->frames), target->added);
   const Outcome outcome{source.skeleton, *source_roles, target->clip.skeleton, *target_roles,
                         *result->report};
 

@@ -21,6 +21,7 @@
 #include "formats/obj/obj_reader.h"
 #include "formats/weights/weights.h"
 #include "motion/cut.h"
+#include "retarget/limb_ends.h"
 #include "retarget/retarget.h"
 #include "roles/roles.h"
 #include "skin/bind.h"
@@ -211,11 +212,13 @@ class Loader {
     auto& removed = moved->clip.provenance.removed_root_motion;
     removed = clip->provenance.removed_root_motion;
     if (removed) removed->velocity *= moved->report.path_scale;
-    return std::move(moved->clip);
+    return krok::retarget::without_last_joints(moved->clip,
+                                               target_.skeleton.joint_count() - limbs_end_at_);
   }
 
   void prepare_retargeting() {
-    target_.skeleton = subject_.model.skeleton;
+    target_.skeleton = krok::retarget::with_limb_ends(subject_.model);
+    limbs_end_at_ = subject_.model.skeleton.joint_count();
     target_roles_ = find_roles(target_.skeleton);
     how_.target_floor = floor_below(subject_.model.positions, target_.skeleton, target_roles_);
     if (how_.target_floor) {
@@ -563,6 +566,7 @@ class Loader {
   UniqueNames names_;  // of the motions
   Clip target_;        // of --retarget: the mesh's skeleton, without frames
   RoleMap target_roles_;
+  int limbs_end_at_ = 0;  // joints of target_ from here on are not the mesh's
   krok::retarget::Options how_;
 };
 

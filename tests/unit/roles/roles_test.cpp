@@ -46,6 +46,7 @@ TEST(Roles, NamesAreSplitIntoWords) {
   EXPECT_EQ(name_tokens("mixamorig:LeftForeArm2"), (Words{"left", "fore", "arm", "2"}));
   EXPECT_EQ(name_tokens("CC_Base_L_Thigh"), (Words{"cc", "base", "l", "thigh"}));
   EXPECT_EQ(name_tokens("LThigh"), (Words{"l", "thigh"}));
+  EXPECT_EQ(name_tokens("Arm:Left:Upper"), (Words{"arm", "left", "upper"})) << "no namespace";
   EXPECT_EQ(name_tokens("toe1-1.R"), (Words{"toe", "1", "1", "r"}));
   EXPECT_EQ(name_tokens("LUArm"), (Words{"l", "u", "arm"}));
   EXPECT_EQ(name_tokens(""), Words{});
