@@ -345,6 +345,11 @@ TEST_F(KrokRetarget, FeetCanBeLeftFree) {
 TEST_F(KrokRetarget, AMapTellsWhatTheJointsAre) {
   Clip target;
   target.skeleton = nameless(walk_.skeleton);
+  // A skirt of many joints, so that its shape is not a person's.
+  const int hips = walk_.skeleton.find("Hips");
+  for (int i = 0; i < 20; ++i) {
+    target.skeleton.add("skirt" + std::to_string(i), hips, target.skeleton.reference[at(hips)]);
+  }
   write("target.anim", target);
   const auto without = retarget({"walk.anim", "--onto", "target.anim", "-o", "out.anim"});
   EXPECT_EQ(without.exit_code, 2);
