@@ -36,6 +36,12 @@ class ShapeFinder {
       const auto parent = at(skeleton.parents[j]);
       reach_[parent] = std::max(reach_[parent], reach_[j] + bone(static_cast<int>(j)));
     }
+    length_.resize(reach_.size());
+    for (std::size_t j = reach_.size(); j-- > 0;) {
+      if (skeleton.end_sites[j] != 0) continue;
+      const int next = main_child(static_cast<int>(j));
+      length_[j] = next < 0 ? 1 : length_[at(next)] + 1;
+    }
   }
 
   std::optional<std::vector<JointName>> find() const {
@@ -77,7 +83,6 @@ class ShapeFinder {
   }
 
   bool mirrored(const Chain& a, const Chain& b) const {
-    if (a.size() != b.size()) return false;
     for (std::size_t i = 0; i < a.size(); ++i) {
       const double longer = std::max(bone(a[i]), bone(b[i]));
       const double allowed = std::max(kSameBone * longer, 0.5 * kShortBone * reach_[at(a[0])]);
@@ -96,8 +101,10 @@ class ShapeFinder {
       for (std::size_t i = 0; i < below.size(); ++i) {
         for (std::size_t k = i + 1; k < below.size(); ++k) {
           const double reach = bone(below[i]) + reach_[at(below[i])];
+          const int length = length_[at(below[i])];
+          if (length < 3 || length > kMaxJoints || length != length_[at(below[k])]) continue;
           Chain a = chain_from(below[i]), b = chain_from(below[k]);
-          if (a.size() < 3 || reach <= best.reach || !mirrored(a, b)) continue;
+          if (reach <= best.reach || !mirrored(a, b)) continue;
           best = {joint, {std::move(a), std::move(b)}, reach};
         }
       }
@@ -255,10 +262,12 @@ class ShapeFinder {
   }
 
   static constexpr std::size_t kMaxChildren = 16, kMaxPairs = 8;
+  static constexpr int kMaxJoints = 64;  // of a limb
 
   const Skeleton& skeleton_;
   std::vector<std::vector<int>> children_;
   std::vector<double> reach_;  // [joints], length of the longest branch below
+  std::vector<int> length_;    // [joints], joints of chain_from()
 };
 
 }  // namespace

@@ -153,6 +153,12 @@ TEST(Roles, AVeryLongChainIsNoTrouble) {
   Skeleton skeleton;
   for (int j = 0; j < 100000; ++j) skeleton.add("LeftArm" + std::to_string(j), j - 1, {});
   EXPECT_FALSE(find_roles(skeleton).humanoid);
+  Skeleton comb;  // each joint of a chain has a twin
+  for (int j = 0; j < 100000; ++j) {
+    const int parent = j == 0 ? -1 : (j - 1) / 2 * 2;
+    comb.add("n" + std::to_string(j), parent, {Vec3(j % 2, j, 0), Quat::Identity()});
+  }
+  EXPECT_FALSE(find_roles(comb).humanoid);
 }
 
 // A person whose joints have no names that tell anything, y-up, facing +z, left at +x.
