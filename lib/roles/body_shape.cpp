@@ -46,15 +46,24 @@ class ShapeFinder {
 
   std::optional<std::vector<JointName>> find() const {
     const std::vector<Pair> pairs = mirrored_pairs();
+    std::optional<std::vector<JointName>> best;
+    double highest = -HUGE_VAL;
     for (const Pair& legs : pairs) {
       for (const Pair& arms : pairs) {
         if (legs.joint == arms.joint || on_limb(legs.joint, arms) || on_limb(arms.joint, legs)) {
           continue;
         }
-        if (auto names = name_actor(legs, arms)) return names;
+        // Arms reach to the sides from the trunk; tails of hair hang from a head.
+        const double score = distance(arm_of(arms.limbs[0])[2], arm_of(arms.limbs[1])[2]) -
+                             distance(legs.joint, arms.joint);
+        if (score <= highest) continue;
+        auto names = name_actor(legs, arms);
+        if (!names) continue;
+        highest = score;
+        best = std::move(names);
       }
     }
-    return std::nullopt;
+    return best;
   }
 
  private:
@@ -91,24 +100,22 @@ class ShapeFinder {
     return distance(a.back(), b.back()) > 0;
   }
 
-  // Of each joint the longest pair of at least three joints, the longest pair first.
+  // Of at least three joints, the longest pairs first.
   std::vector<Pair> mirrored_pairs() const {
     std::vector<Pair> pairs;
     for (int joint = 0; joint < skeleton_.joint_count(); ++joint) {
-      Pair best;
       const auto& below = children_[at(joint)];
       if (below.size() > kMaxChildren) continue;
       for (std::size_t i = 0; i < below.size(); ++i) {
         for (std::size_t k = i + 1; k < below.size(); ++k) {
-          const double reach = bone(below[i]) + reach_[at(below[i])];
           const int length = length_[at(below[i])];
           if (length < 3 || length > kMaxJoints || length != length_[at(below[k])]) continue;
           Chain a = chain_from(below[i]), b = chain_from(below[k]);
-          if (reach <= best.reach || !mirrored(a, b)) continue;
-          best = {joint, {std::move(a), std::move(b)}, reach};
+          if (!mirrored(a, b)) continue;
+          pairs.push_back(
+              {joint, {std::move(a), std::move(b)}, bone(below[i]) + reach_[at(below[i])]});
         }
       }
-      if (best.joint >= 0) pairs.push_back(std::move(best));
     }
     std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
     while (!pairs.empty() && pairs.back().reach < kShortestPair * pairs.front().reach) {
@@ -123,12 +130,6 @@ class ShapeFinder {
       if (joint == pair.limbs[0].front() || joint == pair.limbs[1].front()) return true;
     }
     return false;
-  }
-
-  // The last joint below `joint` on the longest branch.
-  int tip_of(int joint) const {
-    for (int below = main_child(joint); below >= 0; below = main_child(joint)) joint = below;
-    return joint;
   }
 
   // Of `chain` up to `last`, the upper and the middle joint that share the way to it evenly.
@@ -226,7 +227,10 @@ class ShapeFinder {
     int best = -1;
     for (const int child : children_[at(arms.joint)]) {
       if (is_end(child) || on_limb(child, arms)) continue;
-      if ((place(tip_of(child)) - place(arms.joint)).dot(up) <= 0) continue;
+      const bool rises = std::ranges::any_of(chain_from(child), [&](int joint) {
+        return (place(joint) - place(arms.joint)).dot(up) > 0;
+      });
+      if (!rises) continue;
       if (best < 0 || reach_[at(child)] > reach_[at(best)]) best = child;
     }
     return best;
@@ -261,7 +265,7 @@ class ShapeFinder {
     return toes.normalized();
   }
 
-  static constexpr std::size_t kMaxChildren = 16, kMaxPairs = 8;
+  static constexpr std::size_t kMaxChildren = 16, kMaxPairs = 16;
   static constexpr int kMaxJoints = 64;  // of a limb
 
   const Skeleton& skeleton_;

@@ -232,6 +232,35 @@ void strip_common_words(std::vector<Tokens>& names, bool at_end) {
   }
 }
 
+// Removes words in front that keep names from being read, however few names have them: of a body
+// among the joints of hair and clothes, whose names begin otherwise.
+void strip_words_before_parts(std::vector<Tokens>& names) {
+  constexpr std::size_t kMinNames = 4;
+  // Copies of a joint for constraints, beside those of the skeleton (Rigify of Blender).
+  constexpr std::array<std::string_view, 2> kCopies = {"mch", "org"};
+  const auto is_read = [](const Tokens& tokens) {
+    const Part part = read_name(tokens).part;
+    return part != Part::unknown && part != Part::helper;
+  };
+  const auto is_copy = [&](const std::string& word) {
+    return std::ranges::find(kCopies, word) != kCopies.end() || names_no_shape(word);
+  };
+  for (;;) {
+    std::map<std::string, std::size_t> counts;
+    for (const Tokens& tokens : names) {
+      if (tokens.size() < 2 || is_body_word(tokens[0]) || is_copy(tokens[0])) continue;
+      if (is_read(tokens) || !is_read(Tokens(tokens.begin() + 1, tokens.end()))) continue;
+      ++counts[tokens[0]];
+    }
+    const auto most =
+        std::ranges::max_element(counts, {}, [](const auto& entry) { return entry.second; });
+    if (most == counts.end() || most->second < kMinNames) return;
+    for (Tokens& tokens : names) {
+      if (tokens.size() > 1 && tokens[0] == most->first) tokens.erase(tokens.begin());
+    }
+  }
+}
+
 // For rigs that only number the joints of a limb ("leg_joint_L_1" to "leg_joint_L_5"): a chain of
 // at least three joints with `word`, if no joint of that side is named by one of `others`, is
 // assigned the parts of `limb` from its root on.
@@ -377,6 +406,7 @@ std::vector<JointName> read_joint_names(const Skeleton& skeleton) {
   }
   strip_common_words(tokens, false);
   strip_common_words(tokens, true);
+  strip_words_before_parts(tokens);
   std::vector<JointName> names(skeleton.names.size());
   std::vector<const Tokens*> tokens_of(skeleton.names.size(), nullptr);
   for (std::size_t i = 0; i < joints.size(); ++i) {

@@ -216,6 +216,51 @@ TEST(Roles, TheShapeFillsInWhereNamesAreKnownInPart) {
   EXPECT_EQ(contradicted.joint(Role::right_hand), whole.joint(Role::left_hand));
 }
 
+// A character of games: the body's joints have a prefix, most joints are of hair and clothes. If
+// this fails, forearms are taken for hands, for what hangs on them, or tails of hair for arms.
+TEST(Roles, HairAndClothesAreNoLimbs) {
+  const Skeleton actor = unnamed_actor(1.4);
+  const RoleMap bare = find_roles(actor);
+  Skeleton dressed = actor;
+  const auto hang = [&](Role role, const std::string& name, const Vec3& way, int count) {
+    int joint = bare.joint(role);
+    Vec3 place = actor.reference[static_cast<std::size_t>(joint)].position;
+    for (int i = 0; i < count; ++i) {
+      place += way;
+      joint = dressed.add(name + std::to_string(i), joint, {place, Quat::Identity()});
+    }
+  };
+  for (const bool left : {true, false}) {
+    const double side = left ? 1 : -1;
+    const std::string letter = left ? "L_" : "R_";
+    hang(Role::head, "J_" + letter + "Tail", {side * 0.04, -0.2, -0.02}, 6);
+    hang(left ? Role::left_lower_arm : Role::right_lower_arm, "J_" + letter + "Sleeve",
+         {0, -0.08, 0}, 2);
+    hang(Role::hips, "J_" + letter + "Skirt", {side * 0.02, -0.2, 0}, 4);
+  }
+  RoleMap by_shape = find_roles(dressed);
+  by_shape.roles.resize(bare.roles.size());
+  EXPECT_EQ(by_shape.roles, bare.roles) << table(dressed, by_shape);
+  for (const bool left : {true, false}) {
+    const ArmRoles& arm = kArmRoles[left ? 0 : 1];
+    const LegRoles& leg = kLegRoles[left ? 0 : 1];
+    const std::string side = left ? "Hero1_Left" : "Hero1_Right";
+    const auto rename = [&](Role role, const char* name) {
+      dressed.names[static_cast<std::size_t>(bare.joint(role))] = side + name;
+    };
+    rename(arm.upper, "Arm");
+    rename(arm.lower, "ForeArm");
+    rename(arm.hand, "Hand");
+    rename(leg.upper, "UpLeg");
+    rename(leg.lower, "Leg");
+    rename(leg.foot, "Foot");
+  }
+  const std::vector<JointName> names = read_joint_names(dressed);
+  const JointName& hand = names[static_cast<std::size_t>(bare.joint(Role::right_hand))];
+  EXPECT_EQ(hand.part, Part::hand);
+  EXPECT_EQ(hand.side, Side::right);
+}
+
 // An animal on four legs has its "hands" on the ground: sides are not guessed there.
 TEST(Roles, AnUnnamedActorWithItsHandsOnTheGroundIsLeftAlone) {
   EXPECT_FALSE(find_roles(unnamed_actor(0.1)).humanoid);
