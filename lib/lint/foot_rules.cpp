@@ -27,6 +27,8 @@ constexpr double kStepSpeed = 0.1;        // metres per second, added to it
 constexpr double kResting = 0.045;        // metres per second; slower is rest
 constexpr double kCreeping = 0.2;         // metres per second; faster is a slide or a step
 constexpr double kCreepTime = 1;          // seconds
+constexpr double kStayTime = 2;           // seconds
+constexpr double kSoftTip = 0.5;          // of the threshold, that tips of toes may be deeper
 constexpr double kMinCreep = 1.35;        // times the threshold of foot-slide
 constexpr double kTogether = 0.35;        // difference of two feet's velocities over their size
 constexpr double kStanding = 0.45;        // of the legs' length, of hips over a foot that carries
@@ -342,6 +344,8 @@ void find_creep(const Series& series, const Soles& soles, std::vector<Finding>& 
 
 // How far a foot moves in one contact.
 void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& found) {
+  const double limit = series.threshold(Rule::foot_slide) * series.scale;
+  const int window = series.frames_in(kStayTime, 3);
   for (const Stay& stay : soles.found.stays) {
     const PointTrack& track = soles.found.tracks[at(stay.track)];
     if (track.point.part == FootPart::tip) continue;
@@ -352,25 +356,35 @@ void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& 
     const int last = std::min(series.frames - 1,
                               static_cast<int>(std::floor((stay.end - margin) * series.rate)));
     if (last - first < 3 || !stands(series, soles, stay.track, (first + last) / 2)) continue;
-    const auto level_way = [&](const std::vector<Vec3>& of) -> Vec3 {
-      const Vec3 way = of[at(last)] - of[at(first)];
-      return {way.x(), 0, way.z()};
+    const auto moved_between = [&](int from, int to) {
+      const auto level_way = [&](const std::vector<Vec3>& of) -> Vec3 {
+        const Vec3 way = of[at(to)] - of[at(from)];
+        return {way.x(), 0, way.z()};
+      };
+      const Vec3 way = level_way(places);
+      Vec3 moved = way;
+      for (std::size_t t = 0; t < soles.places.size(); ++t) {
+        if (soles.found.tracks[t].point.side != track.point.side) continue;
+        const Vec3 turning = shortest_between(way, level_way(soles.places[t]));
+        if (turning.squaredNorm() < moved.squaredNorm()) moved = turning;
+      }
+      const auto& ankle = soles.ankles[soles.side(stay.track)];
+      return (ankle.empty() ? moved : shortest_between(moved, level_way(ankle))).norm();
     };
-    const Vec3 way = level_way(places);
-    Vec3 moved = way;
-    for (std::size_t t = 0; t < soles.places.size(); ++t) {
-      if (soles.found.tracks[t].point.side != track.point.side) continue;
-      const Vec3 turning = shortest_between(way, level_way(soles.places[t]));
-      if (turning.squaredNorm() < moved.squaredNorm()) moved = turning;
+    double moved = moved_between(first, last);
+    if (moved > limit && last - first > window) {  // what takes longer is not seen
+      double fastest = 0;
+      for (int f = first; f + window <= last; ++f) {
+        fastest = std::max(fastest, moved_between(f, f + window));
+      }
+      moved = std::min(moved, fastest);
     }
-    const auto& ankle = soles.ankles[soles.side(stay.track)];
-    if (!ankle.empty()) moved = shortest_between(moved, level_way(ankle));
     Finding finding;
     finding.rule = Rule::foot_slide;
     finding.joint = track.point.joint;
     finding.first = first, finding.last = last, finding.worst = (first + last) / 2;
-    finding.value = moved.norm();
-    finding.threshold = series.threshold(Rule::foot_slide) * series.scale, finding.unit = "m";
+    finding.value = moved;
+    finding.threshold = limit, finding.unit = "m";
     finding.detail =
         fmt::format("{} {} in one contact", name_of(track.point.side), name_of(track.point.part));
     if (finding.value > finding.threshold) found.push_back(finding);
@@ -419,6 +433,7 @@ class GroundRule {
       const Level own = series.options.ground ? Level() : level_of(soles, t);
       longest_ = std::max(longest_, own.seconds);
       lower_.push_back(own.known ? std::clamp(level_.height - own.height, 0.0, limit_) : 0);
+      if (soles.found.tracks[at(t)].point.part == FootPart::tip) lower_.back() += kSoftTip * limit_;
     }
     for (const Stay& stay : soles.found.stays) {
       const std::size_t side = soles.side(stay.track);
@@ -561,7 +576,7 @@ class GroundRule {
   double limit_ = 0;
   bool marked_ = false;  // joints mark points of the soles; what is estimated sinks nowhere then
   // [tracks], metres below the level that a point stands: the height of ankles and balls over the
-  // sole is not known.
+  // sole is not known, and toes of many skeletons do not bend where heels rise.
   std::vector<double> lower_;
   // [FootSide], of the lowest contact of a foot without marked points.
   std::array<double, 2> ankle_levels_ = {INFINITY, INFINITY};

@@ -75,10 +75,16 @@ std::vector<Swing> swings_of(const Series& series, Role role) {
   for (int f = 1; f + 1 < series.frames; ++f) {
     speeds[at(f)] = 0.5 * (place(f + 1) - place(f - 1)).norm();
   }
+  // Of the frames in which it moves, as takes may stand for most of their time.
   std::vector<double> sorted = speeds;
-  const auto high = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 95 / 100);
-  std::ranges::nth_element(sorted, high);
-  const double limit = kSwingSpeed * *high;
+  const auto high_of = [&](std::size_t percent) {
+    const auto high = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * percent / 100);
+    std::ranges::nth_element(sorted, high);
+    return *high;
+  };
+  const double usual = high_of(95);
+  std::erase_if(sorted, [&](double speed) { return speed < 0.1 * usual; });
+  const double limit = kSwingSpeed * high_of(91);
   int first = -1;
   for (int f = 1; f < series.frames; ++f) {
     const bool fast = speeds[at(f)] > limit;

@@ -25,7 +25,7 @@ constexpr std::array<RuleFacts, kRuleCount> kRules = {{
      "The whole body is carried off while the feet stand"},
     {Rule::ground, "ground", kWarning, 0.06, "m", "Feet sink into the ground or float above it"},
     {Rule::bone_length, "bone-length", kError, 2, "%", "A bone changes its length"},
-    {Rule::joint_limit, "joint-limit", kWarning, 15, "deg", "A knee bends forwards"},
+    {Rule::joint_limit, "joint-limit", kWarning, 20, "deg", "A knee bends forwards"},
     {Rule::loop_seam, "loop-seam", kWarning, 3, "deg",
      "The last pose of a loop does not lead to the first"},
     {Rule::rest_frame, "rest-frame", kWarning, 0, "", "The first frame is a rest pose"},

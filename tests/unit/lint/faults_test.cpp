@@ -620,6 +620,46 @@ TEST(LintFaults, LowStepsAreNoSlides) {
   }
 }
 
+// Would fail if feet that settle by 6 cm within eight seconds, which nobody sees, slid.
+TEST(LintFaults, FeetSettleSlowly) {
+  for (const double duration : {1.5, 8.0}) {
+    const Clip clip = stander(0, [&](double seconds) {
+      return std::pair(Vec3(0.06 * std::min(1.0, seconds / duration), 0, 0), 0.0);
+    });
+    EXPECT_EQ(slides(clip), duration < 2) << duration;
+  }
+}
+
+// Would fail if tips of toes, which many skeletons do not bend, sank as soon as feet do.
+TEST(LintFaults, TipsOfToesSinkDeeper) {
+  for (const double depth : {0.09, 0.13}) {
+    Clip clip = stander(0, [](double) { return std::pair(Vec3(Vec3::Zero()), 0.0); });
+    const int toes = clip.skeleton.find("RightToeBase");
+    const auto tip = std::ranges::find(clip.skeleton.parents, toes);
+    ASSERT_NE(tip, clip.skeleton.parents.end());
+    for (int f = 0; f < 5; ++f) {
+      clip.frame_positions(kAt + f)[at(static_cast<int>(tip - clip.skeleton.parents.begin()))]
+          .y() -= static_cast<float>(depth);
+    }
+    EXPECT_EQ(find(faults_of(clip), Rule::ground, kAt) != nullptr, depth > 0.1) << depth;
+  }
+}
+
+// Would fail if the fastest speed of feet were that of all frames, of a take that ends long after
+// its steps: their swings looked slow.
+TEST(LintFaults, StandingLongDoesNotSlowSwings) {
+  const Clip walk = usual_walk();
+  Clip clip = walk;
+  clip.resize(6 * walk.frame_count());
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const int from = std::min(f, walk.frame_count() - 1);
+    std::ranges::copy(walk.frame_positions(from), clip.frame_positions(f).begin());
+    std::ranges::copy(walk.frame_orientations(from), clip.frame_orientations(f).begin());
+  }
+  clip.rate /= 1.6;
+  EXPECT_EQ(find(faults_of(clip), Rule::frame_rate, 0), nullptr) << listed(clip, faults_of(clip));
+}
+
 // Would fail if the way of heels and toes, which hang on the ankle where no joint marks them, were
 // taken for that of the foot: it tilts by 35 degrees here, as one that a sensor on it shows.
 TEST(LintFaults, FeetWithoutToesStandWhereTheirAnklesDo) {
