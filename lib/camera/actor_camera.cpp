@@ -12,6 +12,7 @@
 #include "camera/spring.h"
 #include "core/index.h"
 #include "motion/ground_frame.h"
+#include "roles/body_frame.h"
 
 namespace krok {
 
@@ -82,7 +83,7 @@ class Shooting {
         wanted_(ImageExtent::of(camera.field_of_view, camera.aspect, camera.margin)),
         edges_(ImageExtent::of(camera.field_of_view, camera.aspect, 0)) {
     find_ground(foot_joints(clip.skeleton, roles));
-    find_azimuths(carrying_joint(roles));
+    find_azimuths(carrying_joint(roles), front_of(clip.skeleton, roles));
   }
 
   Result<ActorShot> shoot() {
@@ -111,17 +112,17 @@ class Shooting {
     }
   }
 
-  void find_azimuths(int carrier) {
-    double start = 0;
-    if (camera_.azimuth_from != AzimuthFrom::world) {
-      start = ground_frame(clip_, carrier, 0).heading;
-    }
+  void find_azimuths(int carrier, double front) {
+    const auto heading = [&](int frame) {
+      return front + ground_frame(clip_, carrier, frame).heading;
+    };
+    const double start = camera_.azimuth_from != AzimuthFrom::world ? heading(0) : 0;
     // As the x of vectors, to use the same smoothing as for the path.
     std::vector<Vec3> headings(at(frames_), Vec3(start, 0, 0));
     if (camera_.azimuth_from == AzimuthFrom::actor) {
       for (int f = 1; f < frames_; ++f) {
         const double before = headings[at(f - 1)].x();
-        headings[at(f)].x() = before + wrapped(ground_frame(clip_, carrier, f).heading - before);
+        headings[at(f)].x() = before + wrapped(heading(f) - before);
       }
       smooth_turning(headings);
     }

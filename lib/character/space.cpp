@@ -71,6 +71,10 @@ Conventions find_conventions(const nodes::Space& space, const Rig* rig, const Ro
   const bool up_from_file = space.up_is_y && !given.up && !space.file_to_krok;
   if (up_from_file) known.up = Direction::plus_y;
   apply_given(known, found);
+  if (given.forward && rig != nullptr &&
+      detect_conventions(rig->skeleton, roles, samples).forward == *given.forward) {
+    found.forward_doubt.clear();  // the file's axes are certain, but its body faces that way
+  }
   if (up_from_file) {
     found.up_reason = kFromFile;
     found.up_doubt.clear();

@@ -66,6 +66,13 @@ Quat body_frame(const Skeleton& skeleton, const RoleMap& roles) {
   return axes ? along_axes(frame_of(axes->left, axes->up)) : Quat::Identity();
 }
 
+double front_of(const Skeleton& skeleton, const RoleMap& roles) {
+  const Quat frame = body_frame(skeleton, roles);
+  if ((frame * Vec3::UnitY()).y() < 0.7) return 0;
+  const Vec3 ahead = frame * Vec3::UnitZ();
+  return std::atan2(ahead.x(), ahead.z());
+}
+
 std::optional<double> heading_of(const RoleMap& roles, std::span<const Transform> joints) {
   constexpr double kLevel = 0.3;  // of the direction ahead; else it is of a body that lies
   const auto axes =

@@ -15,6 +15,11 @@ namespace krok {
 // identity where the roles are not known or the body has no width or height.
 Quat body_frame(const Skeleton& skeleton, const RoleMap& roles);
 
+// Where the body faces in the reference pose, radians about +Y as a heading: 0, but for rigs that
+// keep another facing than their file format's (VRM 0: half a turn). 0 for a body that lies. What
+// ground_frame() calls a heading (motion/ground_frame.h) is relative to this.
+double front_of(const Skeleton& skeleton, const RoleMap& roles);
+
 // The heading of a body whose joints are at these places, by the same joints: radians about +Y, 0
 // is +Z and pi/2 is +X. Nothing where the roles are not known, or for a body that lies on its back
 // or belly.

@@ -49,7 +49,8 @@ class ClipPair {
         second_(second),
         first_style_(bone_style(first.skeleton)),
         second_style_(bone_style(second.skeleton)),
-        carrier_(carrying_joint(find_roles(first.skeleton))) {
+        carrier_(carrying_joint(find_roles(first.skeleton))),
+        front_(front_of(first.skeleton, find_roles(first.skeleton))) {
     const auto skeletons = compare::match_skeletons(first.skeleton, second.skeleton);
     first_of_second_.assign(second.skeleton.names.size(), -1);
     for (std::size_t j = 0; j < skeletons.second_of_first.size(); ++j) {
@@ -67,7 +68,8 @@ class ClipPair {
   const std::vector<std::pair<int, int>>& frames() const { return frames_; }
 
   double heading(int frame) const {
-    return first_.frame_count() > 0 ? ground_frame(first_, carrier_, frame).heading : 0.0;
+    return front_ +
+           (first_.frame_count() > 0 ? ground_frame(first_, carrier_, frame).heading : 0.0);
   }
 
   Compared at(const ImageMoment& moment, const ColourKey& key) const {
@@ -117,6 +119,7 @@ class ClipPair {
   const Clip& second_;
   BoneStyle first_style_, second_style_;
   int carrier_ = 0;
+  double front_ = 0;
   bool corresponds_ = false;
   std::vector<int> first_of_second_;
   std::vector<std::pair<int, int>> frames_;

@@ -12,6 +12,7 @@
 #include "motion/ground_frame.h"
 #include "motion/place.h"
 #include "motion/travel.h"
+#include "roles/body_frame.h"
 #include "roles/stature.h"
 #include "scene/frame_blocks.h"
 #include "settle/settle.h"
@@ -21,11 +22,11 @@ namespace krok::cli::edit {
 
 namespace {
 
-// The mean facing of a joint, radians.
-double facing_of(const Clip& clip, int joint) {
+// The mean facing of a joint, radians; `front`: that of the reference pose.
+double facing_of(const Clip& clip, int joint, double front) {
   Vec2 facing = Vec2::Zero();
   for (int f = 0; f < clip.frame_count(); ++f) {
-    const double heading = ground_frame(clip, joint, f).heading;
+    const double heading = front + ground_frame(clip, joint, f).heading;
     facing += Vec2(std::sin(heading), std::cos(heading));
   }
   return std::atan2(facing.x(), facing.y());
@@ -37,12 +38,13 @@ double facing_of(const Clip& clip, int joint) {
 double forward(const Edit& edit) {
   constexpr double kAlong = 55 * kRadiansPerDegree;
   constexpr double kWalks = 0.1;  // metres per second
+  const double front = front_of(edit.clip.skeleton, edit.roles);
   std::vector<double> facings;
   for (const Role role : {Role::head, Role::chest}) {
     const int joint = edit.roles.joint(role);
-    if (joint >= 0) facings.push_back(facing_of(edit.clip, joint));
+    if (joint >= 0) facings.push_back(facing_of(edit.clip, joint, front));
   }
-  if (facings.empty()) facings.push_back(facing_of(edit.clip, edit.carrier));
+  if (facings.empty()) facings.push_back(facing_of(edit.clip, edit.carrier, front));
   const auto& removed = edit.clip.provenance.removed_root_motion;
   const Vec3 velocity = removed ? removed->velocity : Vec3::Zero();
   if (std::hypot(velocity.x(), velocity.z()) < kWalks) return facings.front();
@@ -227,7 +229,7 @@ Status change_place(const Options& options, ToolContext& context, Edit& edit) {
   }
   if (options.heading || options.re_orient) {
     const double heading = options.heading.value_or(0);
-    apply(facing_at_start(clip, edit.carrier, heading),
+    apply(facing_at_start(clip, edit.carrier, heading - front_of(clip.skeleton, edit.roles)),
           fmt::format("starts facing {} deg", degrees(heading)));
   }
   if (options.turn != 0) {

@@ -43,7 +43,7 @@ struct Drawn {
   int carrier = 0;        // joint
   double frame_rate = 0;  // of an actor's motion: drawn at its frames, not in between
   int frame_count = 0;
-  // Of a file's scene: where its body faces in the pose without animation, which may be any.
+  // Where its body faces in the reference pose; of a file's scene that without animation, any.
   double front = 0;
   bool in_floats = false;  // what is followed is in the floats that are drawn
 
@@ -155,7 +155,9 @@ void Read::draw(One one, SkinMethod method, bool bones) {
                              readable(clip.rate, 4));
       }
     }
-    drawn.carrier = carrying_joint(find_roles(drawn.skeleton));
+    const RoleMap roles = find_roles(drawn.skeleton);
+    drawn.carrier = carrying_joint(roles);
+    drawn.front = front_of(drawn.skeleton, roles);
     MovingActor made = moving(one.places[i].path, std::move(drawn));
     made.facts = std::move(facts);
     actors.emplace(one.places[i].index, std::move(made));

@@ -68,6 +68,35 @@ class GameLoop : public MotionTest {
   }
 };
 
+// Rigs whose reference pose faces away, as those of VRM 0. If this fails, headings, loops, cameras
+// and pictures of what is moved onto them are turned by half.
+TEST_F(GameLoop, AReferencePoseThatFacesAwayChangesNoHeading) {
+  walk("walk.anim", 1.1);
+  Clip clip = read("walk.anim");
+  for (Transform& joint : clip.skeleton.reference) {
+    joint = Transform{Vec3::Zero(), axis_rotation(Axis::y, kPi)} * joint;
+  }
+  write("away.anim", clip);
+  for (const std::string name : {"walk.anim", "away.anim"}) {
+    loop(name);
+    const Vec3 velocity = read("out.anim").provenance.removed_root_motion->velocity;
+    EXPECT_GT(velocity.z(), 0.5) << name;
+    EXPECT_NEAR(velocity.x(), 0, 0.05) << name;
+    ASSERT_EQ(run_here("krok-edit", {name, "--heading", "90deg", "-o", "east.anim"}).exit_code, 0);
+    const Clip east = read("east.anim");
+    const Vec3 way = at(east, east.frame_count() - 1, "Hips") - at(east, 0, "Hips");
+    EXPECT_GT(way.x(), 2) << name;
+    EXPECT_NEAR(way.z(), 0, 1) << name << ": the pelvis is turned by its stance";
+    const ToolRun shot =
+        run_here("krok-cam", {name, "--follow", "Hips", "--view", "front", "-o", "front.cam"});
+    ASSERT_EQ(shot.exit_code, 0) << shot.err;
+    std::filesystem::copy_file(path("front.cam"), path(name + ".cam"));
+  }
+  const ToolRun same =
+      run_here("krok-diff", {"walk.anim.cam", "away.anim.cam", "--tolerance", "0.1mm"});
+  EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+}
+
 TEST_F(GameLoop, MovedAtTheStoredVelocityFeetStay) {
   walk("walk.anim", 1.1);
   const json steps = loop("walk.anim");
