@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "character/mesh.h"
+#include "character/motion.h"
 #include "character/scene_motion.h"
 #include "core/index.h"
 #include "core/numbers.h"
@@ -133,6 +135,9 @@ std::vector<int> moving(const nodes::Scene& scene, std::span<const int> joints) 
   return animations;
 }
 
+// Metres between a motion and its file's curves that are warned of.
+constexpr double kLost = 1e-3;
+
 // The parts of a scene that are asked for; adds to `found` what is to be reported.
 Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Inputs& inputs,
                        const ActorOptions& options, Diagnostics& found) {
@@ -186,6 +191,8 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
     actor.model.skeleton = *std::move(skeleton);
   }
   if (!options.with_motions) return actor;
+  character::SamplingError lost;
+  std::string lost_by;
   for (const int one : animations) {
     const auto sampling = character::choose_sampling(scene.animations[at(one)], {}, found);
     if (!sampling) return sampling.error();
@@ -204,8 +211,25 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
                                        inputs.jobs, inputs.progress, found,
                                        options.with_stretches ? &motion.stretches : nullptr);
     if (!clip) return clip.error();
+    const auto error =
+        character::sampling_error(*evaluator, *rig, place->conversion, scene.animations[at(one)],
+                                  one, sampling->sampling, HUGE_VAL, inputs.jobs);
+    if (error.largest > lost.largest) {
+      lost = error;
+      lost_by = animation_name(scene, at(one));
+    }
     motion.name = animation_name(scene, at(one));
     motion.clip = *std::move(clip);
+  }
+  if (lost.largest > kLost) {
+    found.push_back(make_warning(
+        "scene-sampling",
+        fmt::format("{}: between frames joints are up to {} mm from the file's curves ({} at {} s)"
+                    "{}",
+                    shown(lost_by), readable(1e3 * lost.largest, 3),
+                    shown(rig->skeleton.names[at(lost.joint)]), readable(lost.time, 4),
+                    lost.jumps ? "; keys that step become ramps of one frame" : ""),
+        "krok-import --rate N keeps more of them", path));
   }
   return actor;
 }

@@ -49,6 +49,23 @@ class SceneImportTest : public CliTest {
   }
 };
 
+// If this fails, tools that read a file's motion lose its steps without a word.
+TEST_F(SceneImportTest, StepsThatBecomeRampsAreWarnedOf) {
+  for (const bool steps : {false, true}) {
+    GlbBuilder builder = rig();
+    builder.json["animations"][0]["channels"][0]["target"]["node"] = 1;  // which carries the tip
+    if (steps) {
+      for (Json& sampler : builder.json["animations"][0]["samplers"]) {
+        sampler["interpolation"] = "STEP";
+      }
+    }
+    put_glb("in.glb", builder);
+    const ToolRun run = run_tool("krok-export", {path("in.glb"), "-o", path("a.csv")});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(has_code(run.err, "scene-sampling"), steps) << run.err;
+  }
+}
+
 // Viewers hold the first key until its time; the motion came back half a second early.
 TEST_F(SceneImportTest, AFirstKeyThatIsNotAtZeroStaysWhereItIs) {
   GlbBuilder builder = rig();
