@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <string>
@@ -97,29 +98,44 @@ Status write(const MorphWeights& weights, OutputFile& file) {
   return file.write(text);
 }
 
+Status SeriesTable::for_each_row(
+    const std::function<Status(int frame, std::span<const float> row)>& use) const {
+  constexpr int kFrames = 4096;
+  for (int first = 0; first < frames; first += kFrames) {
+    const int count = std::min(kFrames, frames - first);
+    const auto block = values(first, count);
+    if (!block) return block.error();
+    assert(block->size() == static_cast<std::size_t>(count) * columns());
+    std::span<const float> rest = *block;
+    for (int f = 0; f < count; ++f, rest = rest.subspan(columns())) {
+      if (Status status = use(first + f, rest.first(columns())); !status) return status;
+    }
+  }
+  return {};
+}
+
 Status write_long(const SeriesTable& table, const FileColumn& motion, OutputFile& file) {
-  assert(table.values.size() == static_cast<std::size_t>(table.frames) * table.columns());
   std::vector<std::string> names;
   for (const std::string& item : table.items) names.push_back(field(item));
   std::string columns = "frame,time," + field(table.item_name);
   for (const std::string& quantity : table.quantities) (columns += ',') += field(quantity);
   std::string text = header_of(motion, columns);
   const std::string row = start_of_row(motion);
-  const float* value = table.values.data();
-  for (int frame = 0; frame < table.frames; ++frame) {
+  const auto add = [&](int frame, std::span<const float> values) {
     const std::string start = fmt::format("{}{},{},", row, frame, shortest(frame / table.rate));
+    const float* value = values.data();
     for (const std::string& name : names) {
       text += start + name;
       for (std::size_t q = 0; q < table.quantities.size(); ++q) add_value(*value++, text);
       text += '\n';
     }
-    if (Status status = flush_long_text(text, file); !status) return status;
-  }
+    return flush_long_text(text, file);
+  };
+  if (Status status = table.for_each_row(add); !status) return status;
   return file.write(text);
 }
 
 Status write_wide(const SeriesTable& table, const FileColumn& motion, OutputFile& file) {
-  assert(table.values.size() == static_cast<std::size_t>(table.frames) * table.columns());
   std::string columns = "frame,time";
   for (const std::string& item : table.items) {
     for (const std::string& quantity : table.quantities) {
@@ -129,13 +145,13 @@ Status write_wide(const SeriesTable& table, const FileColumn& motion, OutputFile
   }
   std::string text = header_of(motion, columns);
   const std::string row = start_of_row(motion);
-  const float* value = table.values.data();
-  for (int frame = 0; frame < table.frames; ++frame) {
+  const auto add = [&](int frame, std::span<const float> values) {
     text += fmt::format("{}{},{}", row, frame, shortest(frame / table.rate));
-    for (std::size_t c = 0; c < table.columns(); ++c) add_value(*value++, text);
+    for (const float value : values) add_value(value, text);
     text += '\n';
-    if (Status status = flush_long_text(text, file); !status) return status;
-  }
+    return flush_long_text(text, file);
+  };
+  if (Status status = table.for_each_row(add); !status) return status;
   return file.write(text);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -49,10 +50,14 @@ struct SeriesTable {
   std::string item_name;                // header of the items' column: "joint"
   std::vector<std::string> items;       // "LeftFoot"
   std::vector<std::string> quantities;  // at least one: "x", "y", "z"
-  // [frames x items x quantities]; NaN where there is no value.
-  std::vector<float> values;
+  // Gives the frames [first, first + count), [count x items x quantities]; NaN where there is no
+  // value. Called in order, once for each frame.
+  std::function<Result<std::vector<float>>(int first, int count)> values;
 
   std::size_t columns() const { return items.size() * quantities.size(); }
+  // Passes the rows of all frames to `use`, in order. Errors are those of both.
+  Status for_each_row(
+      const std::function<Status(int frame, std::span<const float> row)>& use) const;
 };
 
 // Both append to `file`; the caller commits. Time is frame / rate in seconds. Numbers have the

@@ -46,7 +46,7 @@ Status take_skeleton(const std::string& name, Inputs& inputs, npy::ReadOptions& 
 }  // namespace
 
 Result<OpenedCapture> open_arrays(const InputFile& file, Inputs& inputs,
-                                  const CaptureReading& reading, bool /*stream*/) {
+                                  const CaptureReading& reading, bool stream) {
   if (Status status = check_bvh_choices(reading); !status) return status.error();
   if (reading.rest_frame != RestFrame::keep) {
     return Error("usage", "--skip-rest-frame is for BVH and AMC");
@@ -58,6 +58,18 @@ Result<OpenedCapture> open_arrays(const InputFile& file, Inputs& inputs,
   if (!reading.skeleton.empty()) {
     Status status = take_skeleton(reading.skeleton, inputs, options, skeleton);
     if (!status) return status.error();
+  }
+  constexpr std::size_t kLongTransforms = std::size_t{1} << 19;
+  if (stream) {
+    if (auto found = npy::open(file.bytes(), file.path(), options, kLongTransforms)) {
+      OpenedCapture opened;
+      opened.streamed = true;
+      opened.details.motions = static_cast<int>(found->motions);
+      auto capture = std::make_shared<npy::OpenedCapture>(*std::move(found));
+      opened.frames = capture->frames;
+      opened.capture = std::move(capture);
+      return opened;
+    }
   }
   auto read = npy::read(file.bytes(), file.path(), options);
   if (!read) return std::move(read).error();

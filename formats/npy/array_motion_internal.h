@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -56,7 +58,10 @@ void pose_frames(const std::vector<Quat>& rotations, const std::vector<Vec3>& ro
                  ArrayMotion& motion);
 
 // Contacts of joints, as krok-export writes them, or of Kimodo's feet.
-Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion);
+// `place`: of a joint in a frame, as the array has it; `column`: the contact's.
+using PlaceOf = std::function<Vec3(std::size_t frame, std::size_t column, int joint)>;
+Status add_contacts(const ArrayFile& file, double rate, std::size_t frames, const PlaceOf& place,
+                    ArrayMotion& motion);
 
 // Positions, [frames x joints x 3] or [motions x frames x joints x 3], of an array; of the only one
 // for an empty name. Codes npy-shape, npy-skeleton, npy-value.
@@ -66,6 +71,25 @@ Result<ArrayMotion> motion_of_positions(const ArrayFile& file, const std::string
 Result<ArrayMotion> motion_of_rotations(const ArrayFile& file, const std::string& positions,
                                         const std::string& rotations, bool global);
 Result<ArrayMotion> read_smpl(const ArrayFile& file);
-Result<ArrayMotion> read_krok(const ArrayFile& file);
+
+// Null unless it is of length 1, within 1e-3.
+std::optional<Quat> unit_quaternion(const Vec4& values);
+
+// The frames of arrays as krok-export writes them, unpacked as they are read.
+struct PackedFrames {
+  std::size_t count = 0, joints = 0;
+  // [count x contacts] of add_contacts().
+  std::vector<Vec3f> contact_places;
+  // Gives frames as the arrays have them, by one thread at a time.
+  std::function<Status(std::size_t first, std::span<Vec3f> positions,
+                       std::span<Quatf> orientations)>
+      read;
+};
+
+// Of `frames`, if set, as many as the axes are found from. Fails then for an array that is not as
+// krok-export writes it, too.
+constexpr std::size_t kMaxSamples = 200;
+std::size_t sampled_frame(std::size_t sample, std::size_t frames);
+Result<ArrayMotion> read_krok(const ArrayFile& file, PackedFrames* frames = nullptr);
 
 }  // namespace krok::npy

@@ -16,6 +16,7 @@
 #include "motion/ground_frame.h"
 #include "motion/place.h"
 #include "positions/from_positions.h"
+#include "scene/frame_blocks.h"
 #include "scene/frame_moment.h"
 #include "scene/skeleton.h"
 
@@ -27,7 +28,6 @@ constexpr double kFarOff = 0.02;     // metres, of joints with bones of constant
 constexpr double kNotNoise = 0.002;  // metres, where the places are free of noise
 
 constexpr double kDeep = 0.3;  // metres: deeper than a step goes
-constexpr std::size_t kMaxSamples = 200;
 
 constexpr std::initializer_list<const char*> kPositionNames = {
     "posed_joints", "positions", "joints", "joints3d", "joints_3d", "joint_positions",
@@ -100,11 +100,13 @@ void take_lengths(ArrayMotion& motion) {
 
 class Reader {
  public:
-  explicit Reader(const ArrayFile& file) : file_(file), options_(file.options) {}
+  // With `packed`, the frames of arrays as krok-export writes them stay packed.
+  explicit Reader(const ArrayFile& file, PackedFrames* packed = nullptr)
+      : file_(file), options_(file.options), packed_(packed) {}
 
   Result<Capture> read() {
     if (Status status = check_rate(options_.rate, "npy-rate"); !status) return status.error();
-    auto motion = motion_of(file_);
+    auto motion = packed_ != nullptr ? read_krok(file_, packed_) : motion_of(file_);
     if (!motion) return motion.error();
     motion_ = *std::move(motion);
     capture_.diagnostics = std::move(motion_.diagnostics);
@@ -114,9 +116,7 @@ class Reader {
       return Error("npy-limit", "the array has too many joints");
     }
     if (Status status = choose_rate(); !status) return status.error();
-    if (Status status = add_contacts(file_, capture_.clip.rate, motion_); !status) {
-      return status.error();
-    }
+    if (Status status = find_contacts(); !status) return status.error();
     if (!capture_.has_rotations) take_lengths(motion_);
     if (options_.roles) {
       auto roles = options_.roles(motion_.skeleton);
@@ -139,10 +139,56 @@ class Reader {
     return std::move(capture_);
   }
 
+  // The frames of the clip from those that are packed, as convert() and fill_clip() make them.
+  FrameSource unpacked(const Clip& clip) const {
+    FrameSource source;
+    source.skeleton = clip.skeleton;
+    source.rate = clip.rate;
+    source.frame_count = static_cast<int>(packed_->count);
+    source.read = [read = packed_->read](int first, int, auto... block) {
+      return read(at(first), block...);
+    };
+    constexpr int kFrames = 4096;
+    return changed_in_blocks(
+        source, {kFrames, 0}, 1, [conversion = conversion_, axes = axes_](FrameRun& run) -> Status {
+          for (Vec3f& place : run.clip.positions) {
+            const Vec3 converted = axes * place.cast<double>();
+            if (!is_near(converted)) return Error("npy-value", "a joint is over 1e9 m away");
+            place = converted.cast<float>();
+          }
+          for (Quatf& turn : run.clip.orientations) {
+            const auto read = unit_quaternion(turn.coeffs().cast<double>());
+            if (!read) return Error("npy-rotation", "a quaternion is not of length 1");
+            turn = conversion.pose({Vec3::Zero(), *read}).orientation.normalized().cast<float>();
+          }
+          return {};
+        });
+  }
+
  private:
   void report(Severity severity, std::string code, std::string message, std::string hint = {}) {
     capture_.diagnostics.push_back(
         make_diagnostic(severity, std::move(code), std::move(message), std::move(hint)));
+  }
+
+  Status find_contacts() {
+    const std::size_t joints = motion_.skeleton.names.size();
+    if (packed_ == nullptr) {
+      return add_contacts(
+          file_, capture_.clip.rate, motion_.positions.size() / joints,
+          [&](std::size_t frame, std::size_t, int joint) {
+            return motion_.positions[frame * joints + at(joint)];
+          },
+          motion_);
+    }
+    const std::vector<Vec3f> places = std::exchange(packed_->contact_places, {});
+    const std::size_t columns = places.size() / std::max<std::size_t>(packed_->count, 1);
+    return add_contacts(
+        file_, capture_.clip.rate, packed_->count,
+        [&](std::size_t frame, std::size_t column, int) {
+          return Vec3(places[frame * columns + column].cast<double>());
+        },
+        motion_);
   }
 
   Status choose_rate() {
@@ -204,7 +250,7 @@ class Reader {
     std::vector<Vec3> samples;
     const std::size_t count = std::min(frames, kMaxSamples);
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t f = count < 2 ? 0 : i * (frames - 1) / (count - 1);
+      const std::size_t f = sampled_frame(i, frames);
       samples.insert(samples.end(), &motion_.positions[f * joints],
                      &motion_.positions[f * joints] + joints);
     }
@@ -223,9 +269,10 @@ class Reader {
     report_conventions(conventions, options_, "npy", file_.name, capture_.diagnostics);
     const auto conversion = Conversion::make(conventions);
     if (!conversion) return conversion.error();
+    conversion_ = *conversion;
     capture_.clip.provenance.conversions = describe_conversions(conventions, options_);
     for (Transform& joint : motion_.skeleton.reference) joint = conversion->reference(joint);
-    Mat3 axes;
+    Mat3& axes = axes_;
     for (int i = 0; i < 3; ++i) {
       axes.col(i) = conversion->pose({Vec3::Unit(i), Quat::Identity()}).position;
     }
@@ -355,7 +402,10 @@ class Reader {
 
   const ArrayFile& file_;
   const ReadOptions& options_;
+  PackedFrames* packed_;
   ArrayMotion motion_;
+  Conversion conversion_;
+  Mat3 axes_ = Mat3::Identity();
   Capture capture_;
 };
 
@@ -433,6 +483,30 @@ Result<Capture> read(std::span<const std::byte> file, const std::string& file_na
   auto capture = Reader(given).read();
   if (!capture) return std::move(capture.error()).in_file(file_name);
   return capture;
+}
+
+std::optional<OpenedCapture> open(std::span<const std::byte> file, const std::string& file_name,
+                                  const ReadOptions& options, std::size_t min_transforms) {
+  auto arrays = Arrays::open(file);
+  if (!arrays) return std::nullopt;
+  for (const char* name : {"positions", "quaternions", "parents"}) {
+    if (!arrays->has(name)) return std::nullopt;
+  }
+  const auto kept = std::make_shared<const Arrays>(*std::move(arrays));
+  const auto positions = kept->open_array("positions");
+  if (!positions || positions->count() < 3 * min_transforms) return std::nullopt;
+  const ArrayFile given{*kept, file_name, options};
+  PackedFrames packed;
+  Reader reader(given, &packed);
+  auto capture = reader.read();
+  if (!capture) return std::nullopt;
+  OpenedCapture opened{*std::move(capture), {}};
+  opened.frames = reader.unpacked(opened.clip);
+  opened.frames.read = [kept, read = std::move(opened.frames.read)](auto... block) {
+    return read(block...);
+  };
+  opened.clip.resize(0);
+  return opened;
 }
 
 Result<PositionSkeleton> read_columns(std::string_view text) {

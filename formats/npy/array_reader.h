@@ -9,6 +9,7 @@
 #include "capture/capture.h"
 #include "core/result.h"
 #include "positions/position_skeleton.h"
+#include "scene/frame_source.h"
 #include "scene/skeleton.h"
 
 // Motions in arrays of numpy, .npy and .npz, by what they hold; SPEC.md lists the names of arrays:
@@ -51,6 +52,19 @@ struct Capture : krok::Capture {
 // npy-bones, npy-fit, npy-glitch, npy-ground, npy-noise, npy-repair, npy-root, npy-sides.
 Result<Capture> read(std::span<const std::byte> file, const std::string& file_name,
                      const ReadOptions& options = {});
+
+// A capture whose frames are unpacked as they are read: its clip has none. `frames` is valid as
+// long as the file's bytes are; it is to be read about in order.
+struct OpenedCapture : Capture {
+  FrameSource frames;
+};
+
+// Opens arrays of an archive as krok-export writes them, to be read in parts: the same frames as of
+// read(). They are looked through once, for conventions and contacts. Empty for any other file, for
+// arrays of fewer joint transforms, and where a fault is found; if a frame later gives an Error,
+// discard the result. read() then reports what is wrong.
+std::optional<OpenedCapture> open(std::span<const std::byte> file, const std::string& file_name,
+                                  const ReadOptions& options = {}, std::size_t min_transforms = 0);
 
 // Reads a skeleton of columns from JSON: {"schema": "krok.columns/1", "rate": 30, "joints":
 // [{"name": "hips", "parent": ""}, ...]}, see SPEC.md. Codes: json-syntax, json-limit,

@@ -273,7 +273,13 @@ std::string shape_text(std::span<const std::size_t> shape) {
   return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
 
-Result<Array> parse(std::vector<std::byte> file) {
+namespace {
+
+// Where the header of a .npy file is. `size`: of the file.
+struct HeaderPlace {
+  std::size_t start = 0, length = 0;
+};
+Result<HeaderPlace> find_header(std::span<const std::byte> file, std::size_t size) {
   if (!text_of(file).starts_with(kMagic) || file.size() < 10) {
     return damaged("it does not begin as an array of numpy");
   }
@@ -286,16 +292,25 @@ Result<Array> parse(std::vector<std::byte> file) {
   if (file.size() < start) return damaged("it ends in the header");
   std::size_t length = byte(8) | byte(9) << 8;
   if (version > 1) length |= byte(10) << 16 | byte(11) << 24;
-  if (length > kMaxHeader || length > file.size() - start) {
-    return damaged(fmt::format("its header has {} bytes, by the file; there are {}", length,
-                               file.size() - start));
+  if (length > kMaxHeader || length > size - start) {
+    return damaged(
+        fmt::format("its header has {} bytes, by the file; there are {}", length, size - start));
   }
+  return HeaderPlace{start, length};
+}
+
+}  // namespace
+
+Result<Array> parse(std::vector<std::byte> file) {
+  const auto place = find_header(file, file.size());
+  if (!place) return place.error();
   Array array;
-  const std::span header = std::span(file).subspan(start, length);
+  const std::span header = std::span(file).subspan(place->start, place->length);
   if (Status status = Header(text_of(header)).read(array); !status) {
     return status.error();
   }
-  file.erase(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(start + length));
+  const auto end = static_cast<std::ptrdiff_t>(place->start + place->length);
+  file.erase(file.begin(), file.begin() + end);
   if (!is_shape_of(array, file.size())) {
     return damaged(fmt::format("an array of shape {} with {} bytes each does not have {} bytes",
                                shape_text(array.shape), array.item_size, file.size()));
@@ -325,15 +340,43 @@ bool Arrays::has(const std::string& name) const {
   return std::ranges::find(names_, name) != names_.end();
 }
 
+namespace {
+
+// Of an array in an archive of `size` bytes.
+std::uint64_t max_bytes(std::uint64_t size) {
+  return std::max(std::min(1000 * size + 4096, kSmallArray), 100 * size);
+}
+
+}  // namespace
+
 Result<Array> Arrays::read(const std::string& name) const {
   if (!archive_) return parse({file_.begin(), file_.end()});
-  const std::uint64_t most = std::max<std::uint64_t>(
-      std::min<std::uint64_t>(1000 * std::uint64_t{file_.size()} + 4096, kSmallArray),
-      100 * std::uint64_t{file_.size()});
-  auto bytes = archive_->read(name + ".npy", most);
+  auto bytes = archive_->read(name + ".npy", max_bytes(file_.size()));
   if (!bytes) return bytes.error();
   auto array = parse(*std::move(bytes));
   if (!array) array.error().message = fmt::format("{}: {}", name, array.error().message);
+  return array;
+}
+
+Result<Array> Arrays::open_array(const std::string& name) const {
+  if (!archive_) return Error("file-missing", "the file is no archive of arrays");
+  auto stream = archive_->stream(name + ".npy", max_bytes(file_.size()));
+  if (!stream) return stream.error();
+  std::vector<std::byte> start(12);
+  if (Status status = (*stream)(start); !status) return status.error();
+  const auto place = find_header(start, std::numeric_limits<std::size_t>::max());
+  if (!place) return place.error();
+  // Of version 1 the header begins in the bytes that are read.
+  start.resize(place->start + place->length);
+  if (start.size() < 12) return damaged("it ends in the header");
+  if (Status status = (*stream)(std::span(start).subspan(12)); !status) return status.error();
+  Array array;
+  const Status status = Header(text_of(std::span(start).subspan(place->start))).read(array);
+  if (!status) return status.error();
+  std::uint64_t left = max_bytes(file_.size()) / std::max<std::size_t>(array.item_size, 1);
+  for (const std::size_t size : array.shape) left /= std::max<std::size_t>(size, 1);
+  if (left == 0) return Error("file-too-large", fmt::format("{} exceeds the limit", name));
+  array.read = *std::move(stream);
   return array;
 }
 

@@ -29,7 +29,8 @@ struct Array {
   bool column_major = false;       // "fortran_order"
   std::vector<std::size_t> shape;  // empty for a single value
   std::vector<std::byte> data;     // item_size * count() bytes
-  // Of an array that is packed, in place of `data`: gives the next bytes, as many as are asked for.
+  // Of an array that is packed or unpacked in parts, in place of `data`: gives the next bytes, as
+  // many as are asked for.
   std::function<Status(std::span<std::byte> bytes)> read;
 
   std::size_t count() const;
@@ -62,6 +63,10 @@ class Arrays {
   // Codes: those of parse(), zip-damaged, file-too-large: a compressed array may be a thousand
   // times the file, as one of zeros is, if it has less than 32 MB, 100 times otherwise.
   Result<Array> read(const std::string& name) const;
+  // An array of an archive to be unpacked in parts, with Array::read in place of the data; valid as
+  // long as the value is, and used as zip::Archive::stream(). Codes: those of parse() for the
+  // header, file-missing, file-too-large, zip-damaged.
+  Result<Array> open_array(const std::string& name) const;
 
  private:
   std::span<const std::byte> file_;

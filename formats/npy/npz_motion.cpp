@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <set>
+#include <tuple>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -23,12 +25,9 @@ Vec3 vector_at(const std::vector<double>& values, std::size_t i) {
 Result<std::vector<Quat>> quaternions_of(const std::vector<double>& values) {
   std::vector<Quat> quaternions(values.size() / 4);
   for (std::size_t i = 0; i < quaternions.size(); ++i) {
-    quaternions[i].coeffs() = Vec4(&values[4 * i]);
-    const double norm = quaternions[i].norm();
-    if (!(std::abs(norm - 1) < 1e-3)) {
-      return Error("npy-rotation", fmt::format("quaternion {} is not of length 1", i));
-    }
-    quaternions[i].coeffs() /= norm;
+    const auto unit = unit_quaternion(Vec4(&values[4 * i]));
+    if (!unit) return Error("npy-rotation", fmt::format("quaternion {} is not of length 1", i));
+    quaternions[i] = *unit;
   }
   return quaternions;
 }
@@ -80,8 +79,8 @@ Status check_order(const Skeleton& skeleton, const std::vector<double>& places,
 
 // Each run of frames in which a joint is down, at its mean place.
 void add_runs(const std::vector<double>& down, std::size_t column, std::size_t columns, int joint,
-              double rate, ArrayMotion& motion) {
-  const std::size_t joints = motion.skeleton.names.size(), frames = down.size() / columns;
+              double rate, const PlaceOf& place, ArrayMotion& motion) {
+  const std::size_t frames = down.size() / columns;
   for (std::size_t f = 0; f < frames; ++f) {
     if (down[f * columns + column] < 0.5) continue;
     Contact contact;
@@ -89,7 +88,7 @@ void add_runs(const std::vector<double>& down, std::size_t column, std::size_t c
     contact.start = static_cast<double>(f) / rate;
     const std::size_t first = f;
     for (; f < frames && down[f * columns + column] >= 0.5; ++f) {
-      contact.place += motion.positions[f * joints + at(joint)];
+      contact.place += place(f, column, joint);
     }
     contact.end = static_cast<double>(f - 1) / rate;
     contact.place /= static_cast<double>(f - first);
@@ -97,22 +96,38 @@ void add_runs(const std::vector<double>& down, std::size_t column, std::size_t c
   }
 }
 
+Result<std::vector<int>> contact_joints(const ArrayFile& file, std::size_t joint_count) {
+  const auto given = file.numbers("contact_joints", {0});
+  if (!given) return given.error();
+  std::vector<int> joints;
+  for (const double joint : *given) {
+    if (!(joint >= 0 && joint < static_cast<double>(joint_count))) {
+      return Error("npy-value", fmt::format("contact_joints has {}, of no joint", joint));
+    }
+    joints.push_back(static_cast<int>(joint));
+  }
+  return joints;
+}
+
 }  // namespace
 
-Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion) {
+std::optional<Quat> unit_quaternion(const Vec4& values) {
+  Quat quaternion(values);
+  const double norm = quaternion.norm();
+  if (!(std::abs(norm - 1) < 1e-3)) return std::nullopt;
+  quaternion.coeffs() /= norm;
+  return quaternion;
+}
+
+Status add_contacts(const ArrayFile& file, double rate, std::size_t frames, const PlaceOf& place,
+                    ArrayMotion& motion) {
   const std::string name = file.find({"contacts", "foot_contacts"});
   if (name.empty()) return {};
-  const std::size_t frames = motion.positions.size() / motion.skeleton.names.size();
   std::vector<int> joints;
   if (file.arrays.has("contact_joints")) {
-    const auto given = file.numbers("contact_joints", {0});
+    auto given = contact_joints(file, motion.skeleton.names.size());
     if (!given) return given.error();
-    for (const double joint : *given) {
-      if (!(joint >= 0 && joint < static_cast<double>(motion.skeleton.joint_count()))) {
-        return Error("npy-value", fmt::format("contact_joints has {}, of no joint", joint));
-      }
-      joints.push_back(static_cast<int>(joint));
-    }
+    joints = *std::move(given);
   } else {
     // Kimodo's: left heel, left toe, right heel, right toe (docs/source/user_guide).
     for (const Role role : {Role::left_foot, Role::left_toes, Role::right_foot, Role::right_toes}) {
@@ -123,7 +138,7 @@ Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion) {
   const auto down = file.numbers(name, {frames, joints.size()});
   if (!down) return down.error();
   for (std::size_t c = 0; c < joints.size(); ++c) {
-    if (joints[c] >= 0) add_runs(*down, c, joints.size(), joints[c], rate, motion);
+    if (joints[c] >= 0) add_runs(*down, c, joints.size(), joints[c], rate, place, motion);
   }
   std::ranges::stable_sort(motion.keys.contacts, [](const Contact& a, const Contact& b) {
     return std::pair(a.start, a.joint) < std::pair(b.start, b.joint);
@@ -131,7 +146,107 @@ Status add_contacts(const ArrayFile& file, double rate, ArrayMotion& motion) {
   return {};
 }
 
-Result<ArrayMotion> read_krok(const ArrayFile& file) {
+namespace {
+
+// Unpacks positions and quaternions of frames side by side, from the beginning again where frames
+// are read that were read before.
+class Unpacker {
+ public:
+  explicit Unpacker(const Arrays& arrays) : arrays_(arrays) {}
+
+  // Opens the arrays, and sets how many frames and joints they have.
+  Status open(PackedFrames& frames) {
+    for (auto& [array, name, size] :
+         {std::tuple(&positions_, "positions", 3), std::tuple(&turns_, "quaternions", 4)}) {
+      auto opened = arrays_.open_array(name);
+      if (!opened) return opened.error();
+      *array = *std::move(opened);
+      const auto& shape = array->shape;
+      if (array->element != Element::real || array->item_size != 4 || array->big_endian ||
+          array->column_major || shape.size() != 3 || shape[2] != static_cast<std::size_t>(size)) {
+        return Error("npy-shape", "the array is not as krok-export writes it");
+      }
+    }
+    frames.count = positions_.shape[0], frames.joints = joints_ = positions_.shape[1];
+    next_ = 0;
+    if (turns_.shape[0] == frames.count && turns_.shape[1] == joints_ && joints_ > 0 &&
+        frames.count < std::size_t{1} << 30) {
+      return {};
+    }
+    return Error("npy-shape", "positions and quaternions differ in their shape");
+  }
+
+  Status read(std::size_t first, std::span<Vec3f> positions, std::span<Quatf> orientations) {
+    if (first < next_) {
+      PackedFrames again;
+      if (Status status = open(again); !status) return status;
+    }
+    std::vector<Vec3f> skipped(joints_);
+    std::vector<Quatf> skipped_turns(joints_);
+    for (; next_ < first; ++next_) {
+      if (Status status = take(skipped, skipped_turns); !status) return status;
+    }
+    next_ += positions.size() / joints_;
+    return take(positions, orientations);
+  }
+
+  // Whether the arrays end after the last frame, with their checksums.
+  Status at_end() {
+    Status status = positions_.read({});
+    return status ? turns_.read({}) : status;
+  }
+
+ private:
+  Status take(std::span<Vec3f> positions, std::span<Quatf> orientations) {
+    static_assert(sizeof(Vec3f) == 3 * sizeof(float) && sizeof(Quatf) == 4 * sizeof(float));
+    Status status = positions_.read(std::as_writable_bytes(positions));
+    return status ? turns_.read(std::as_writable_bytes(orientations)) : status;
+  }
+
+  const Arrays& arrays_;
+  Array positions_, turns_;
+  std::size_t joints_ = 0, next_ = 0;
+};
+
+// Reads all frames once, for a few samples and the places of contacts.
+Status look_through(const ArrayFile& file, PackedFrames& frames, std::vector<double>& places,
+                    std::vector<double>& turns) {
+  const auto unpacker = std::make_shared<Unpacker>(file.arrays);
+  if (Status status = unpacker->open(frames); !status) return status;
+  if (frames.joints > at(file.options.max_joints)) return Error("npy-limit", "too many joints");
+  std::vector<int> touching;
+  if (file.arrays.has("contact_joints")) {
+    auto given = contact_joints(file, frames.joints);
+    if (!given) return given.error();
+    touching = *std::move(given);
+    constexpr std::size_t kMaxTouching = 64;
+    if (touching.size() > kMaxTouching) return Error("npy-limit", "too many joints touch");
+  } else if (!file.find({"contacts", "foot_contacts"}).empty()) {
+    return Error("npy-shape", "the contacts are not as krok-export writes them");
+  }
+  std::vector<Vec3f> pose(frames.joints);
+  std::vector<Quatf> pose_turns(frames.joints);
+  for (std::size_t f = 0; f < frames.count; ++f) {
+    if (Status status = unpacker->read(f, pose, pose_turns); !status) return status;
+    for (const int joint : touching) frames.contact_places.push_back(pose[at(joint)]);
+    if (f != sampled_frame(places.size() / (3 * frames.joints), frames.count)) continue;
+    for (const Vec3f& place : pose) places.insert(places.end(), place.data(), place.data() + 3);
+    for (const Quatf& turn : pose_turns) {
+      turns.insert(turns.end(), turn.coeffs().data(), turn.coeffs().data() + 4);
+    }
+  }
+  frames.read = [unpacker](auto... block) { return unpacker->read(block...); };
+  return unpacker->at_end();
+}
+
+}  // namespace
+
+std::size_t sampled_frame(std::size_t sample, std::size_t frames) {
+  const std::size_t count = std::min(frames, kMaxSamples);
+  return count < 2 ? 0 : sample * (frames - 1) / (count - 1);
+}
+
+Result<ArrayMotion> read_krok(const ArrayFile& file, PackedFrames* packed) {
   if (!file.options.columns_name.empty()) {
     return Error("npy-skeleton", "the file has a skeleton of its own: names and parents",
                  "leave out --skeleton");
@@ -143,11 +258,19 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
   if (!parents) return parents.error();
   const std::size_t joints = parents->size();
   std::vector<std::size_t> places_shape = {0, joints, 3};
-  const auto places = file.numbers("positions", places_shape);
+  Result<std::vector<double>> places = std::vector<double>(), turns = std::vector<double>();
+  if (packed != nullptr) {
+    Status status = look_through(file, *packed, *places, *turns);
+    if (status && packed->joints != joints) status = Error("npy-shape", "other joints");
+    if (!status) return status.error();
+    places_shape[0] = turns->size() / (4 * joints);
+  } else {
+    places = file.numbers("positions", places_shape);
+    if (places) turns = file.numbers("quaternions", {places_shape[0], joints, 4});
+  }
   if (!places) return places.error();
-  const std::size_t frames = places_shape[0];
-  const auto turns = file.numbers("quaternions", {frames, joints, 4});
   if (!turns) return turns.error();
+  const std::size_t frames = places_shape[0];
   std::vector<std::string> names;
   if (file.arrays.has("names")) {
     const auto read = file.arrays.read("names");
@@ -188,6 +311,9 @@ Result<ArrayMotion> read_krok(const ArrayFile& file) {
   if (!orientations) return orientations.error();
   if (Status status = check_order(skeleton, *places, *orientations, motion.diagnostics); !status) {
     return status.error();
+  }
+  if (packed != nullptr && !motion.diagnostics.empty()) {
+    return Error("npy-rotation", "the bones are to be looked at in all frames");
   }
   motion.orientations = *std::move(orientations);
   motion.positions.resize(frames * joints);

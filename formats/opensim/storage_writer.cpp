@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cassert>
 #include <cmath>
 
 #include "core/numbers.h"
@@ -22,7 +21,6 @@ std::string label(std::string name) {
 
 Status write(const csv::SeriesTable& table, const std::string& name, bool degrees,
              OutputFile& file) {
-  assert(table.values.size() == static_cast<std::size_t>(table.frames) * table.columns());
   std::string text =
       fmt::format("{}\nversion=1\nnRows={}\nnColumns={}\ninDegrees={}\nendheader\n", label(name),
                   table.frames, table.columns() + 1, degrees ? "yes" : "no");
@@ -34,18 +32,19 @@ Status write(const csv::SeriesTable& table, const std::string& name, bool degree
     }
   }
   text += '\n';
-  const float* value = table.values.data();
-  for (int frame = 0; frame < table.frames; ++frame) {
+  const auto add = [&](int frame, std::span<const float> row) -> Status {
     text += shortest(frame / table.rate);
-    for (std::size_t c = 0; c < table.columns(); ++c, ++value) {
+    for (const float value : row) {
       text += '\t';
-      text += std::isfinite(*value) ? shortest(*value) : "nan";
+      text += std::isfinite(value) ? shortest(value) : "nan";
     }
     text += '\n';
-    if (text.size() < (std::size_t{1} << 20)) continue;
-    if (Status status = file.write(text); !status) return status;
+    if (text.size() < (std::size_t{1} << 20)) return {};
+    Status status = file.write(text);
     text.clear();
-  }
+    return status;
+  };
+  if (Status status = table.for_each_row(add); !status) return status;
   return file.write(text);
 }
 

@@ -57,30 +57,48 @@ Result<Archive> Archive::open(std::span<const std::byte> bytes) {
   return result;
 }
 
-Result<std::vector<std::byte>> Archive::read(const std::string& name,
-                                             std::uint64_t most_bytes) const {
-  zip_t* archive = handle_->archive;
+namespace {
+
+// A file inside, opened, with its size as the archive states it: 0 if it does not.
+struct OpenedFile {
+  std::shared_ptr<zip_file_t> file;
+  std::uint64_t size = 0;
+};
+
+Error too_large(const std::string& name, std::uint64_t most_bytes) {
+  return Error("file-too-large", fmt::format("{} in the archive exceeds the limit of {} bytes",
+                                             shown(name), most_bytes));
+}
+
+Result<OpenedFile> open_file(zip_t* archive, const std::string& name, std::uint64_t most_bytes) {
   const zip_int64_t index = zip_name_locate(archive, name.c_str(), ZIP_FL_ENC_GUESS);
   if (index < 0) {
     return Error("file-missing", fmt::format("the archive has no file {}", shown(name)));
   }
-  const auto too_large = [&] {
-    return Error("file-too-large", fmt::format("{} in the archive exceeds the limit of {} bytes",
-                                               shown(name), most_bytes));
-  };
   const auto place = static_cast<zip_uint64_t>(index);
   zip_stat_t facts;
   zip_stat_init(&facts);
   if (zip_stat_index(archive, place, 0, &facts) == 0 && (facts.valid & ZIP_STAT_SIZE) != 0 &&
       facts.size > most_bytes) {
-    return too_large();
+    return too_large(name, most_bytes);
   }
-  zip_file_t* file = zip_fopen_index(archive, place, 0);
+  zip_file_t* const file = zip_fopen_index(archive, place, 0);
   if (file == nullptr) {
     return damaged(fmt::format("{} cannot be unpacked: {}", shown(name), zip_strerror(archive)));
   }
+  return OpenedFile{{file, zip_fclose}, facts.size};
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> Archive::read(const std::string& name,
+                                             std::uint64_t most_bytes) const {
+  auto opened = open_file(handle_->archive, name, most_bytes);
+  if (!opened) return opened.error();
+  zip_file_t* const file = opened->file.get();
   // By what comes out, as the archive may say anything.
-  const std::size_t step = std::clamp<std::uint64_t>(facts.size + 1, 1024, std::uint64_t{1} << 20);
+  const std::size_t step =
+      std::clamp<std::uint64_t>(opened->size + 1, 1024, std::uint64_t{1} << 20);
   std::vector<std::byte> bytes;
   zip_int64_t got = 0;
   do {
@@ -89,10 +107,25 @@ Result<std::vector<std::byte>> Archive::read(const std::string& name,
     got = zip_fread(file, bytes.data() + before, step);
     bytes.resize(before + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
   } while (got > 0 && bytes.size() <= most_bytes);
-  const bool whole = zip_fclose(file) == 0 && got == 0;  // checks the checksum, too
-  if (bytes.size() > most_bytes) return too_large();
+  if (bytes.size() > most_bytes) return too_large(name, most_bytes);
+  const bool whole = got == 0;  // the end, where the checksum is checked, too
   if (!whole) return damaged(fmt::format("{} in the archive is damaged", shown(name)));
   return bytes;
+}
+
+Result<Archive::Stream> Archive::stream(const std::string& name, std::uint64_t most_bytes) const {
+  const auto opened = open_file(handle_->archive, name, most_bytes);
+  if (!opened) return opened.error();
+  return Stream([file = opened->file, name](std::span<std::byte> bytes) -> Status {
+    std::byte none{};
+    bool good = !bytes.empty() || zip_fread(file.get(), &none, 1) == 0;
+    while (good && !bytes.empty()) {
+      const zip_int64_t got = zip_fread(file.get(), bytes.data(), bytes.size());
+      good = got > 0;
+      if (good) bytes = bytes.subspan(static_cast<std::size_t>(got));
+    }
+    return good ? Status() : damaged(fmt::format("{} in the archive is damaged", shown(name)));
+  });
 }
 
 namespace {

@@ -32,6 +32,13 @@ class Archive {
   // what the archive says or by what comes out), zip-damaged (also for encrypted files).
   Result<std::vector<std::byte>> read(const std::string& name, std::uint64_t most_bytes) const;
 
+  // Gives the next bytes of a file, as many as are asked for; asked for none, checks that the file
+  // ends there and has its checksum. Valid as long as the archive is; all streams of an archive are
+  // used by one thread at a time. Codes file-missing, file-too-large, by what the archive says, and
+  // zip-damaged.
+  using Stream = std::function<Status(std::span<std::byte> bytes)>;
+  Result<Stream> stream(const std::string& name, std::uint64_t most_bytes) const;
+
  private:
   struct Handle;
   explicit Archive(std::unique_ptr<Handle> handle);

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "blend/long_take.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
@@ -18,6 +20,7 @@
 #include "pose/blend_pose.h"
 #include "pose/packed_pose.h"
 #include "scene/clip.h"
+#include "scene/frame_blocks.h"
 #include "scene/frame_moment.h"
 
 namespace krok::blend {
@@ -25,88 +28,119 @@ namespace krok::blend {
 namespace {
 
 // A motion split into the character's ground frame (position and heading) over time and poses
-// relative to it, so that motions along different paths can be blended.
-class GroundedClip {
+// relative to it, so that motions along different paths can be blended. Of the poses it has those
+// of one part of the motion at a time.
+class GroundedMotion {
  public:
   // `carrier` comes from carrying_joint(); -1 keeps the poses in world space and the ground frame
-  // at the origin. `clip` needs at least one frame and must outlive this.
-  GroundedClip(const Clip& clip, int carrier);
+  // at the origin. `motion` needs at least one frame.
+  static Result<GroundedMotion> of(const FrameSource& motion, int carrier, int jobs) {
+    GroundedMotion grounded;
+    grounded.motion_ = motion;
+    grounded.carrier_ = carrier;
+    grounded.places_.resize(at(motion.frame_count));
+    if (carrier < 0) return grounded;
+    const Status status = for_each_block(motion, jobs, [&](int first, const Clip& block) {
+      for (int f = 0; f < block.frame_count(); ++f) {
+        GroundFrame& place = grounded.places_[at(first + f)];
+        place = ground_frame(block, carrier, f);
+        if (first + f == 0) continue;
+        const double before = grounded.places_[at(first + f - 1)].heading;
+        place.heading = before + wrapped(place.heading - before);
+      }
+      return Status();
+    });
+    if (!status) return status.error();
+    return grounded;
+  }
 
-  // joint_to_parent; the root is relative to the ground frame.
+  // Loads the poses between two times in seconds.
+  Status load_between(double from, double to, int jobs) {
+    const FrameMoment last = moment(to);
+    begin_ = moment(from).before;
+    const int end = last.before + (last.fraction > 0 ? 2 : 1);
+    auto loaded = load(part_of(motion_, begin_, end - begin_), jobs);
+    if (!loaded) return loaded.error();
+    if (motion_.release) motion_.release(begin_);
+    part_ = *std::move(loaded);
+    if (carrier_ < 0) {
+      poses_ = pack_clip(part_);
+    } else {
+      Clip grounded = part_;
+      std::vector<Transform> pose(part_.skeleton.names.size());
+      for (int f = 0; f < part_.frame_count(); ++f) {
+        const Transform world_to_place = places_[at(begin_ + f)].to_world().inverse();
+        part_.get_pose(f, pose);
+        for (Transform& joint : pose) joint = world_to_place * joint;
+        grounded.set_pose(f, pose);
+      }
+      poses_ = pack_clip(grounded);
+    }
+    poses_.rate = 1;
+    return {};
+  }
+
+  // joint_to_parent of the part, a frame a second; the root is relative to the ground frame.
   const PackedClip& poses() const { return poses_; }
+  // The place of a time within the part among its frames. A difference of frames is exact, so that
+  // poses are those of the whole motion.
+  double frame_in_part(double time) const {
+    const FrameMoment at = moment(time);
+    return at.before - begin_ + at.fraction;
+  }
 
   // The ground frame at `time` seconds, linear between frames; the heading is unwrapped.
-  GroundFrame place(double time) const;
+  GroundFrame place(double time) const {
+    const FrameMoment now = moment(time);
+    const auto i = static_cast<std::size_t>(now.before);
+    GroundFrame place = places_[i];
+    if (now.fraction == 0) return place;
+    const GroundFrame& next = places_[i + 1];
+    place.x += now.fraction * (next.x - place.x);
+    place.z += now.fraction * (next.z - place.z);
+    place.heading += now.fraction * (next.heading - place.heading);
+    return place;
+  }
 
-  // World position of a joint.
-  Vec3 position(int joint, double time) const;
+  // World position of a joint at a time within the part.
+  Vec3 position(int joint, double time) const {
+    const FrameMoment now = moment(time);
+    const auto j = static_cast<std::size_t>(joint);
+    const Vec3 position = part_.frame_positions(now.before - begin_)[j].cast<double>();
+    if (now.fraction == 0) return position;
+    const Vec3 next = part_.frame_positions(now.before - begin_ + 1)[j].cast<double>();
+    return position + now.fraction * (next - position);
+  }
 
  private:
-  const Clip& clip_;
-  PackedClip poses_;
+  FrameMoment moment(double time) const {
+    return frame_moment(time, motion_.rate, motion_.frame_count);
+  }
+
+  FrameSource motion_;
+  int carrier_ = -1;
   std::vector<GroundFrame> places_;  // [frames], unwrapped headings
+  int begin_ = 0;                    // the part's first frame
+  Clip part_;
+  PackedClip poses_;
 };
-
-GroundedClip::GroundedClip(const Clip& clip, int carrier) : clip_(clip) {
-  const int frames = clip.frame_count();
-  places_.resize(static_cast<std::size_t>(frames));
-  if (carrier < 0) {
-    poses_ = pack_clip(clip);
-    return;
-  }
-  Clip grounded = clip;
-  std::vector<Transform> pose(clip.skeleton.names.size());
-  for (int f = 0; f < frames; ++f) {
-    GroundFrame& place = places_[static_cast<std::size_t>(f)];
-    place = ground_frame(clip, carrier, f);
-    if (f > 0) {
-      const double before = places_[static_cast<std::size_t>(f - 1)].heading;
-      place.heading = before + wrapped(place.heading - before);
-    }
-    const Transform world_to_place = place.to_world().inverse();
-    clip.get_pose(f, pose);
-    for (Transform& joint : pose) joint = world_to_place * joint;
-    grounded.set_pose(f, pose);
-  }
-  poses_ = pack_clip(grounded);
-}
-
-GroundFrame GroundedClip::place(double time) const {
-  const FrameMoment moment = frame_moment(time, clip_.rate, clip_.frame_count());
-  const auto i = static_cast<std::size_t>(moment.before);
-  GroundFrame place = places_[i];
-  if (moment.fraction == 0) return place;
-  const GroundFrame& next = places_[i + 1];
-  place.x += moment.fraction * (next.x - place.x);
-  place.z += moment.fraction * (next.z - place.z);
-  place.heading += moment.fraction * (next.heading - place.heading);
-  return place;
-}
-
-Vec3 GroundedClip::position(int joint, double time) const {
-  const FrameMoment moment = frame_moment(time, clip_.rate, clip_.frame_count());
-  const auto j = static_cast<std::size_t>(joint);
-  const Vec3 position = clip_.frame_positions(moment.before)[j].cast<double>();
-  if (moment.fraction == 0) return position;
-  const Vec3 next = clip_.frame_positions(moment.before + 1)[j].cast<double>();
-  return position + moment.fraction * (next - position);
-}
 
 constexpr double kMaxTransforms = 1e8;
 constexpr double kRounding = 1e-6;  // of a frame, for the number of frames
 constexpr std::size_t kFramesAtOnce = 32;
+constexpr int kFramesOfBlock = 4096;
 
-Status check_inputs(std::span<const BlendInput> inputs) {
+Status check_sources(std::span<const BlendSource> inputs) {
   if (inputs.empty()) return Error("blend-empty", "there are no motions to blend");
-  for (const BlendInput& input : inputs) {
-    if (Status status = check(*input.clip); !status) {
+  for (const BlendSource& input : inputs) {
+    if (Status status = check(input.frames.skeleton); !status) {
       return std::move(status).error().in_file(input.name);
     }
-    if (input.clip->frame_count() == 0) {
+    if (input.frames.frame_count == 0) {
       return Error("blend-empty", fmt::format("{} has no frames", input.name));
     }
     const std::string differs =
-        difference_in_structure(inputs.front().clip->skeleton, input.clip->skeleton);
+        difference_in_structure(inputs.front().frames.skeleton, input.frames.skeleton);
     if (!differs.empty()) {
       return Error("blend-skeleton",
                    fmt::format("{} and {} have different skeletons: {}", inputs.front().name,
@@ -114,7 +148,8 @@ Status check_inputs(std::span<const BlendInput> inputs) {
                    "use krok-retarget to transfer one to the other's skeleton");
     }
     if (input.keys == nullptr) continue;
-    if (Status status = check(*input.keys, input.clip->skeleton, input.clip->duration()); !status) {
+    const FrameSource& frames = input.frames;
+    if (Status status = check(*input.keys, frames.skeleton, frames.duration()); !status) {
       return std::move(status).error().in_file(input.name);
     }
   }
@@ -122,7 +157,7 @@ Status check_inputs(std::span<const BlendInput> inputs) {
 }
 
 // ", here 0.3 and 0.7", of constant weights.
-std::string in_shares(std::span<const BlendInput> inputs, double sum) {
+std::string in_shares(std::span<const BlendSource> inputs, double sum) {
   std::string text = ", here ";
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     text += fmt::format("{}{}",
@@ -135,14 +170,14 @@ std::string in_shares(std::span<const BlendInput> inputs, double sum) {
 }
 
 // The sum is linear between the points of all curves, so checking at the points suffices.
-Status check_sum(std::span<const BlendInput> inputs) {
+Status check_sum(std::span<const BlendSource> inputs) {
   std::set<double> points = {0};
-  for (const BlendInput& input : inputs) {
+  for (const BlendSource& input : inputs) {
     points.insert(input.weight.generic.begin(), input.weight.generic.end());
   }
   for (const double point : points) {
     double sum = 0;
-    for (const BlendInput& input : inputs) sum += input.weight.at(point);
+    for (const BlendSource& input : inputs) sum += input.weight.at(point);
     if (std::abs(sum - 1) <= 1e-6) continue;
     const bool constant = points.size() == 1;
     return Error("blend-sum",
@@ -157,35 +192,61 @@ Status check_sum(std::span<const BlendInput> inputs) {
 
 class Blender {
  public:
-  Blender(std::span<const BlendInput> inputs, const RoleMap& roles, const BlendOptions& options,
-          const BlendTime& time, double rate)
-      : inputs_(inputs), options_(options), time_(time) {
+  static Result<std::shared_ptr<Blender>> make(std::vector<BlendSource> inputs,
+                                               const RoleMap& roles, const BlendOptions& options,
+                                               const BlendTime& time, double rate,
+                                               const Correspondence& correspondence) {
+    const auto blender = std::make_shared<Blender>();
+    blender->options_ = options;
     const int carrier = options.align == Align::none ? -1 : carrying_joint(roles);
-    for (const BlendInput& input : inputs) motions_.emplace_back(*input.clip, carrier);
-    blended_.clip.skeleton = inputs.front().clip->skeleton;
-    blended_.clip.rate = rate;
-    blended_.clip.resize(static_cast<int>(std::floor(time.duration() * rate + kRounding)) + 1);
-    find_contact_joints();
+    for (const BlendSource& input : inputs) {
+      auto motion = GroundedMotion::of(input.frames, carrier, options.jobs);
+      if (!motion) return motion.error();
+      blender->motions_.push_back(*std::move(motion));
+    }
+    blender->blended_.clip.skeleton = inputs.front().frames.skeleton;
+    blender->blended_.clip.rate = rate;
+    blender->frames_ = static_cast<int>(std::floor(time.duration() * rate + kRounding)) + 1;
+    blender->inputs_ = std::move(inputs);
+    blender->find_contact_joints();
+    blender->find_times(time);
+    blender->find_keys(time, correspondence);
+    return blender;
   }
 
-  Blended blend(const Correspondence& correspondence) {
-    find_times();
-    sum_poses();
-    if (options_.align != Align::none) walk();
-    find_spread();
-    find_keys(correspondence);
-    return std::move(blended_);
+  int frames() const { return frames_; }
+  const Blended& blended() const { return blended_; }
+
+  // Makes the frames of a block; blocks come in order, or again.
+  Status blend(FrameRun& run) {
+    Clip& clip = run.clip;
+    const int last = run.first + clip.frame_count() - 1;
+    for (std::size_t m = 0; m < motions_.size(); ++m) {
+      const auto& times = blended_.times[m];
+      Status status = motions_[m].load_between(times[at(std::max(run.first - 1, 0))],
+                                               times[at(last)], options_.jobs);
+      if (!status) return status;
+    }
+    sum_poses(run.first, clip);
+    if (options_.align != Align::none) walk(run.first, clip);
+    find_spread(run.first, clip);
+    for (std::size_t c = 0; c < middles_.size(); ++c) {
+      if (middles_[c] < run.first || middles_[c] > last) continue;
+      Contact& contact = blended_.keys.contacts[c];
+      contact.place =
+          clip.frame_positions(middles_[c] - run.first)[at(contact.joint)].cast<double>();
+    }
+    return {};
   }
 
  private:
-  int frames() const { return blended_.clip.frame_count(); }
   double weight(std::size_t motion, int frame) const {
     return inputs_[motion].weight.at(blended_.generic[at(frame)]);
   }
 
   // Joints with contacts in any motion; none unless all motions have keys.
   void find_contact_joints() {
-    for (const BlendInput& input : inputs_) {
+    for (const BlendSource& input : inputs_) {
       if (input.keys == nullptr) {
         contact_joints_.clear();
         return;
@@ -205,36 +266,36 @@ class Blender {
   }
 
   // Steps 2 and 3: generic time of each frame, and the corresponding time in each motion.
-  void find_times() {
+  void find_times(const BlendTime& time) {
     blended_.times.resize(motions_.size());
     for (int f = 0; f < frames(); ++f) {
-      const double generic = time_.generic_at(f / blended_.clip.rate);
+      const double generic = time.generic_at(f / blended_.clip.rate);
       blended_.generic.push_back(generic);
       for (std::size_t m = 0; m < motions_.size(); ++m) {
-        blended_.times[m].push_back(time_.maps()[m].at(generic));
+        blended_.times[m].push_back(time.maps()[m].at(generic));
       }
     }
   }
 
   // Steps 4 and 5 for the pose relative to the ground frame. The first motion determines the
   // hemisphere of the quaternions.
-  void sum_poses() {
-    Clip& clip = blended_.clip;
+  void sum_poses(int first, Clip& clip) const {
     const auto joints = clip.skeleton.names.size();
-    parallel_for(at(frames()), kFramesAtOnce, options_.jobs,
+    parallel_for(at(clip.frame_count()), kFramesAtOnce, options_.jobs,
                  [&](std::size_t begin, std::size_t end) {
                    const std::size_t blocks = at(pose_blocks(clip.joint_count()));
                    std::vector<PoseBlock> reference(blocks), sum(blocks);
                    std::vector<BlendTerm> terms;
                    std::vector<Transform> pose(joints);
                    for (std::size_t f = begin; f < end; ++f) {
+                     const int frame = first + static_cast<int>(f);
                      terms.clear();
                      for (std::size_t m = 0; m < motions_.size(); ++m) {
-                       const auto share = static_cast<float>(weight(m, static_cast<int>(f)));
+                       const auto share = static_cast<float>(weight(m, frame));
                        if (share == 0) continue;
-                       terms.push_back({&motions_[m].poses(), blended_.times[m][f], share});
+                       terms.push_back({&motions_[m].poses(), frame_in_part(m, frame), share});
                      }
-                     sample_pose(motions_.front().poses(), blended_.times.front()[f], reference);
+                     sample_pose(motions_.front().poses(), frame_in_part(0, frame), reference);
                      blend_poses(terms, reference, sum);
                      unpack_pose(sum, pose);
                      local_to_world(clip.skeleton.parents, pose, pose);
@@ -258,20 +319,25 @@ class Blender {
     return {sum.x / all, sum.z / all, reference + sum.heading / all};
   }
 
+  double frame_in_part(std::size_t motion, int frame) const {
+    return motions_[motion].frame_in_part(blended_.times[motion][at(frame)]);
+  }
+
   // Step 4 for root motion: displacement per frame relative to the character's heading.
-  void walk() {
-    Clip& clip = blended_.clip;
+  void walk(int first, Clip& clip) {
     std::vector<Transform> pose(clip.skeleton.names.size());
-    std::vector<Vec3> before(pose.size());
-    GroundFrame place = first_place();
-    for (int f = 0; f < frames(); ++f) {
+    // Where the block before ended.
+    auto [place, before] =
+        first == 0 ? Walked{first_place(), std::vector<Vec3>(pose.size())} : walked_.at(first);
+    for (int f = 0; f < clip.frame_count(); ++f) {
       clip.get_pose(f, pose);
-      if (f > 0) place = next_place(place, f, before, pose);
+      if (first + f > 0) place = next_place(place, first + f, before, pose);
       for (std::size_t j = 0; j < pose.size(); ++j) before[j] = pose[j].position;
       const Transform to_world = place.to_world();
       for (Transform& joint : pose) joint = to_world * joint;
       clip.set_pose(f, pose);
     }
+    walked_.insert_or_assign(first + clip.frame_count(), Walked{place, std::move(before)});
   }
 
   GroundFrame next_place(const GroundFrame& place, int frame, std::span<const Vec3> before,
@@ -333,14 +399,14 @@ class Blender {
     return after != spans->second.begin() && time <= std::prev(after)->second;
   }
 
-  void find_spread() {
-    std::vector<PoseBlock> block(at(pose_blocks(blended_.clip.joint_count())));
-    std::vector<Transform> first(blended_.clip.skeleton.names.size()), other(first.size());
-    for (int f = 0; f < frames() && motions_.size() > 1; ++f) {
+  void find_spread(int first_frame, const Clip& clip) {
+    std::vector<PoseBlock> block(at(pose_blocks(clip.joint_count())));
+    std::vector<Transform> first(clip.skeleton.names.size()), other(first.size());
+    for (int f = first_frame; f < first_frame + clip.frame_count() && motions_.size() > 1; ++f) {
       bool has_first = false;
       for (std::size_t m = 0; m < motions_.size(); ++m) {
         if (weight(m, f) == 0) continue;
-        sample_pose(motions_[m].poses(), blended_.times[m][at(f)], block);
+        sample_pose(motions_[m].poses(), frame_in_part(m, f), block);
         unpack_pose(block, has_first ? other : first);
         for (std::size_t j = 0; has_first && j < first.size(); ++j) {
           const double angle = angle_between(first[j].orientation, other[j].orientation);
@@ -354,15 +420,17 @@ class Blender {
     }
   }
 
-  void find_keys(const Correspondence& correspondence) {
+  // The contacts get their places when their frames are made.
+  void find_keys(const BlendTime& time, const Correspondence& correspondence) {
     MotionKeys& keys = blended_.keys;
+    const double rate = blended_.clip.rate, duration = frames() < 2 ? 0.0 : (frames() - 1) / rate;
     for (int k = 0; k < correspondence.moments(); ++k) {
       const std::string& name = correspondence.names[at(k)];
       const bool is_end =
           (k == 0 && name == "begin") || (k + 1 == correspondence.moments() && name == "end");
       if (is_end) continue;
       // The last moment may be up to a frame after the last frame.
-      keys.keytimes.push_back({std::min(time_.moments()[at(k)], blended_.clip.duration()), name});
+      keys.keytimes.push_back({std::min(time.moments()[at(k)], duration), name});
     }
     if (contact_joints_.empty() || frames() < 2) return;
     // A joint is in contact if the motions in contact have more than half of the weight.
@@ -376,7 +444,7 @@ class Blender {
         if (stands > 0.5) {
           if (begin < 0) begin = f;
         } else if (begin >= 0) {
-          add_contact(joint, begin, f - 1);
+          keys.contacts.push_back({joint, begin / rate, (f - 1) / rate, Vec3::Zero()});
           begin = -1;
         }
       }
@@ -384,29 +452,36 @@ class Blender {
     std::ranges::sort(keys.contacts, [](const Contact& a, const Contact& b) {
       return a.start != b.start ? a.start < b.start : a.joint < b.joint;
     });
+    for (const Contact& contact : keys.contacts) {
+      middles_.push_back(
+          static_cast<int>(std::lround(contact.start * rate) + std::lround(contact.end * rate)) /
+          2);
+    }
   }
 
-  void add_contact(int joint, int first, int last) {
-    const Clip& clip = blended_.clip;
-    const Vec3 place = clip.frame_positions((first + last) / 2)[at(joint)].cast<double>();
-    blended_.keys.contacts.push_back({joint, first / clip.rate, last / clip.rate, place});
-  }
+  struct Walked {
+    GroundFrame place;
+    std::vector<Vec3> before;  // [joints] of the last frame, relative to its place
+  };
 
-  std::span<const BlendInput> inputs_;
-  const BlendOptions& options_;
-  const BlendTime& time_;
-  std::vector<GroundedClip> motions_;
+  std::vector<BlendSource> inputs_;
+  BlendOptions options_;
+  std::vector<GroundedMotion> motions_;
+  int frames_ = 0;
   std::set<int> contact_joints_;
   // Of each motion the seconds in which a joint is in contact, apart and in order.
   std::vector<std::map<int, std::vector<std::pair<double, double>>>> spans_;
+  std::vector<int> middles_;      // of each contact
+  std::map<int, Walked> walked_;  // before the first frames of blocks
   Blended blended_;
 };
 
 }  // namespace
 
-Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& roles,
-                            const Correspondence& correspondence, const BlendOptions& options) {
-  if (Status status = check_inputs(inputs); !status) return status.error();
+Result<BlendedFrames> blend_frames(std::span<const BlendSource> inputs, const RoleMap& roles,
+                                   const Correspondence& correspondence,
+                                   const BlendOptions& options) {
+  if (Status status = check_sources(inputs); !status) return status.error();
   if (Status status = check(correspondence); !status) return status.error();
   if (correspondence.times.size() != inputs.size()) {
     return Error("blend-keys", "the number of motions and of keytime lists differ");
@@ -414,7 +489,7 @@ Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& r
   if (!options.any_sum) {
     if (Status status = check_sum(inputs); !status) return status.error();
   }
-  const double rate = options.rate != 0 ? options.rate : inputs.front().clip->rate;
+  const double rate = options.rate != 0 ? options.rate : inputs.front().frames.rate;
   if (Status status = check_frame_rate(rate, "clip-rate"); !status) return status.error();
   std::vector<TimeMap> maps;
   std::vector<WeightCurve> weights;
@@ -424,25 +499,70 @@ Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& r
   }
   const auto time = BlendTime::create(std::move(maps), std::move(weights), 2 / rate * (1 - 1e-9));
   if (!time) return time.error();
-  if (time->duration() * rate * inputs.front().clip->joint_count() > kMaxTransforms) {
+  if (time->duration() * rate * inputs.front().frames.joint_count() > kMaxTransforms) {
     return Error("clip-too-long", fmt::format("{} s at {} frames per second exceed the limit",
                                               readable(time->duration()), readable(rate)));
   }
-  std::vector<const Clip*> clips;
-  for (const BlendInput& input : inputs) clips.push_back(input.clip);
-  const HipsRoot hips_root(clips, carrying_joint(roles));
-  if (!hips_root.changes()) {
-    return Blender(inputs, roles, options, *time, rate).blend(correspondence);
+  std::vector<FrameSource> motions;
+  for (const BlendSource& input : inputs) motions.push_back(input.frames);
+  const auto found = HipsRoot::of(motions, carrying_joint(roles), options.jobs);
+  if (!found) return found.error();
+  const HipsRoot hips_root = *found;
+  std::vector<BlendSource> rooted(inputs.begin(), inputs.end());
+  if (hips_root.changes()) {
+    for (BlendSource& input : rooted) {
+      Skeleton skeleton = hips_root.rooted(input.frames.skeleton);
+      input.frames = changed(input.frames, [hips_root](Clip& frames) {
+        frames = hips_root.rooted(frames);
+        return Status();
+      });
+      input.frames.skeleton = std::move(skeleton);
+    }
   }
-  std::vector<Clip> rooted;
-  rooted.reserve(inputs.size());
-  std::vector<BlendInput> rooted_inputs(inputs.begin(), inputs.end());
-  for (BlendInput& input : rooted_inputs) {
-    input.clip = &rooted.emplace_back(hips_root.rooted(*input.clip));
+  const auto made = Blender::make(std::move(rooted), roles, options, *time, rate, correspondence);
+  if (!made) return made.error();
+  const std::shared_ptr<Blender> blender = *made;
+
+  FrameSource blank;  // whose frames are made
+  blank.skeleton = blender->blended().clip.skeleton;
+  blank.rate = rate;
+  blank.frame_count = blender->frames();
+  blank.read = [](int, int, auto...) { return Status(); };
+  BlendedFrames blended;
+  blended.frames = changed_in_blocks(blank, {kFramesOfBlock, 0}, 1,
+                                     [blender](FrameRun& run) { return blender->blend(run); });
+  const Skeleton& skeleton = motions.front().skeleton;
+  if (hips_root.changes()) {
+    blended.frames = changed(blended.frames, [hips_root, skeleton](Clip& frames) {
+      frames = hips_root.restored(frames, skeleton);
+      return Status();
+    });
+    blended.frames.skeleton = skeleton;
   }
-  Blended blended = Blender(rooted_inputs, roles, options, *time, rate).blend(correspondence);
-  blended.clip = hips_root.restored(blended.clip, clips.front()->skeleton);
-  blended.spread_joint = hips_root.original(blended.spread_joint);
+  blended.done = [blender, hips_root, skeleton] {
+    Blended result = blender->blended();
+    result.clip.skeleton = skeleton;
+    result.spread_joint = hips_root.original(result.spread_joint);
+    return result;
+  };
+  return blended;
+}
+
+Result<Blended> blend_clips(std::span<const BlendInput> inputs, const RoleMap& roles,
+                            const Correspondence& correspondence, const BlendOptions& options) {
+  std::vector<BlendSource> sources;
+  for (const BlendInput& input : inputs) {
+    if (Status status = check(*input.clip); !status) {
+      return std::move(status).error().in_file(input.name);
+    }
+    sources.push_back({input.name, frames_of(*input.clip), input.keys, input.weight});
+  }
+  const auto made = blend_frames(sources, roles, correspondence, options);
+  if (!made) return made.error();
+  auto clip = load(made->frames, 1);
+  if (!clip) return clip.error();
+  Blended blended = made->done();
+  blended.clip = *std::move(clip);
   return blended;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "body/human_parts.h"
+#include "body/long_take.h"
 #include "body/polygonise.h"
 #include "body/shapes.h"
 #include "core/numbers.h"
@@ -214,16 +215,16 @@ void move_to(const Skeleton& skeleton, std::span<const Transform> built,
   }
 }
 
-Status check_request(const Clip& clip, const BodyOptions& options) {
-  if (Status status = check(clip); !status) return status;
+Status check_request(const FrameSource& source, const BodyOptions& options) {
+  if (Status status = check(source.skeleton); !status) return status;
   if (options.pose == BodyPose::frame &&
-      (options.frame < 0 || options.frame >= clip.frame_count())) {
+      (options.frame < 0 || options.frame >= source.frame_count)) {
     return Error(
         "body-frame",
-        fmt::format("frame {} is out of range, the clip has {}", options.frame, clip.frame_count()),
+        fmt::format("frame {} is out of range, the clip has {}", options.frame, source.frame_count),
         "frames count from 0");
   }
-  const std::size_t joints = clip.skeleton.names.size();
+  const std::size_t joints = source.skeleton.names.size();
   // The surface is evaluated bone by bone: bones that all meet in one place would take hours and
   // more memory than there is.
   constexpr std::size_t kMaxBodyJoints = 2000;
@@ -242,15 +243,21 @@ struct Plan {
   Shape shape;
 };
 
-Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
-  const Skeleton& skeleton = clip.skeleton;
+Result<Plan> make_plan(const FrameSource& source, const BodyOptions& options, Body& body) {
+  const Skeleton& skeleton = source.skeleton;
   const RoleMap roles = find_roles(skeleton);
   const auto actor = find_human(skeleton, roles);
   body.human = actor.has_value();
   Plan plan;
   if (options.pose == BodyPose::reference) plan.wanted = skeleton.reference;
-  if (options.pose == BodyPose::frame) plan.wanted = clip_pose(clip, options.frame);
-  BuildPose pose = actor ? human_build_pose(clip, roles, *actor) : general_build_pose(clip);
+  if (options.pose == BodyPose::frame) {
+    auto wanted = pose_of(source, options.frame);
+    if (!wanted) return wanted.error();
+    plan.wanted = *std::move(wanted);
+  }
+  auto found = actor ? human_build_pose(source, roles, *actor) : general_build_pose(source);
+  if (!found) return found.error();
+  BuildPose pose = *std::move(found);
   body.pose = options.pose == BodyPose::automatic   ? pose.name
               : options.pose == BodyPose::reference ? "reference"
                                                     : fmt::format("frame {}", options.frame);
@@ -271,14 +278,21 @@ Plan make_plan(const Clip& clip, const BodyOptions& options, Body& body) {
 }  // namespace
 
 Result<Body> make_body(const Clip& clip, const BodyOptions& options) {
-  if (Status status = check_request(clip, options); !status) {
+  if (Status status = check(clip); !status) return status.error();
+  return make_body(frames_of(clip), options);
+}
+
+Result<Body> make_body(const FrameSource& source, const BodyOptions& options) {
+  if (Status status = check_request(source, options); !status) {
     return std::move(status).error();
   }
   Progress silent;
   Progress& progress = options.progress ? *options.progress : silent;
-  const Skeleton& skeleton = clip.skeleton;
+  const Skeleton& skeleton = source.skeleton;
   Body body;
-  Plan plan = make_plan(clip, options, body);
+  auto planned = make_plan(source, options, body);
+  if (!planned) return planned.error();
+  Plan plan = *std::move(planned);
 
   const Level level = level_of(options.detail);
   const double cell = cell_size(Field(plan.shape), level.vertices);

@@ -9,6 +9,7 @@
 #include "body/human_actor.h"
 #include "math/quaternion.h"
 #include "retarget/stance.h"
+#include "scene/frame_blocks.h"
 
 namespace krok::body {
 
@@ -243,43 +244,48 @@ double spread(const Skeleton& skeleton, std::span<const Transform> pose) {
 
 }  // namespace
 
-std::vector<Transform> clip_pose(const Clip& clip, int frame) {
-  std::vector<Transform> pose(clip.skeleton.names.size());
-  clip.get_pose(frame, pose);
+Result<std::vector<Transform>> pose_of(const FrameSource& source, int frame) {
+  const auto clip = load(part_of(source, frame, 1), 1);
+  if (!clip) return clip.error();
+  std::vector<Transform> pose(source.skeleton.names.size());
+  clip->get_pose(0, pose);
   return pose;
 }
 
-BuildPose human_build_pose(const Clip& clip, const RoleMap& roles, const HumanActor& actor) {
-  const Skeleton& skeleton = clip.skeleton;
+Result<BuildPose> human_build_pose(const FrameSource& source, const RoleMap& roles,
+                                   const HumanActor& actor) {
+  const Skeleton& skeleton = source.skeleton;
   StandingPose best = stand_upright(skeleton, actor, skeleton.reference);
   std::string name = best.turned > 0    ? "reference, limbs turned aside"
                      : best.heading > 0 ? "reference, turned upright"
                                         : "reference";
   if (best.turned > kTooMuch) {
-    StandingPose built =
-        stand_upright(skeleton, actor, retarget::neutral_skeleton(clip, roles).reference);
+    const auto neutral = retarget::neutral_skeleton(source, roles);
+    if (!neutral) return neutral.error();
+    StandingPose built = stand_upright(skeleton, actor, neutral->reference);
     if (built.turned < 0.6 * best.turned) {
       best = std::move(built);
       bring_home(best.joint_to_world);
       name = "T-pose built from the skeleton";
     }
   }
-  return {std::move(best.joint_to_world), std::move(name)};
+  return BuildPose{std::move(best.joint_to_world), std::move(name)};
 }
 
-BuildPose general_build_pose(const Clip& clip) {
-  const Skeleton& skeleton = clip.skeleton;
+Result<BuildPose> general_build_pose(const FrameSource& source) {
+  const Skeleton& skeleton = source.skeleton;
   BuildPose best{skeleton.reference, "reference"};
   double most = 1.5 * spread(skeleton, skeleton.reference);
-  const int frames = clip.frame_count();
+  const int frames = source.frame_count;
   const int step = std::max(1, frames / kSamples);
   for (int frame = 0; frame < frames; frame += step) {
-    auto pose = clip_pose(clip, frame);
-    const double candidate = spread(skeleton, pose);
+    auto pose = pose_of(source, frame);
+    if (!pose) return pose.error();
+    const double candidate = spread(skeleton, *pose);
     if (candidate <= most) continue;
     most = candidate;
-    bring_home(pose);
-    best = {std::move(pose), fmt::format("frame {}", frame)};
+    bring_home(*pose);
+    best = {*std::move(pose), fmt::format("frame {}", frame)};
   }
   return best;
 }

@@ -7,6 +7,7 @@
 #include "body/human_actor.h"
 #include "body/implicit.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/skeleton.h"
 
 namespace krok::body {
@@ -38,16 +39,17 @@ struct BuildPose {
   std::string name;  // for display: "reference", "frame 12, limbs turned aside"
 };
 
-// One frame of a clip, joint_to_world.
-std::vector<Transform> clip_pose(const Clip& clip, int frame);
+// One frame of a motion, joint_to_world.
+Result<std::vector<Transform>> pose_of(const FrameSource& source, int frame);
 
 // The reference pose, standing upright with limbs apart (see human_pose.h); a T-pose built from the
 // skeleton (retarget::neutral_skeleton) if the reference pose needs so much rotation that the twist
 // of the limbs would be arbitrary.
-BuildPose human_build_pose(const Clip& clip, const RoleMap& roles, const HumanActor& actor);
+Result<BuildPose> human_build_pose(const FrameSource& source, const RoleMap& roles,
+                                   const HumanActor& actor);
 
 // The reference pose or, if that folds bones onto each other, the frame of the clip with the
 // largest spread of bones.
-BuildPose general_build_pose(const Clip& clip);
+Result<BuildPose> general_build_pose(const FrameSource& source);
 
 }  // namespace krok::body

@@ -124,10 +124,13 @@ Vec3 sole_direction(const Clip& clip, const RoleMap& roles, Side side) {
 }
 
 std::vector<double> ankle_dorsiflexion(const Clip& clip, const RoleMap& roles, Side side,
-                                       const Limbs& limbs, const FrameRange& frames) {
+                                       const Limbs& limbs, const FrameRange& frames,
+                                       const Soles* soles) {
   std::vector<double> angles;
   if (limbs.lower_leg < 0 || limbs.foot < 0) return angles;
-  const Vec3 sole = sole_direction(clip, roles, side);
+  const Vec3 sole = soles == nullptr     ? sole_direction(clip, roles, side)
+                    : side == Side::left ? soles->left
+                                         : soles->right;
   if (sole.isZero(1e-6)) return angles;
   for (int f = frames.first; f <= frames.last; ++f) {
     const Vec3 shank = position(clip, f, limbs.lower_leg) - position(clip, f, limbs.foot);
@@ -147,7 +150,7 @@ Quat turn_from_reference(const Clip& clip, int joint, int frame) {
 }  // namespace
 
 std::vector<double> body_angle(const Clip& clip, const RoleMap& roles, BodyAngle angle, Side side,
-                               const FrameRange& frames) {
+                               const FrameRange& frames, const Soles* soles) {
   const Limbs limbs = limbs_of(roles, side);
   const Trunk trunk = {limbs_of(roles, Side::left), limbs_of(roles, Side::right)};
   switch (angle) {
@@ -156,13 +159,17 @@ std::vector<double> body_angle(const Clip& clip, const RoleMap& roles, BodyAngle
     case BodyAngle::knee:
       return bend(clip, limbs.upper_leg, limbs.lower_leg, limbs.foot, frames);
     case BodyAngle::ankle:
-      return ankle_dorsiflexion(clip, roles, side, limbs, frames);
+      return ankle_dorsiflexion(clip, roles, side, limbs, frames, soles);
     case BodyAngle::shoulder:
       return shoulder_elevation(clip, trunk, limbs, frames);
     case BodyAngle::elbow:
       return bend(clip, limbs.upper_arm, limbs.lower_arm, limbs.hand, frames);
   }
   return {};
+}
+
+Soles find_soles(const Clip& clip, const RoleMap& roles) {
+  return {sole_direction(clip, roles, Side::left), sole_direction(clip, roles, Side::right)};
 }
 
 std::vector<double> turn_angle(const Clip& clip, int joint, const FrameRange& frames) {

@@ -34,9 +34,18 @@ struct FrameRange {
 enum class BodyAngle : unsigned char { hip, knee, ankle, shoulder, elbow };
 
 // One value per frame of the range; empty if the skeleton lacks a required joint. `side` is left or
-// right. The clip must pass check() and contain the range.
+// right. The clip must pass check() and contain the range. `soles`: those of the motion that the
+// clip is a part of; null: the clip's.
+struct Soles;
 std::vector<double> body_angle(const Clip& clip, const RoleMap& roles, BodyAngle angle, Side side,
-                               const FrameRange& frames);
+                               const FrameRange& frames, const Soles* soles = nullptr);
+
+// Directions of the soles in the frames of the ankles, zero if unknown. Found from the frames that
+// retarget::frames_looked_at() gives as from the whole motion.
+struct Soles {
+  Vec3 left = Vec3::Zero(), right = Vec3::Zero();
+};
+Soles find_soles(const Clip& clip, const RoleMap& roles);
 
 // Angle of a joint's local rotation from the reference pose, [0, 180]; for the root, in world
 // space.

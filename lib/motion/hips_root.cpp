@@ -116,16 +116,22 @@ HipsRoot::HipsRoot(const Clip& clip, int carrier)
     : HipsRoot(std::array<const Clip*, 1>{&clip}, carrier) {}
 
 Result<HipsRoot> HipsRoot::of(const FrameSource& source, int carrier, int jobs) {
+  return of(std::span(&source, 1), carrier, jobs);
+}
+
+Result<HipsRoot> HipsRoot::of(std::span<const FrameSource> sources, int carrier, int jobs) {
   HipsRoot root;
   root.carrier_ = carrier;
-  root.find_joints(source.skeleton);
+  root.find_joints(sources.front().skeleton);
   if (!root.changes()) return root;
-  KeptFinder finder(root, source.skeleton);
-  const Status status = for_each_block(source, jobs, [&](int first, const Clip& block) {
-    finder.add(block, first == 0);
-    return Status();
-  });
-  if (!status) return status.error();
+  KeptFinder finder(root, sources.front().skeleton);
+  for (const FrameSource& source : sources) {
+    const Status status = for_each_block(source, jobs, [&](int first, const Clip& block) {
+      finder.add(block, first == 0);
+      return Status();
+    });
+    if (!status) return status.error();
+  }
   finder.finish();
   return root;
 }

@@ -32,8 +32,9 @@ class HipsRoot {
   HipsRoot(std::span<const Clip* const> clips, int carrier);
   HipsRoot(const Clip& clip, int carrier);
   // The same of frames that are produced on demand, read once if there are joints above the hips.
-  // Errors are those of the source.
+  // Errors are those of the sources.
   static Result<HipsRoot> of(const FrameSource& source, int carrier, int jobs);
+  static Result<HipsRoot> of(std::span<const FrameSource> sources, int carrier, int jobs);
 
   // Whether there are joints above the hips.
   bool changes() const { return !above_.empty(); }

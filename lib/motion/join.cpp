@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -12,9 +13,9 @@
 #include "math/quaternion.h"
 #include "motion/ground_frame.h"
 #include "motion/hips_root.h"
-#include "motion/local_motion.h"
 #include "motion/place.h"
 #include "motion/sample.h"
+#include "scene/frame_blocks.h"
 
 namespace krok {
 
@@ -66,16 +67,22 @@ struct Facing {
 
   // Reference poses that are twisted between hips and chest have motions turned by far more there
   // than people can be.
-  Facing(const Clip& clip, int hips, int upper) : carrier(hips), chest(upper) {
-    if (chest < 0) return;
+  static Result<Facing> of(const FrameSource& motion, int hips, int upper, int jobs) {
+    Facing facing{hips, upper};
+    if (upper < 0) return facing;
     Vec2 sum = Vec2::Zero();
-    for (int f = 0; f < clip.frame_count(); ++f) {
-      const double apart =
-          ground_frame(clip, chest, f).heading - ground_frame(clip, carrier, f).heading;
-      sum += Vec2(std::cos(apart), std::sin(apart));
-    }
+    const Status status = for_each_block(motion, jobs, [&](int, const Clip& block) {
+      for (int f = 0; f < block.frame_count(); ++f) {
+        const double apart =
+            ground_frame(block, upper, f).heading - ground_frame(block, hips, f).heading;
+        sum += Vec2(std::cos(apart), std::sin(apart));
+      }
+      return Status();
+    });
+    if (!status) return status.error();
     const double mean = std::atan2(sum.y(), sum.x());
-    if (std::abs(mean) > kTwistedChest) twist = mean;
+    if (std::abs(mean) > kTwistedChest) facing.twist = mean;
+    return facing;
   }
 
   // Between hips and chest.
@@ -119,16 +126,16 @@ double largest_difference(const Clip& first, int first_frame, const Clip& second
 
 // Maps the character's ground frame in the second motion to that in the first.
 Transform alignment(const Clip& first, int first_frame, const Clip& second, int second_frame,
-                    int carrier, const JoinOptions& options) {
+                    const Facing& facing, bool match_height) {
+  const int carrier = facing.carrier;
   GroundFrame end = ground_frame(first, carrier, first_frame);
   GroundFrame start = ground_frame(second, carrier, second_frame);
   const double other = smoother_step(
       (largest_difference(first, first_frame, second, second_frame) - kAlike) / (kOther - kAlike));
-  const Facing facing(first, carrier, options.chest);
   end.heading += other * wrapped(steady_facing(first, facing, first_frame, -1) - end.heading);
   start.heading += other * wrapped(steady_facing(second, facing, second_frame, 1) - start.heading);
   Transform move = end.to_world() * start.to_world().inverse();
-  if (options.match_height) {
+  if (match_height) {
     const auto c = static_cast<std::size_t>(carrier);
     move.position.y() = static_cast<double>(first.frame_positions(first_frame)[c].y()) -
                         second.frame_positions(second_frame)[c].y();
@@ -136,20 +143,110 @@ Transform alignment(const Clip& first, int first_frame, const Clip& second, int 
   return move;
 }
 
+// A motion moved in the world; its reference pose is unchanged.
+FrameSource moved(const FrameSource& motion, const Transform& move) {
+  return changed(motion, [move](Clip& frames) {
+    move_clip(move, frames);
+    return Status();
+  });
+}
+
+// The frames of `first` up to the overlap, those of the overlap, and those of `second` after it.
+class Joint {
+ public:
+  Joint(FrameSource first, FrameSource second, int shared)
+      : first_(std::move(first)), second_(std::move(second)), shared_(shared) {}
+
+  // The first's frame at which the second begins.
+  int begin() const { return first_.frame_count - 1 - shared_; }
+
+  Status read(int from, int count, std::span<Vec3f> positions,
+              std::span<Quatf> orientations) const {
+    Clip made{first_.skeleton, first_.rate, {}, {}, {}};
+    made.resize(count);
+    const int end = from + count;
+    const auto a = part(first_, from, std::min(end, first_.frame_count));
+    if (!a) return a.error();
+    const int second_from = std::max(from - begin(), 0);
+    const auto b = part(second_, second_from, end - begin());
+    if (!b) return b.error();
+    std::vector<Transform> pose(made.skeleton.names.size()), scratch(pose), other(pose);
+    for (int f = from; f < end; ++f) {
+      const int k = f - begin();
+      const bool after = k > 0 && f >= first_.frame_count;
+      local_pose(after ? *b : *a, after ? k - second_from : f - from, scratch, pose);
+      if (k > 0 && !after) {
+        const double u = static_cast<double>(k) / shared_;
+        const double weight = u * u * (3 - 2 * u);
+        local_pose(*b, k - second_from, scratch, other);
+        for (std::size_t j = 0; j < pose.size(); ++j) {
+          pose[j].position += weight * (other[j].position - pose[j].position);
+          pose[j].orientation = slerp(pose[j].orientation, other[j].orientation, weight);
+        }
+      }
+      local_to_world(made.skeleton.parents, pose, pose);
+      for (Transform& joint : pose) joint.orientation = normalized_or_identity(joint.orientation);
+      made.set_pose(f - from, pose);
+    }
+    std::ranges::copy(made.positions, positions.begin());
+    std::ranges::copy(made.orientations, orientations.begin());
+    return {};
+  }
+
+  void release(int frame) const {
+    if (first_.release) first_.release(std::min(frame, first_.frame_count));
+    if (second_.release && frame > begin()) second_.release(frame - begin());
+  }
+
+  // By how much rotations differ in the middle of the overlap.
+  Status measure(JoinSeam& seam) const {
+    const int middle = shared_ / 2;
+    seam.joint_frame = begin() + middle;
+    seam.shared_frames = shared_ + 1;
+    const auto a = part(first_, seam.joint_frame, seam.joint_frame + 1);
+    if (!a) return a.error();
+    const auto b = part(second_, middle, middle + 1);
+    if (!b) return b.error();
+    std::vector<Transform> scratch(first_.skeleton.names.size()), from(scratch), to(scratch);
+    local_pose(*a, 0, scratch, from);
+    local_pose(*b, 0, scratch, to);
+    for (std::size_t j = 0; j < from.size(); ++j) {
+      const double angle = angle_between(from[j].orientation, to[j].orientation);
+      if (angle <= seam.largest_angle) continue;
+      seam.largest_angle = angle;
+      seam.largest_joint = static_cast<int>(j);
+    }
+    return {};
+  }
+
+ private:
+  // Frames [from, end); none if there are none.
+  static Result<Clip> part(const FrameSource& motion, int from, int end) {
+    return load(part_of(motion, from, std::max(end - from, 0)), 1);
+  }
+  static void local_pose(const Clip& clip, int frame, std::span<Transform> scratch,
+                         std::span<Transform> local) {
+    clip.get_pose(frame, scratch);
+    world_to_local(clip.skeleton.parents, scratch, local);
+  }
+
+  FrameSource first_, second_;
+  int shared_;
+};
+
 // Joins motions rooted at the hips.
-Result<Joined> join_rooted(const Clip& first, const Clip& second, int carrier,
-                           const JoinOptions& options) {
-  if (first.frame_count() == 0) {
-    Joined all{second};
-    all.clip.skeleton = first.skeleton;
-    all.clip.provenance = first.provenance;
+Result<JoinedFrames> join_rooted(const FrameSource& first, const FrameSource& second, int carrier,
+                                 const JoinOptions& options, int jobs) {
+  if (first.frame_count == 0) {
+    JoinedFrames all{{}, second};
+    all.frames.skeleton = first.skeleton;
     return all;
   }
-  if (second.frame_count() == 0) return Joined{first, first.frame_count() - 1};
-  auto resampled = resample(second, first.rate);
+  if (second.frame_count == 0) return JoinedFrames{{first.frame_count - 1}, first};
+  const auto resampled = resample(second, first.rate);
   if (!resampled) return resampled.error();
-  Clip& next = *resampled;
-  const int n = first.frame_count(), m = next.frame_count();
+  const FrameSource& next = *resampled;
+  const int n = first.frame_count, m = next.frame_count;
   const double wanted = std::round(options.blend * first.rate);
   if (wanted > std::min(n, m) - 1) {
     return Error("motion-blend",
@@ -158,63 +255,68 @@ Result<Joined> join_rooted(const Clip& first, const Clip& second, int carrier,
                              readable(options.blend, 4)),
                  "use a shorter --blend");
   }
-  const int shared = static_cast<int>(wanted);
-  const int begin = n - 1 - shared;  // the first's frame at which the second begins
-  const int middle = shared / 2;
-  move_clip(alignment(first, begin + middle, next, middle, carrier, options), next);
+  const int shared = static_cast<int>(wanted), middle = shared / 2;
+  const auto facing = Facing::of(first, carrier, options.chest, jobs);
+  if (!facing) return facing.error();
+  // The frames that steady_facing() looks at.
+  const int looked_at = shared + 1 + static_cast<int>(std::lround(kTwoSteps * first.rate));
+  const auto end = load(part_of(first, std::max(n - looked_at, 0), std::min(n, looked_at)), jobs);
+  if (!end) return end.error();
+  const auto start = load(part_of(next, 0, std::min(m, looked_at)), jobs);
+  if (!start) return start.error();
+  const int joint_frame = end->frame_count() - 1 - shared + middle;
+  const Transform move =
+      alignment(*end, joint_frame, *start, middle, *facing, options.match_height);
 
-  const LocalMotion a = local_motion(first), b = local_motion(next);
-  LocalMotion whole;
-  whole.joints = a.joints;
-  whole.frames = begin + m;
-  whole.orientations.resize(static_cast<std::size_t>(whole.joints) *
-                            static_cast<std::size_t>(whole.frames));
-  whole.positions.resize(whole.orientations.size());
-  Joined result;
-  result.joint_frame = begin + middle;
-  result.shared_frames = shared + 1;
-  for (int j = 0; j < whole.joints; ++j) {
-    for (int f = 0; f < whole.frames; ++f) {
-      const int k = f - begin;
-      if (k <= 0 || f >= n) {
-        whole.set(j, f, k <= 0 ? a.at(j, f) : b.at(j, k));
-        continue;
-      }
-      const double u = static_cast<double>(k) / shared;
-      const double weight = u * u * (3 - 2 * u);
-      const Transform from = a.at(j, f), to = b.at(j, k);
-      whole.set(j, f,
-                {from.position + weight * (to.position - from.position),
-                 slerp(from.orientation, to.orientation, weight)});
-    }
-    const double angle =
-        angle_between(a.at(j, result.joint_frame).orientation, b.at(j, middle).orientation);
-    if (angle > result.largest_angle) {
-      result.largest_angle = angle;
-      result.largest_joint = j;
-    }
-  }
-  result.clip.skeleton = first.skeleton;
-  result.clip.rate = first.rate;
-  result.clip.provenance = first.provenance;
-  set_local_motion(whole, result.clip);
-  return result;
+  const auto joint = std::make_shared<const Joint>(first, moved(next, move), shared);
+  JoinedFrames joined;
+  if (Status status = joint->measure(joined); !status) return status.error();
+  joined.frames = first;
+  joined.frames.frame_count = joint->begin() + m;
+  joined.frames.read = [joint](auto... block) { return joint->read(block...); };
+  joined.frames.release = [joint](int frame) { joint->release(frame); };
+  return joined;
 }
 
 }  // namespace
 
 Result<Joined> join(const Clip& first, const Clip& second, int carrier,
                     const JoinOptions& options) {
-  if (Status status = same_skeleton(first.skeleton, second.skeleton, carrier); !status)
+  const auto joined = join(frames_of(first), frames_of(second), carrier, options, 1);
+  if (!joined) return joined.error();
+  auto clip = load(joined->frames, 1);
+  if (!clip) return clip.error();
+  clip->provenance = first.provenance;
+  return Joined{*joined, *std::move(clip)};
+}
+
+Result<JoinedFrames> join(const FrameSource& first, const FrameSource& second, int carrier,
+                          const JoinOptions& options, int jobs) {
+  if (Status status = same_skeleton(first.skeleton, second.skeleton, carrier); !status) {
     return status.error();
+  }
   if (!(options.blend >= 0) || !std::isfinite(options.blend)) {
     return Error("motion-blend", "the time that two motions share is 0 or more");
   }
-  const HipsRoot hips_root(std::array<const Clip*, 2>{&first, &second}, carrier);
-  if (!hips_root.changes()) return join_rooted(first, second, carrier, options);
-  auto joined = join_rooted(hips_root.rooted(first), hips_root.rooted(second), carrier, options);
+  const auto found = HipsRoot::of(std::array{first, second}, carrier, jobs);
+  if (!found) return found.error();
+  const HipsRoot hips_root = *found;
+  if (!hips_root.changes()) return join_rooted(first, second, carrier, options, jobs);
+  const auto rooted = [&](const FrameSource& motion) {
+    FrameSource result = changed(motion, [hips_root](Clip& frames) {
+      frames = hips_root.rooted(frames);
+      return Status();
+    });
+    result.skeleton = hips_root.rooted(motion.skeleton);
+    return result;
+  };
+  auto joined = join_rooted(rooted(first), rooted(second), carrier, options, jobs);
   if (!joined) return joined;
-  joined->clip = hips_root.restored(joined->clip, first.skeleton);
+  joined->frames = changed(joined->frames, [hips_root, skeleton = first.skeleton](Clip& frames) {
+    frames = hips_root.restored(frames, skeleton);
+    return Status();
+  });
+  joined->frames.skeleton = first.skeleton;
   joined->largest_joint = hips_root.original(joined->largest_joint);
   return joined;
 }

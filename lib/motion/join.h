@@ -2,6 +2,7 @@
 
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 namespace krok {
 
@@ -17,14 +18,21 @@ struct JoinOptions {
   int chest = -1;
 };
 
-// The joined clip and its seam. `largest_angle` is the largest angle, in radians, between the two
-// motions' rotations of a joint relative to its parent at `joint_frame`, before blending.
-struct Joined {
-  Clip clip;
+// `largest_angle` is the largest angle, in radians, between the two motions' rotations of a joint
+// relative to its parent at `joint_frame`, before blending.
+struct JoinSeam {
   int joint_frame = 0;  // the middle frame of the overlap
   int shared_frames = 1;
   double largest_angle = 0;
   int largest_joint = 0;
+};
+
+struct Joined : JoinSeam {
+  Clip clip;
+};
+
+struct JoinedFrames : JoinSeam {
+  FrameSource frames;
 };
 
 // The first motion and then the second, which is moved and turned on the ground so that the
@@ -41,5 +49,9 @@ struct Joined {
 // joints below the hips by more than a hundredth of the character's extent; motion-blend for a
 // shared time that is negative or longer than one of the two; those of resample().
 Result<Joined> join(const Clip& first, const Clip& second, int carrier, const JoinOptions& options);
+// The same of frames that are produced on demand; they are read once or twice beforehand, and again
+// when the result is read.
+Result<JoinedFrames> join(const FrameSource& first, const FrameSource& second, int carrier,
+                          const JoinOptions& options, int jobs);
 
 }  // namespace krok

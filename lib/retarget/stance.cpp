@@ -118,6 +118,12 @@ Skeleton neutral_skeleton(const Clip& clip, const RoleMap& roles) {
 }
 
 Result<Skeleton> neutral_skeleton(const FrameSource& source, const RoleMap& roles) {
+  const auto looked_at = frames_looked_at(source);
+  if (!looked_at) return looked_at.error();
+  return neutral_skeleton(*looked_at, roles);
+}
+
+Result<Clip> frames_looked_at(const FrameSource& source) {
   Clip looked_at{source.skeleton, source.rate, {}, {}, {}};
   const int step = step_in_take(source.frame_count);
   for (int f = 0; f < source.frame_count; f += step) {
@@ -128,7 +134,7 @@ Result<Skeleton> neutral_skeleton(const FrameSource& source, const RoleMap& role
     looked_at.orientations.insert(looked_at.orientations.end(), frame->orientations.begin(),
                                   frame->orientations.end());
   }
-  return neutral_skeleton(looked_at, roles);
+  return looked_at;
 }
 
 }  // namespace krok::retarget

@@ -37,8 +37,11 @@ Result<Stance> stance_of_frame(const FrameSource& source, int frame);
 // built in: its own where trunk, thighs and shanks lie within 60 degrees of one line, whichever way
 // it lies, and for skeletons that are not humanoids; else that of find_stance().
 Skeleton neutral_skeleton(const Clip& clip, const RoleMap& roles);
-// The same of frames that are produced on demand, of which at most 2000 are read. Errors are those
-// of the source.
+// The same of frames that are produced on demand.
 Result<Skeleton> neutral_skeleton(const FrameSource& source, const RoleMap& roles);
+
+// The frames of a motion, at most 2000, that find_stance() and neutral_skeleton() look at: they
+// give the same for these. Errors are those of the source.
+Result<Clip> frames_looked_at(const FrameSource& source);
 
 }  // namespace krok::retarget

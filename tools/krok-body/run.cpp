@@ -2,8 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "body/long_take.h"
 #include "core/numbers.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
+#include "formats/io/open_motion.h"
 #include "formats/model/model_format.h"
 #include "tools/cli/output_set.h"
 
@@ -11,16 +16,33 @@ namespace krok::cli::body {
 
 namespace {
 
-// A clip with the file's skeleton, and the motion that the pose may be taken from.
-Result<Clip> read_skeleton(const InputFile& input, ToolContext& context) {
+// Around the file's skeleton, and the motion that the pose may be taken from.
+Result<Body> make_body_for(const InputFile& input, const BodyOptions& how, ToolContext& context) {
+  const io::Format& format = io::format_of(input);
+  const bool is_capture = format.open_capture != nullptr && !format.companion;
+  if (is_capture || format.kind == registry::Kind::anim) {
+    std::optional<Body> body;
+    Stretches stretches;  // do not matter here
+    const auto read =
+        io::stream_motion(input, context,
+                          [&](const FrameSource& frames) -> Status {
+                            if (Status status = read_through(frames, context.jobs); !status)
+                              return status;
+                            auto made = make_body(frames, how);
+                            if (!made) return made.error();
+                            body = *std::move(made);
+                            return {};
+                          },
+                          {.stretches = &stretches});
+    if (!read) return read.error();
+    return *std::move(body);
+  }
   auto actor = io::open_actor(
       input, context,
       {.every_clip = true, .with_mesh = false, .with_materials = false, .with_stretches = true});
   if (!actor) return actor.error();
-  if (!actor->motions.empty()) return std::move(actor->motions[0].clip);
-  Clip clip;
-  clip.skeleton = actor->skeleton();
-  return clip;
+  if (!actor->motions.empty()) return make_body(actor->motions[0].clip, how);
+  return make_body(actor->skeleton(), how);
 }
 
 Json result_of(const Body& body) {
@@ -48,9 +70,7 @@ Result<int> run(const Options& options, ToolContext& context) {
 
   auto input = context.open_input(options.input);
   if (!input) return input.error();
-  auto clip = read_skeleton(*input, context);
-  if (!clip) return clip.error();
-  auto body = make_body(*clip, how);
+  auto body = make_body_for(*input, how, context);
   if (!body) return std::move(body).error().in_file(input->path());
   context.diagnose(body->diagnostics);
 

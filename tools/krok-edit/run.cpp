@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <memory>
+#include <span>
 #include <string_view>
 
 #include "core/numbers.h"
@@ -18,7 +21,7 @@
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/steps.h"
-#include "tools/shared/keys_sidecar.h"
+#include "tools/shared/keys_of_take.h"
 #include "tools/shared/planting.h"
 
 namespace krok::cli::edit {
@@ -129,6 +132,20 @@ Status read_surroundings(const Options& options, ToolContext& context, Edit& edi
   return {};
 }
 
+bool needs_keytimes(const Options& o) {
+  const auto is_event = [](const std::optional<CutTime>& time) { return time && time->event; };
+  return is_event(o.from) || is_event(o.to) || o.cycle != CycleFoot::none;
+}
+
+Status take_sequences(const Options& options, ToolContext& context, Edit& edit) {
+  edit.sequence = options.sequence;
+  if (options.sequences.empty()) return {};
+  auto file = read_sequences(options.sequences, context);
+  if (!file) return file.error();
+  edit.sequences = std::move(*file);
+  return {};
+}
+
 // Reads all inputs, each opened once.
 Result<Edit> read_inputs(const InputFile& input, Options& options, ToolContext& context) {
   Edit edit;
@@ -145,23 +162,20 @@ Result<Edit> read_inputs(const InputFile& input, Options& options, ToolContext& 
     if (!contacts) return contacts.error();
     edit.contacts = std::move(*contacts);
   }
-  const auto is_event = [](const std::optional<CutTime>& time) { return time && time->event; };
-  if (is_event(options.from) || is_event(options.to) || options.cycle != CycleFoot::none) {
+  if (needs_keytimes(options)) {
     auto keys = choose_keys(KeysChoice::automatic, options.input, name_of_input(options.input),
                             edit.clip, *find_roles, context);
     if (!keys) return keys.error();
     if (*keys) edit.keytimes = std::move((*keys)->keytimes);
   }
-  edit.sequence = options.sequence;
-  if (!options.sequences.empty()) {
-    auto file = read_sequences(options.sequences, context);
-    if (!file) return file.error();
-    edit.sequences = std::move(*file);
-  }
+  if (Status status = take_sequences(options, context, edit); !status) return status.error();
   for (const std::string& path : options.append) {
     auto next = io::open_motion(path, context);
     if (!next) return next.error();
-    edit.appended.push_back(std::move(*next));
+    const auto kept = std::make_shared<const Clip>(*std::move(next));
+    FrameSource frames = frames_of(*kept);
+    frames.read = [kept, read = std::move(frames.read)](auto... block) { return read(block...); };
+    edit.appended.push_back(std::move(frames));
   }
   if (Status status = read_surroundings(options, context, edit); !status) return status.error();
   return edit;
@@ -213,7 +227,8 @@ Result<Edited> edit_one(const Options& options, Edit edit, const std::string& ou
 
 // One file per sequence; cleaning is done once for all.
 Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolContext& context,
-                                  OutputSet& outputs) {
+                                  OutputSet& outputs,
+                                  const std::function<Provenance()>& source_provenance = {}) {
   const std::string& pattern = context.output;
   const std::size_t place = pattern.rfind(kSequencePlace);
   if (place == std::string::npos) {
@@ -237,7 +252,8 @@ Result<Edited> edit_all_sequences(const Options& options, Edit source, ToolConte
     edit.sequence = sequence.name;
     std::string output = pattern;
     output.replace(place, kSequencePlace.size(), sequence.name);
-    auto edited = edit_one(cleaned_already, std::move(edit), output, context, outputs);
+    auto edited =
+        edit_one(cleaned_already, std::move(edit), output, context, outputs, source_provenance);
     if (!edited) return edited.error();
     Json entry;
     entry["name"] = sequence.name;
@@ -260,6 +276,30 @@ Result<int> report(Edited edited, Json input_summary, OutputSet& outputs, ToolCo
   return kExitDone;
 }
 
+struct Appended {
+  std::vector<FrameSource> motions;
+  std::vector<const InputFile*> files;
+};
+
+// Calls `use` with the motions to append, none of which is held in memory. They are opened within
+// each other: a capture that proves damaged on the way is opened again, see io::stream_motion().
+Status use_appended(const Options& options, ToolContext& context, Appended& appended,
+                    const std::function<Status()>& use) {
+  if (appended.motions.size() == options.append.size()) return use();
+  const auto file = context.open_long_input(options.append[appended.motions.size()]);
+  if (!file) return file.error();
+  const io::ChecksumAtEnd checksum(*file, context);
+  const auto read = io::stream_motion(*file, context, [&](const FrameSource& frames) {
+    appended.motions.push_back(frames);
+    appended.files.push_back(&*file);
+    Status status = use_appended(options, context, appended, use);
+    appended.motions.pop_back();
+    appended.files.pop_back();
+    return status;
+  });
+  return read ? Status() : Status(read.error());
+}
+
 // A long take, whose frames are written as they are read.
 Result<int> edit_stream(const InputFile& input, const Options& options, ToolContext& context) {
   const auto find_roles = io::open_role_map(options.map, context);
@@ -268,13 +308,16 @@ Result<int> edit_stream(const InputFile& input, const Options& options, ToolCont
   Edited edited;
   Json input_summary;
   std::function<Provenance()> provenance;
+  Appended appended;
   const auto complete = [&] {
     context.note_checksum(input);
+    for (const InputFile* file : appended.files) context.note_checksum(*file);
     return provenance();
   };
-  const auto use = [&](const FrameSource& frames) -> Status {
+  const auto use_with = [&](const FrameSource& frames) -> Status {
     Edit edit;
     edit.frames = frames;
+    edit.appended = appended.motions;
     if (Status status = edit.take(frames); !status) return status;
     edit.clip.provenance = provenance();
     input_summary = summary_of(frames);
@@ -284,16 +327,42 @@ Result<int> edit_stream(const InputFile& input, const Options& options, ToolCont
       if (!contacts) return contacts.error();
       edit.contacts = *std::move(contacts);
     }
+    if (needs_keytimes(options)) {
+      auto keys = choose_keys(KeysChoice::automatic, input.path(), input.bytes().size(), frames,
+                              provenance(), *find_roles, context);
+      if (!keys) return keys.error();
+      if (*keys) edit.keytimes = std::move((*keys)->keytimes);
+    }
+    if (Status status = take_sequences(options, context, edit); !status) return status;
     if (Status status = read_surroundings(options, context, edit); !status) return status;
     outputs.emplace(context);
-    auto made = edit_one(options, std::move(edit), context.output, context, *outputs, complete);
+    const bool all = edit.sequences && edit.sequence.empty();
+    auto made =
+        all ? edit_all_sequences(options, std::move(edit), context, *outputs, complete)
+            : edit_one(options, std::move(edit), context.output, context, *outputs, complete);
     if (!made) return made.error();
     edited = *std::move(made);
     return {};
   };
+  const auto use = [&](const FrameSource& frames) {
+    Status result;  // kept aside, as an error is none of the file that is appended
+    Status opened = use_appended(options, context, appended, [&] {
+      result = use_with(frames);
+      return Status();
+    });
+    return opened ? result : opened;
+  };
   const auto read = io::stream_motion(input, context, use, {.provenance = &provenance});
   if (!read) return read.error();
   return report(std::move(edited), std::move(input_summary), *outputs, context);
+}
+
+bool is_long(std::span<const std::string> paths) {
+  return std::ranges::any_of(paths, [](const std::string& path) {
+    std::error_code unknown;  // of a file that is missing, which is reported where it is opened
+    const auto bytes = std::filesystem::file_size(path, unknown);
+    return !unknown && bytes >= kLongBytes;
+  });
 }
 
 // Whether an option is given that is a step, or stores orientations otherwise.
@@ -317,11 +386,19 @@ Status Edit::take(Result<FrameSource> made) {
 }
 
 bool is_streamed(const Options& o) {
-  const auto is_event = [](const std::optional<CutTime>& time) { return time && time->event; };
-  const bool cuts =
-      is_event(o.from) || is_event(o.to) || o.cycle != CycleFoot::none || !o.sequences.empty();
-  const bool joins = o.interpolation.hermite || !o.append.empty() || o.loop || o.rounds;
-  return !o.game_loop && !cuts && !joins;
+  const bool loops = o.game_loop || o.cycle != CycleFoot::none || o.loop || o.rounds;
+  // A sequence may be a loop, whose feet are planted as those of the whole motion.
+  return !loops && !o.interpolation.hermite && !(o.plant && !o.sequences.empty());
+}
+
+Status Edit::hold(int jobs) {
+  if (!frames) return {};
+  auto whole = load(*frames, jobs);
+  if (!whole) return whole.error();
+  whole->provenance = std::move(clip.provenance);
+  clip = *std::move(whole);
+  frames.reset();
+  return {};
 }
 
 void Edit::note(const char* step, Json metrics, std::string line) {
@@ -353,7 +430,7 @@ Result<int> run(const Options& given, ToolContext& context) {
   }
   const auto input = context.open_long_input(options.input);
   if (!input) return input.error();
-  if (is_streamed(options) && input->bytes().size() >= kLongBytes) {
+  if (is_streamed(options) && (input->bytes().size() >= kLongBytes || is_long(options.append))) {
     return edit_stream(*input, options, context);
   }
   context.note_checksum(*input);

@@ -35,7 +35,7 @@ struct Edit {
   std::string sequence;                          // to cut out, or empty
   std::optional<std::vector<Contact>> contacts;  // of the input; none: to be found
   std::vector<Keytime> keytimes;                 // of the input, for ends that are keytimes
-  std::vector<Clip> appended;                    // in the order of Options::append
+  std::vector<FrameSource> appended;             // in the order of Options::append
   std::shared_ptr<const Terrain> ground;         // to settle on
   std::shared_ptr<const Model> model;            // to settle, or none
 
@@ -52,6 +52,9 @@ struct Edit {
   FrameSource source() const { return frames ? *frames : frames_of(clip); }
   // Takes the motion that a step makes of source().
   Status take(Result<FrameSource> made);
+
+  // Loads all frames, for a step that needs them at once.
+  Status hold(int jobs);
 
   // Adds `metrics` to the report under the step's name.
   void note(const char* step, Json metrics, std::string line);

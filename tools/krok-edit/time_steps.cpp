@@ -44,7 +44,7 @@ Result<Range> range_of(const sequences::Sequence& sequence, const Options& optio
   const double file_rate = edit.sequences->rate;
   const double scale = file_rate > 0 ? edit.clip.rate / file_rate : 1;
   const Range range{sequence.first * scale, sequence.last * scale};
-  if (range.last > edit.clip.frame_count() - 1 + 1e-3) {
+  if (range.last > edit.frame_count() - 1 + 1e-3) {
     return Error("edit-sequence",
                  fmt::format("'{}' ends at frame {}{}, but {}", sequence.name, sequence.last,
                              file_rate > 0 ? fmt::format(" at {} fps", readable(file_rate)) : "",
@@ -306,21 +306,21 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
   return {};
 }
 
-Status append_motions(const Options& options, ToolContext&, Edit& edit) {
+Status append_motions(const Options& options, ToolContext& context, Edit& edit) {
   for (std::size_t i = 0; i < edit.appended.size(); ++i) {
     const std::string& path = options.append[i];
-    const Clip& next = edit.appended[i];
+    const FrameSource& next = edit.appended[i];
     const JoinOptions joining{options.append_blend.seconds(edit.clip.rate), options.match_height,
                               edit.roles.joint(Role::chest)};
-    auto joined = join(edit.clip, next, edit.carrier, joining);
+    auto joined = join(edit.source(), next, edit.carrier, joining, thread_count(context.jobs));
     if (!joined) return std::move(joined.error()).in_file(path);
-    const int frames = edit.clip.frame_count();
-    edit.clip = std::move(joined->clip);
+    const int frames = edit.frame_count();
+    if (Status status = edit.take(joined->frames); !status) return status;
     edit.clip.provenance.removed_root_motion.reset();
     Json metrics;
     metrics["file"] = base_name(path);
     metrics["frames_before"] = frames;
-    metrics["frames"] = edit.clip.frame_count();
+    metrics["frames"] = edit.frame_count();
     metrics["joint_frame"] = joined->joint_frame;
     metrics["shared_frames"] = joined->shared_frames;
     metrics["largest_angle"] = to_degrees(joined->largest_angle);
@@ -349,6 +349,7 @@ Status make_loop(const Options& options, ToolContext& context, Edit& edit) {
     if (!options.rounds) return {};
     return Error("usage", "--rounds needs a loop", "add --loop");
   }
+  if (Status status = edit.hold(context.jobs); !status) return status;
   LoopOptions looping = options.looping;
   looping.blend = options.loop_blend.seconds(edit.clip.rate);
   if (looping.blend > std::max(1.0, edit.clip.duration())) {

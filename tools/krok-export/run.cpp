@@ -8,7 +8,6 @@
 #include <set>
 
 #include "capture/conventions.h"
-#include "contacts/long_take.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/quantity.h"
@@ -23,71 +22,71 @@
 #include "formats/npy/npz_motion.h"
 #include "formats/opensim/storage_writer.h"
 #include "math/quaternion.h"
-#include "motion/local_motion.h"
+#include "retarget/stance.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/frame_blocks.h"
 #include "scene/motion_keys.h"
 #include "skin/bind.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
-#include "tools/shared/keys_sidecar.h"
+#include "tools/cli/usage.h"
+#include "tools/shared/keys_of_take.h"
 
 namespace krok::cli::exporting {
 
 namespace {
 
-csv::SeriesTable table_of(const Clip& clip, std::string item_name, std::vector<std::string> items,
-                          std::vector<std::string> quantities) {
+using Values = std::vector<float>;
+
+// Adds the values of a frame; frames come in order. The clip has the frames before and after, too,
+// where there are any.
+using AddFrame = std::function<void(const Clip& clip, int frame, Values& values)>;
+
+// What `add` makes of each frame. The frames are read as the table is written.
+csv::SeriesTable table_of(const FrameSource& frames, int jobs, std::string item_name,
+                          std::vector<std::string> items, std::vector<std::string> quantities,
+                          AddFrame add) {
   csv::SeriesTable table;
-  table.rate = clip.rate;
-  table.frames = clip.frame_count();
+  table.rate = frames.rate;
+  table.frames = frames.frame_count;
   table.item_name = std::move(item_name);
   table.items = std::move(items);
   table.quantities = std::move(quantities);
-  table.values.reserve(static_cast<std::size_t>(table.frames) * table.columns());
+  table.values = [frames, jobs, add = std::move(add), columns = table.columns()](
+                     int first, int count) -> Result<Values> {
+    const int begin = std::max(first - 1, 0);
+    const int end = std::min(first + count + 1, frames.frame_count);
+    const auto clip = load(part_of(frames, begin, end - begin), jobs);
+    if (!clip) return clip.error();
+    if (frames.release) frames.release(first + count - 1);
+    Values values;
+    values.reserve(static_cast<std::size_t>(count) * columns);
+    for (int f = 0; f < count; ++f) add(*clip, first + f - begin, values);
+    return values;
+  };
   return table;
 }
 
-void add(const Vec3f& vector, csv::SeriesTable& table) {
-  table.values.insert(table.values.end(), vector.data(), vector.data() + 3);
+void add(const Vec3f& vector, Values& values) {
+  values.insert(values.end(), vector.data(), vector.data() + 3);
 }
 
 // In the hemisphere of the one before, of a joint; the first with w >= 0.
-void add(Quat orientation, Quat& before, csv::SeriesTable& table) {
+void add(Quat orientation, Quat& before, Values& values) {
   const bool first = before.coeffs().isZero(0);
   if (first ? orientation.w() < 0 : before.dot(orientation) < 0) orientation.coeffs() *= -1;
   before = orientation;
-  for (int k = 0; k < 4; ++k) {
-    table.values.push_back(static_cast<float>(orientation.coeffs()[k]));
-  }
+  for (int k = 0; k < 4; ++k) values.push_back(static_cast<float>(orientation.coeffs()[k]));
 }
 
-std::vector<Quat> none_before(const Clip& clip) {
-  return std::vector<Quat>(static_cast<std::size_t>(clip.joint_count()), Quat(0, 0, 0, 0));
-}
-
-void add_velocities(const Clip& clip, csv::SeriesTable& table) {
-  const int last = clip.frame_count() - 1;
-  for (int f = 0; f <= last; ++f) {
-    const int before = std::max(f - 1, 0), after = std::min(f + 1, last);
-    const auto from = clip.frame_positions(before), to = clip.frame_positions(after);
-    const double per_second = after > before ? clip.rate / (after - before) : 0;
-    for (std::size_t j = 0; j < from.size(); ++j) {
-      const Vec3 way = to[j].cast<double>() - from[j].cast<double>();
-      add(Vec3f((per_second * way).cast<float>()), table);
-    }
-  }
-}
-
-void add_locals(const Clip& clip, csv::SeriesTable& table) {
-  const LocalMotion local = local_motion(clip);
-  std::vector<Quat> before = none_before(clip);
-  for (int f = 0; f < clip.frame_count(); ++f) {
-    for (int j = 0; j < clip.joint_count(); ++j) {
-      const Transform at = local.at(j, f);
-      add(Vec3f(at.position.cast<float>()), table);
-      add(normalized_or_identity(at.orientation), before[static_cast<std::size_t>(j)], table);
-    }
+void add_velocities(const Clip& clip, int frame, Values& values) {
+  const int before = std::max(frame - 1, 0), after = std::min(frame + 1, clip.frame_count() - 1);
+  const auto from = clip.frame_positions(before), to = clip.frame_positions(after);
+  const double per_second = after > before ? clip.rate / (after - before) : 0;
+  for (std::size_t j = 0; j < from.size(); ++j) {
+    const Vec3 way = to[j].cast<double>() - from[j].cast<double>();
+    add(Vec3f((per_second * way).cast<float>()), values);
   }
 }
 
@@ -106,92 +105,107 @@ constexpr std::array kAngles = {
 // positions, velocities: world, metres and metres per second. local: position and orientation
 // relative to the parent. quaternions: world orientations. Velocities are central differences,
 // one-sided at both ends.
-csv::SeriesTable joint_series(const Clip& clip, What what) {
-  const auto make = [&](std::vector<std::string> quantities) {
-    return table_of(clip, "joint", clip.skeleton.names, std::move(quantities));
+csv::SeriesTable joint_series(const FrameSource& frames, What what, int jobs) {
+  const auto make = [&](std::vector<std::string> quantities, AddFrame add_frame) {
+    return table_of(frames, jobs, "joint", frames.skeleton.names, std::move(quantities),
+                    std::move(add_frame));
   };
-  csv::SeriesTable table;
+  const std::size_t joints = frames.skeleton.names.size();
+  const std::vector<Quat> none_before(joints, Quat(0, 0, 0, 0));
   switch (what) {
     case What::velocities:
-      table = make({"vx", "vy", "vz"});
-      add_velocities(clip, table);
-      break;
+      return make({"vx", "vy", "vz"}, add_velocities);
     case What::local:
-      table = make({"x", "y", "z", "qx", "qy", "qz", "qw"});
-      add_locals(clip, table);
-      break;
-    case What::quaternions: {
-      table = make({"qx", "qy", "qz", "qw"});
-      std::vector<Quat> before = none_before(clip);
-      for (int f = 0; f < clip.frame_count(); ++f) {
-        const auto orientations = clip.frame_orientations(f);
+      return make({"x", "y", "z", "qx", "qy", "qz", "qw"},
+                  [before = none_before, world = std::vector<Transform>(joints),
+                   local = std::vector<Transform>(joints)](const Clip& clip, int frame,
+                                                           Values& values) mutable {
+                    clip.get_pose(frame, world);
+                    world_to_local(clip.skeleton.parents, world, local);
+                    for (std::size_t j = 0; j < local.size(); ++j) {
+                      add(Vec3f(local[j].position.cast<float>()), values);
+                      add(normalized_or_identity(local[j].orientation), before[j], values);
+                    }
+                  });
+    case What::quaternions:
+      return make({"qx", "qy", "qz", "qw"}, [before = none_before](const Clip& clip, int frame,
+                                                                   Values& values) mutable {
+        const auto orientations = clip.frame_orientations(frame);
         for (std::size_t j = 0; j < orientations.size(); ++j) {
-          add(normalized_or_identity(orientations[j].cast<double>()), before[j], table);
+          add(normalized_or_identity(orientations[j].cast<double>()), before[j], values);
         }
-      }
-      break;
-    }
+      });
     case What::automatic:
     case What::positions:
     case What::angles:
     case What::contacts:
-      table = make({"x", "y", "z"});
-      for (int f = 0; f < clip.frame_count(); ++f) {
-        for (const Vec3f& place : clip.frame_positions(f)) add(place, table);
-      }
       break;
   }
-  return table;
+  return make({"x", "y", "z"}, [](const Clip& clip, int frame, Values& values) {
+    for (const Vec3f& place : clip.frame_positions(frame)) add(place, values);
+  });
 }
 
 // Anatomical angles in degrees, as krok-plot draws them (draw::body_angle). With `coordinates` the
 // names are those of OpenSim's full-body models where they have the angle: hip_flexion_r,
 // knee_angle_r, ankle_angle_r, elbow_flex_r. Code export-angles if the skeleton has none.
-Result<csv::SeriesTable> angle_series(const Clip& clip, const RoleMap& roles, bool coordinates) {
-  if (clip.frame_count() == 0) return Error("export-angles", "the motion has no frames");
+Result<csv::SeriesTable> angle_series(const FrameSource& frames, const RoleMap& roles,
+                                      bool coordinates, int jobs) {
+  if (frames.frame_count == 0) return Error("export-angles", "the motion has no frames");
+  auto looked_at = retarget::frames_looked_at(frames);
+  if (!looked_at) return looked_at.error();
   std::vector<std::string> names;
-  std::vector<std::vector<double>> series;
-  const draw::FrameRange frames{0, clip.frame_count() - 1};
+  std::vector<std::pair<draw::BodyAngle, Side>> angles;
   for (const AngleName& angle : kAngles) {
     for (const Side side : {Side::left, Side::right}) {
-      auto values = draw::body_angle(clip, roles, angle.angle, side, frames);
-      if (values.empty()) continue;
+      if (draw::body_angle(*looked_at, roles, angle.angle, side, {0, 0}).empty()) continue;
       names.push_back(fmt::format("{}_{}", coordinates ? angle.coordinate : angle.name,
                                   side == Side::left ? "l" : "r"));
-      series.push_back(std::move(values));
+      angles.emplace_back(angle.angle, side);
     }
   }
   if (names.empty()) {
     return Error("export-angles", "the skeleton has no joints with roles for body angles",
                  "--map assigns joint roles; --what local has the rotations of all joints");
   }
-  csv::SeriesTable table = table_of(clip, "angle", std::move(names), {"degrees"});
-  for (std::size_t f = 0; f < static_cast<std::size_t>(table.frames); ++f) {
-    for (const auto& values : series) table.values.push_back(static_cast<float>(values[f]));
-  }
-  return table;
+  return table_of(frames, jobs, "angle", std::move(names), {"degrees"},
+                  [=, soles = draw::find_soles(*looked_at, roles)](const Clip& clip, int frame,
+                                                                   Values& values) {
+                    for (const auto& [angle, side] : angles) {
+                      const draw::FrameRange one{frame, frame};
+                      const auto value = draw::body_angle(clip, roles, angle, side, one, &soles);
+                      values.push_back(static_cast<float>(value.front()));
+                    }
+                  });
 }
 
 // 1 for each joint in contact in a frame.
-csv::SeriesTable contact_series(const Clip& clip, std::span<const Contact> contacts) {
+csv::SeriesTable contact_series(const FrameSource& frames, const std::vector<Contact>& contacts) {
   std::set<int> touching;
   for (const Contact& contact : contacts) touching.insert(contact.joint);
-  std::vector<std::string> names;
+  csv::SeriesTable table;
+  table.rate = frames.rate;
+  table.frames = frames.frame_count;
+  table.item_name = "joint";
+  table.quantities = {"contact"};
   for (const int joint : touching) {
-    names.push_back(clip.skeleton.names[static_cast<std::size_t>(joint)]);
+    table.items.push_back(frames.skeleton.names[static_cast<std::size_t>(joint)]);
   }
-  csv::SeriesTable table = table_of(clip, "joint", std::move(names), {"contact"});
-  table.values.assign(static_cast<std::size_t>(table.frames) * touching.size(), 0.0F);
-  for (const Contact& contact : contacts) {
-    const auto column = std::distance(touching.begin(), touching.find(contact.joint));
-    for (int f = static_cast<int>(std::max(0.0, contact.start * clip.rate)); f < table.frames;
-         ++f) {
-      if (f / clip.rate > contact.end) break;
-      if (f / clip.rate < contact.start) continue;
-      table.values[static_cast<std::size_t>(f) * touching.size() +
-                   static_cast<std::size_t>(column)] = 1;
+  table.values = [=, rate = frames.rate](int first, int count) -> Result<Values> {
+    Values values(static_cast<std::size_t>(count) * touching.size(), 0.0F);
+    for (const Contact& contact : contacts) {
+      const auto column = std::distance(touching.begin(), touching.find(contact.joint));
+      const double start = std::max<double>(first, contact.start * rate);
+      for (int f = static_cast<int>(std::min<double>(start, first + count)); f < first + count;
+           ++f) {
+        if (f / rate > contact.end) break;
+        if (f / rate < contact.start) continue;
+        values[static_cast<std::size_t>(f - first) * touching.size() +
+               static_cast<std::size_t>(column)] = 1;
+      }
     }
-  }
+    return values;
+  };
   return table;
 }
 
@@ -202,10 +216,6 @@ EulerOrder order_of(const std::string& letters) {
     order[i] = static_cast<Axis>(ascii_lower(letters.at(i)) - 'x');
   }
   return order;
-}
-
-io::MotionSummary facts_of(const Clip& clip) {
-  return {clip.skeleton, clip.rate, clip.frame_count(), clip.duration(), {}};
 }
 
 Error empty_error(const std::string& path) {
@@ -273,29 +283,63 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
 }
 
 // The contacts of the motion's sidecar, or as krok-keys detects them.
-Result<std::vector<Contact>> contacts_of(const Options& options, const Clip& clip,
+Result<std::vector<Contact>> contacts_of(const Options& options, std::size_t bytes,
+                                         const FrameSource& frames, const Provenance& provenance,
                                          ToolContext& context) {
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
-  auto keys = choose_keys(KeysChoice::automatic, options.input(), name_of_input(options.input()),
-                          clip, *find_roles, context);
+  auto keys = choose_keys(KeysChoice::automatic, options.input(), bytes, frames, provenance,
+                          *find_roles, context, true);
   if (!keys) return keys.error();
   return *keys ? std::move((*keys)->contacts) : std::vector<Contact>();
 }
 
+// Writes frames as they are read, so that a long take is not held in memory. `write` is given
+// contacts_of() the motion.
+using FindContacts = std::function<Result<std::vector<Contact>>()>;
+Result<io::MotionSummary> export_frames(
+    const Options& options, ToolContext& context,
+    const std::function<Status(const FrameSource& frames, const FindContacts& contacts,
+                               OutputFile& file)>& write,
+    const std::function<void(const Skeleton& skeleton)>& note = {}) {
+  const auto input = context.open_long_input(options.input());
+  if (!input) return input.error();
+  const io::ChecksumAtEnd checksum(*input, context);
+  std::optional<OutputSet> outputs;
+  std::function<Provenance()> provenance;
+  auto facts = io::stream_motion(
+      *input, context,
+      [&](const FrameSource& frames) -> Status {
+        if (frames.skeleton.empty()) return empty_error(options.input());
+        const auto contacts = [&] {
+          return contacts_of(options, input->bytes().size(), frames, provenance(), context);
+        };
+        outputs.emplace(context);
+        return outputs->add(context.output,
+                            [&](OutputFile& file) { return write(frames, contacts, file); });
+      },
+      {.provenance = &provenance});
+  if (!facts) return facts;
+  if (note) note(facts->skeleton);
+  if (Status status = outputs->finish(); !status) return status.error();
+  return facts;
+}
+
 Result<csv::SeriesTable> series_of(What what, ExportFormat format, const Options& options,
-                                   const Clip& clip, ToolContext& context) {
+                                   const FrameSource& frames, const FindContacts& find_contacts,
+                                   ToolContext& context) {
   if (what == What::contacts) {
-    const auto contacts = contacts_of(options, clip, context);
+    const auto contacts = find_contacts();
     if (!contacts) return contacts.error();
-    return contact_series(clip, *contacts);
+    return contact_series(frames, *contacts);
   }
-  if (what != What::angles) return joint_series(clip, what);
+  const int jobs = thread_count(context.jobs);
+  if (what != What::angles) return joint_series(frames, what, jobs);
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
-  const auto roles = (*find_roles)(clip.skeleton);
+  const auto roles = (*find_roles)(frames.skeleton);
   if (!roles) return roles.error();
-  auto table = angle_series(clip, *roles, format != ExportFormat::csv);
+  auto table = angle_series(frames, *roles, format != ExportFormat::csv, jobs);
   if (!table) return std::move(table.error()).in_file(options.input());
   return table;
 }
@@ -313,19 +357,20 @@ What what_of(ExportFormat format, const Options& options) {
   return format == ExportFormat::csv ? What::positions : What::angles;
 }
 
-Result<MotionTable> read_table(ExportFormat format, const Clip& clip, const Options& options,
+Result<MotionTable> read_table(ExportFormat format, const FrameSource& frames,
+                               const FindContacts& find_contacts, const Options& options,
                                ToolContext& context) {
   const What what = what_of(format, options);
   MotionTable table;
   if (format == ExportFormat::csv && what == What::contacts &&
       options.layout == Layout::long_rows) {
-    auto contacts = contacts_of(options, clip, context);
+    auto contacts = find_contacts();
     if (!contacts) return contacts.error();
     table.contacts = *std::move(contacts);
-    table.joints = clip.skeleton.names;
+    table.joints = frames.skeleton.names;
     return table;
   }
-  auto series = series_of(what, format, options, clip, context);
+  auto series = series_of(what, format, options, frames, find_contacts, context);
   if (!series) return series.error();
   table.series = *std::move(series);
   return table;
@@ -338,17 +383,26 @@ Status write_rows(const MotionTable& table, Layout layout, const csv::FileColumn
                                 : csv::write_long(table.series, motion, file);
 }
 
-Status write_table(ExportFormat format, const Clip& clip, const Options& options,
-                   ToolContext& context) {
-  const auto table = read_table(format, clip, options, context);
-  if (!table) return table.error();
-  if (!table->contacts) context.report.result["columns"] = table->series.items;
-  return write_output(context, context.output, [&](OutputFile& file) {
-    if (format == ExportFormat::csv) return write_rows(*table, options.layout, {}, file);
-    const What what = what_of(format, options);
-    return opensim::write(table->series, clip_name_of(options.input()),
-                          what == What::angles || what == What::local, file);
-  });
+Result<io::MotionSummary> export_table(ExportFormat format, const Options& options,
+                                       ToolContext& context) {
+  return export_frames(options, context,
+                       [&](const FrameSource& frames, const FindContacts& find_contacts,
+                           OutputFile& file) -> Status {
+                         const What what = what_of(format, options);
+                         if (format == ExportFormat::csv && what == What::positions &&
+                             options.layout == Layout::long_rows) {
+                           return csv::write(frames, file);
+                         }
+                         const auto table =
+                             read_table(format, frames, find_contacts, options, context);
+                         if (!table) return table.error();
+                         if (!table->contacts)
+                           context.report.result["columns"] = table->series.items;
+                         if (format == ExportFormat::csv)
+                           return write_rows(*table, options.layout, {}, file);
+                         return opensim::write(table->series, clip_name_of(options.input()),
+                                               what == What::angles || what == What::local, file);
+                       });
 }
 
 // One table of all motions, in their order. Motions that cannot be read are reported and left out.
@@ -361,12 +415,17 @@ Result<int> export_table_of_all(const Options& options, ToolContext& context) {
     for (const std::string& path : options.inputs) {
       Options one = options;
       one.inputs = {path};
+      Clip clip;
       const auto table = [&]() -> Result<MotionTable> {
         const HiddenProgress hidden(context);
-        const auto clip = io::open_motion(path, context);
-        if (!clip) return clip.error();
-        if (clip->skeleton.empty()) return empty_error(path);
-        return read_table(ExportFormat::csv, *clip, one, context);
+        auto read = io::open_motion(path, context);
+        if (!read) return read.error();
+        clip = *std::move(read);
+        if (clip.skeleton.empty()) return empty_error(path);
+        const auto contacts = [&] {
+          return contacts_of(one, 0, frames_of(clip), clip.provenance, context);
+        };
+        return read_table(ExportFormat::csv, frames_of(clip), contacts, one, context);
       }();
       context.progress->advance(1);
       if (!table) {
@@ -399,56 +458,16 @@ Result<int> export_table_of_all(const Options& options, ToolContext& context) {
   return motions == options.inputs.size() ? kExitDone : kExitPartly;
 }
 
-// The same of a long take, as krok-keys detects them in parts.
-Result<std::vector<Contact>> contacts_in_parts(const Options& options, const FrameSource& frames,
-                                               ToolContext& context) {
-  auto keys = read_keys_beside(options.input(), frames, context);
-  if (!keys) return keys.error();
-  if (*keys) return std::move((*keys)->keys.contacts);
-  const auto find_roles = io::open_role_map(options.map, context);
-  if (!find_roles) return find_roles.error();
-  const auto roles = (*find_roles)(frames.skeleton);
-  if (!roles) return roles.error();
-  auto take =
-      find_in_long_take(frames, *roles, context.jobs, context.progress, {.contacts_alone = true});
-  if (!take) return take.error();
-  context.diagnose_in(options.input(), take->warnings);
-  return std::move(take->keys.contacts);
-}
-
 // Arrays of numpy, with the contacts of the sidecar or those detected; none for a skeleton without
-// legs. A long take is not held in memory.
+// legs.
 Result<io::MotionSummary> export_npz(const Options& options, ToolContext& context) {
-  const auto input = context.open_long_input(options.input());
-  if (!input) return input.error();
-  const io::ChecksumAtEnd checksum(*input, context);
-  std::optional<OutputSet> outputs;
-  const auto write = [&](const FrameSource& frames, Result<std::vector<Contact>> contacts) {
-    if (!contacts && contacts.error().code != "contacts-feet") return Status(contacts.error());
-    const auto found = contacts ? *std::move(contacts) : std::vector<Contact>();
-    outputs.emplace(context);
-    return outputs->add(context.output, [&](OutputFile& file) {
-      return npy::write_motion(frames, found, thread_count(context.jobs), file);
-    });
-  };
-  std::function<Provenance()> provenance;
-  auto facts = io::stream_motion(
-      *input, context,
-      [&](const FrameSource& frames) -> Status {
-        if (frames.skeleton.empty()) return empty_error(options.input());
-        // Contacts of a motion in place are found in the motion as it travels.
-        if (input->bytes().size() >= kLongTake && !provenance().removed_root_motion) {
-          return write(frames, contacts_in_parts(options, frames, context));
-        }
-        auto clip = load(frames, context.jobs);
-        if (!clip) return clip.error();
-        clip->provenance = provenance();
-        return write(frames_of(*clip), contacts_of(options, *clip, context));
-      },
-      {.provenance = &provenance});
-  if (!facts) return facts;
-  if (Status status = outputs->finish(); !status) return status.error();
-  return facts;
+  return export_frames(
+      options, context,
+      [&](const FrameSource& frames, const FindContacts& find_contacts, OutputFile& file) {
+        const auto found = find_contacts();
+        return found ? npy::write_motion(frames, *found, thread_count(context.jobs), file)
+                     : Status(found.error());
+      });
 }
 
 // The place of the root at rest moves nothing, so it is left out, but another reference pose comes
@@ -463,24 +482,6 @@ void note_root(const Skeleton& skeleton, const Options& options, ToolContext& co
       "--root-offset keeps it as the root's OFFSET"));
 }
 
-// Writes frames as they are read; `note` is called with the skeleton before the output is kept.
-Result<io::MotionSummary> export_frames(
-    const Options& options, ToolContext& context,
-    const std::function<Status(const FrameSource& frames, OutputFile& file)>& write,
-    const std::function<void(const Skeleton& skeleton)>& note) {
-  std::optional<OutputSet> outputs;
-  auto facts =
-      io::stream_motion(options.input(), context, [&](const FrameSource& frames) -> Status {
-        if (frames.skeleton.empty()) return empty_error(options.input());
-        outputs.emplace(context);
-        return outputs->add(context.output, [&](OutputFile& file) { return write(frames, file); });
-      });
-  if (!facts) return facts;
-  note(facts->skeleton);
-  if (Status status = outputs->finish(); !status) return status.error();
-  return facts;
-}
-
 Result<io::MotionSummary> export_bvh(const Options& options, ToolContext& context) {
   bvh::WriteOptions writing;
   writing.unit_metres = options.unit.metres;
@@ -490,27 +491,10 @@ Result<io::MotionSummary> export_bvh(const Options& options, ToolContext& contex
   writing.jobs = context.jobs;
   return export_frames(
       options, context,
-      [&](const FrameSource& frames, OutputFile& file) {
+      [&](const FrameSource& frames, const FindContacts&, OutputFile& file) {
         return bvh::write(frames, writing, file);
       },
       [&](const Skeleton& skeleton) { note_root(skeleton, options, context); });
-}
-
-Result<io::MotionSummary> export_others(ExportFormat format, const Options& options,
-                                        ToolContext& context) {
-  const bool positions = options.what == What::automatic || options.what == What::positions;
-  if (format == ExportFormat::csv && positions && options.layout == Layout::long_rows) {
-    return export_frames(
-        options, context,
-        [](const FrameSource& frames, OutputFile& file) { return csv::write(frames, file); },
-        [](const Skeleton&) {});
-  }
-  auto clip = io::open_motion(options.input(), context);
-  if (!clip) return clip.error();
-  if (clip->skeleton.empty()) return empty_error(options.input());
-  io::MotionSummary facts = facts_of(*clip);
-  if (Status status = write_table(format, *clip, options, context); !status) return status.error();
-  return facts;
 }
 
 Json result_of(const io::MotionSummary& motion, const std::optional<Reduction>& reduction) {
@@ -555,7 +539,7 @@ Result<int> run(const Options& options, ToolContext& context) {
                           ? export_gltf(is_glb, options, context, reduction)
                       : *format == ExportFormat::bvh ? export_bvh(options, context)
                       : *format == ExportFormat::npz ? export_npz(options, context)
-                                                     : export_others(*format, options, context);
+                                                     : export_table(*format, options, context);
   if (!motion) return motion.error();
   Json columns = std::move(context.report.result["columns"]);
   context.report.result = result_of(*motion, reduction);

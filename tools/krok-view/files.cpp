@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -18,6 +19,7 @@
 #include "draw/viewer_page.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/io/open_character.h"
+#include "formats/io/open_motion.h"
 #include "formats/ragdoll/ragdoll_format.h"
 #include "formats/registry/registry.h"
 #include "ik/anatomical_limits.h"
@@ -256,6 +258,25 @@ Status add_glb(const std::string& path, std::vector<std::byte> bytes, const std:
 // Code of a file that the page cannot decode by itself, Draco's: it is read as an FBX is.
 constexpr std::string_view kCompressed = "gltf-compression";
 
+// Refuses a take of which no browser shows a page well, before it is read.
+Status check_length(const InputFile& input) {
+  constexpr double kMaxTransforms = 12e6, kBytesEach = 8.2;  // in the page
+  const auto count = [&](const FrameSource& frames) -> Status {
+    const double transforms = 1.0 * frames.frame_count * frames.joint_count();
+    if (transforms <= kMaxTransforms) return {};
+    return Error(
+        "view-long",
+        fmt::format("{} of {} make a page of {} MB; {} MB are the limit",
+                    counted(frames.frame_count, "frame"), counted(frames.joint_count(), "joint"),
+                    std::llround(1e-6 * kBytesEach * transforms),
+                    std::llround(1e-6 * kBytesEach * kMaxTransforms)),
+        "krok-edit cuts a part out with --from and --to, or thins it out with --rate 30");
+  };
+  io::PlainInputs quiet;  // it is read afterwards
+  const auto seen = io::stream_motion(input, quiet, count);
+  return seen ? Status() : Status(Error(seen.error()).in_file(input.path()));
+}
+
 Status add_file(const std::string& path, KeysChoice choice, ToolContext& context, Files& files) {
   auto input = context.open_input(path);
   if (!input) return input.error();
@@ -283,6 +304,11 @@ Status add_file(const std::string& path, KeysChoice choice, ToolContext& context
       if (added || added.error().code != kCompressed) return added;
       break;
     }
+    case Kind::anim:
+    case Kind::bvh:
+      if (input->bytes().size() < kLongTake) break;
+      if (Status status = check_length(*input); !status) return status;
+      break;
     default:
       break;
   }

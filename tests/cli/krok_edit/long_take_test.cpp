@@ -55,6 +55,11 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
        {"--mirror", "--scale", "2", "--turn", "90deg", "--on-ground", "-o", "out.anim"}},
       {"krok-edit", {"--filter", "butterworth", "-o", "out.anim"}},
       {"krok-edit", {"--spikes", "-o", "out.anim"}},
+      {"krok-edit", {"--append", "short.bvh", "--blend", "0s", "-o", "out.anim"}, 719999},
+      {"krok-export", {"--what", "velocities", "-o", "out.csv"}},
+      {"krok-export", {"--what", "local", "--layout", "wide", "-o", "out.csv"}},
+      {"krok-export", {"--what", "quaternions", "-o", "out.sto"}},
+      {"krok-body", {"--detail", "low", "-o", "out.model"}, 0},
       {"krok-edit", {"--filter", "auto", "-o", "out.anim"}},
       {"krok-ik", {"--reach", "Head=0.5m,1.5m,0m@10s..20s", "-o", "out.anim"}},
       {"krok-retarget", {"--onto", "short.bvh", "--scale", "2", "-o", "out.anim"}, 0}};
@@ -65,6 +70,77 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
       EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], frames) << options[0];
     }
   }
+}
+
+// Would fail if a motion were held whole as it is appended, or arrays as they are unpacked.
+TEST_F(LongTake, WhatIsAddedAndUnpackedIsReadInParts) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  put("short.bvh", capture(20000));
+  put("long.bvh", capture(700000));
+  ASSERT_EQ(run_here("krok-export", {"long.bvh", "-o", "long.npz"}).exit_code, 0);
+  data_ = 64 << 20;
+  peak("krok-edit", "short.bvh", {"--append", "long.bvh", "--blend", "0s", "-o", "out.anim"});
+  EXPECT_EQ(read("out.anim").provenance.sources.back().xxh3.size(), 16U);
+  EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], 719999);
+  peak("krok-import", "long.npz", {"-o", "out.anim"});
+  EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], 700000);
+}
+
+// Would fail if poses of all frames were kept to blend them.
+TEST_F(LongTake, MotionsAreBlendedInParts) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  put("long.bvh", capture(700000));
+  for (const std::string name : {"a", "b"}) {
+    ASSERT_EQ(run_here("krok-import", {"long.bvh", "-o", name + ".anim"}).exit_code, 0);
+  }
+  data_ = 160 << 20;
+  peak("krok-blend", "a.anim:0.5", {"b.anim:0.5", "--contacts", "none", "-o", "out.anim"});
+  EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], 700000);
+  const Clip one = read("a.anim"), both = read("out.anim");
+  for (const int f : {0, 4095, 4096, 699999}) {
+    EXPECT_LT((one.frame_positions(f)[2] - both.frame_positions(f)[2]).norm(), 1e-4F) << f;
+  }
+}
+
+// Would fail if memory were taken for a page that no browser shows.
+TEST_F(LongTake, APageOfItIsRefused) {
+  put("long.bvh", capture(3'100'000));
+  const ToolRun run = run_here("krok-view", {"long.bvh", "-o", "out.html"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_TRUE(has_code(run.err, "view-long")) << run.err;
+  EXPECT_NE(run.err.find("--rate"), std::string::npos) << run.err;
+}
+
+// Would fail if a take were held whole to cut a part out of it, or were cut elsewhere than a short
+// one.
+TEST_F(LongTake, PartsAreCutOutOfIt) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  const std::vector<std::string> steps = {"--from", "left_strike[2]", "--to", "left_strike[4]",
+                                          "-o",     "out.anim"};
+  const auto walk = [&](int count) {
+    samples::WalkOptions options;
+    options.steps = count;
+    options.rate = 240;
+    write("walk.anim", samples::make_walk(options)->clip);
+  };
+  walk(20);
+  peak("krok-edit", "walk.anim", steps);
+  const json cut = json::parse(get(path("report.json")))["result"]["steps"][0];
+  walk(900);
+  ASSERT_GT(get(path("walk.anim")).size(), std::size_t{64} << 20);
+  put("parts.json", R"({"schema": "krok.sequences/1", "rate": 240, "sequences": [
+      {"name": "a", "first": 400, "last": 640, "loop": true},
+      {"name": "b", "first": 70000, "last": 70050}]})");
+  data_ = 128 << 20;
+  peak("krok-edit", "walk.anim", steps);
+  const json here = json::parse(get(path("report.json")))["result"]["steps"][0];
+  EXPECT_EQ(here["first_frame"], cut["first_frame"]);
+  EXPECT_EQ(here["last_frame"], cut["last_frame"]);
+  data_ = 64 << 20;
+  peak("krok-edit", "walk.anim", {"--sequences", "parts.json", "-o", "{sequence}.anim"});
+  const json parts = json::parse(get(path("report.json")))["result"]["sequences"];
+  EXPECT_EQ(parts[1]["frames"], 51);
+  EXPECT_EQ(read("b.anim").frame_positions(50)[0], read("walk.anim").frame_positions(70050)[0]);
 }
 
 // Would fail if a take of 64 MiB were held whole.

@@ -70,6 +70,34 @@ TEST_F(ExportSeries, VelocitiesAreCentralDifferencesOfPositions) {
   }
 }
 
+// Would fail if values were lost, or signs changed, where one block of frames follows another.
+TEST_F(ExportSeries, LongTablesGoOn) {
+  put("t.bvh", capture(9000));
+  const auto table = [&](const char* what) {
+    const ToolRun run =
+        run_here("krok-export", {"t.bvh", "--what", what, "--layout", "wide", "-o", "t.csv"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return rows("t.csv");
+  };
+  const Rows places = table("positions"), velocities = table("velocities");
+  const Rows turns = table("quaternions");
+  ASSERT_EQ(velocities.size(), 9001U);
+  for (std::size_t f = 1; f + 1 < 9000; ++f) {
+    ASSERT_EQ(velocities[f + 1][0], std::to_string(f));
+    for (std::size_t c = 2; c < places[0].size(); ++c) {
+      const double way = std::stod(places[f + 2][c]) - std::stod(places[f][c]);
+      ASSERT_NEAR(std::stod(velocities[f + 1][c]), 15 * way, 2e-4) << f;
+    }
+    for (std::size_t j = 2; j < turns[0].size(); j += 4) {
+      double dot = 0;
+      for (std::size_t k = j; k < j + 4; ++k) {
+        dot += std::stod(turns[f][k]) * std::stod(turns[f + 1][k]);
+      }
+      ASSERT_GE(dot, 0) << f;
+    }
+  }
+}
+
 // Walking down the tree with them gives the motion again.
 TEST_F(ExportSeries, LocalPlacesAndQuaternionsComposeToTheMotion) {
   const Rows local = exported({"--what", "local"});

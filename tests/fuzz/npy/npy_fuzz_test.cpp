@@ -20,6 +20,12 @@ void read_anyway(std::vector<std::byte> file) {
     ASSERT_FALSE(capture.error().code.empty());
     ASSERT_FALSE(capture.error().message.empty());
   }
+  // What is read in parts is what is read whole.
+  const auto opened = krok::npy::open(file, "a.npz", options);
+  const auto parts = opened ? load(opened->frames, 1) : krok::Result<krok::Clip>(krok::Error());
+  if (!parts.ok()) return;
+  ASSERT_TRUE(capture.ok()) << capture.error().message;
+  ASSERT_EQ(parts->positions, capture->clip.positions);
 }
 
 void damage(const std::vector<std::byte>& file) {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "core/index.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
 #include "motion/cut.h"
@@ -14,6 +15,7 @@
 #include "motion/local_motion.h"
 #include "motion/place.h"
 #include "motion/retime.h"
+#include "roles/roles.h"
 #include "support/human_skeleton.h"
 #include "support/test_scenes.h"
 #include "unit/motion/joint_place.h"
@@ -163,6 +165,40 @@ TEST(Join, NothingToAddAndNothingToAddTo) {
   EXPECT_EQ(join(swinging_human(0), swinging_human(31), 0, {})->clip.positions,
             swinging_human(31).positions);
   EXPECT_EQ(join(swinging_human(1), swinging_human(1), 0, {.blend = 0})->clip.frame_count(), 1);
+}
+
+// Would fail if what a frame becomes depended on the frames that are read with it.
+TEST(Join, ReadInPartsItIsTheSame) {
+  Skeleton below_a_root;
+  below_a_root.add("Root", -1, {});
+  const Skeleton human = test::human_skeleton();
+  for (std::size_t j = 0; j < human.names.size(); ++j) {
+    below_a_root.add(human.names[j], human.parents[j] + 1, human.reference[j]);
+  }
+  for (const Skeleton& skeleton : {human, below_a_root}) {
+    const RoleMap roles = find_roles(skeleton);
+    const int carrier = carrying_joint(roles);
+    const Clip first = test::swinging_clip(skeleton, 61, 30);
+    const Clip second = test::swinging_clip(skeleton, 101, 50);
+    const JoinOptions options{0.4, false, roles.joint(Role::chest)};
+    const auto whole = join(first, second, carrier, options);
+    ASSERT_TRUE(whole.ok()) << whole.error().message;
+    const auto made = join(frames_of(first), frames_of(second), carrier, options, 2);
+    ASSERT_TRUE(made.ok());
+    EXPECT_EQ(made->largest_joint, whole->largest_joint);
+    const auto joints = static_cast<std::size_t>(first.joint_count());
+    ASSERT_EQ(made->frames.frame_count, whole->clip.frame_count());
+    for (const int count : {1, 7}) {
+      for (int f = 0; f + count <= whole->clip.frame_count(); f += count) {
+        std::vector<Vec3f> places(joints * static_cast<std::size_t>(count));
+        std::vector<Quatf> turns(places.size());
+        ASSERT_TRUE(made->frames.read(f, count, places, turns).ok());
+        EXPECT_TRUE(std::ranges::equal(
+            places, std::span(whole->clip.positions).subspan(at(f) * joints, places.size())))
+            << f;
+      }
+    }
+  }
 }
 
 TEST(Join, OtherSkeletonsAreRefused) {

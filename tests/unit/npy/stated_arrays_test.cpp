@@ -7,8 +7,10 @@
 
 #include "formats/npy/array_reader.h"
 #include "formats/npy/npy.h"
+#include "formats/npy/npz_motion.h"
 #include "math/quaternion.h"
 #include "samples/generator/walk.h"
+#include "support/test_scenes.h"
 
 namespace krok::npy {
 namespace {
@@ -102,6 +104,50 @@ TEST(StatedArrays, NamesAndParentsOfTheFileAreTheSkeleton) {
   for (std::size_t i = 0; i < arrays.walk.positions.size(); ++i) {
     ASSERT_LT((read->clip.positions[i] - arrays.walk.positions[i]).norm(), 1e-4F) << i;
   }
+}
+
+// Would fail if a long take, unpacked as it is read, were another motion than one that is read
+// whole, or a fault in it went unseen.
+TEST(StatedArrays, UnpackedInPartsTheyAreTheSame) {
+  Clip walk = test::swinging_human(5000);
+  for (std::size_t i = 0; i < walk.positions.size(); i += 7) walk.orientations[i].coeffs() *= -1;
+  const std::vector<Contact> contacts = {{3, 1.0, 2.5, Vec3::Zero()}, {7, 150, 160, Vec3::Zero()}};
+  const auto file = npy::write_motion(frames_of(walk), contacts).value();
+  ReadOptions options;
+  options.unit = Unit{0.01, "cm"};
+  options.up = Direction::plus_z;
+  options.forward = Direction::minus_y;
+  const auto whole = npy::read(file, "walk.npz", options);
+  ASSERT_TRUE(whole.ok()) << whole.error().message;
+  const auto opened = npy::open(file, "walk.npz", options);
+  ASSERT_TRUE(opened.has_value());
+  EXPECT_EQ(opened->clip.frame_count(), 0);
+  EXPECT_EQ(opened->clip.provenance.conversions, whole->clip.provenance.conversions);
+  EXPECT_EQ(opened->diagnostics.size(), whole->diagnostics.size());
+  ASSERT_EQ(opened->keys.contacts.size(), whole->keys.contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    EXPECT_EQ(opened->keys.contacts[i].place, whole->keys.contacts[i].place);
+    EXPECT_EQ(opened->keys.contacts[i].end, whole->keys.contacts[i].end);
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    const auto read = load(opened->frames, 2);
+    ASSERT_TRUE(read.ok());
+    EXPECT_EQ(read->positions, whole->clip.positions);
+    EXPECT_TRUE(std::ranges::equal(
+        read->orientations, whole->clip.orientations,
+        [](const Quatf& a, const Quatf& b) { return a.coeffs() == b.coeffs(); }));
+  }
+  const auto transforms = walk.positions.size();
+  EXPECT_TRUE(npy::open(file, "walk.npz", options, transforms).has_value());
+  EXPECT_FALSE(npy::open(file, "walk.npz", options, transforms + 1).has_value());
+
+  auto damaged = file;
+  damaged[damaged.size() / 2] ^= std::byte{1};
+  EXPECT_FALSE(npy::open(damaged, "walk.npz", options).has_value());
+  walk.positions[4900 * 20].x() = NAN;
+  const auto faulty = npy::write_motion(frames_of(walk), {}).value();
+  const auto late = npy::open(faulty, "walk.npz", options);
+  EXPECT_TRUE(!late || !read_through(late->frames, 1));
 }
 
 // Would fail if noise-free places came out centimetres off, for a parent that is not one, unsaid.
