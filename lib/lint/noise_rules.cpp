@@ -121,7 +121,7 @@ class DetailOfBody {
   explicit DetailOfBody(int windows) : ratios_(at(windows)) {}
   void add(std::span<const Detail> details) {
     for (std::size_t w = 0; w < details.size(); ++w) {
-      if (details[w].speed < kMoves) continue;
+      if (details[w].speed < kMoves || details[w].usual < kStill) continue;  // or is held
       const float speed = std::max(details[w].usual, kMoves);
       ratios_[w].push_back(std::log(std::max(details[w].noise, 1e-7F) / speed));
     }

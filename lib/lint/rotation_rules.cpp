@@ -16,6 +16,7 @@ constexpr float kTimesNeighbours = 4;  // of the largest acceleration just befor
 constexpr float kDoubt = 1.5F;         // times as clear where only one side of a jump is known
 constexpr int kNeighbours = 4;         // frames looked at on either side
 constexpr double kSeamJoints = 0.3;    // of the joints that move
+constexpr double kFlipRate = 20;       // frames per second; joints turn farther in longer frames
 constexpr double kMinPath = 0.03;      // metres, of a jump of the hips
 
 enum class PopKind : std::uint8_t { spike, step, kink };
@@ -76,7 +77,7 @@ constexpr std::array<Template, 3> kTemplates = {
      {PopKind::step, 2, {1, -1, 0, 0}, {3.5F, 5}, {1.6F, 3}, 1.7F}}};
 // Toes spring back within a frame or two when they leave the ground, and feet slap on it.
 constexpr Clearness kOfToes = {3, 4};
-constexpr auto kSlap = static_cast<float>(20 * kRadiansPerDegree);  // at most, of a foot
+constexpr auto kSlap = static_cast<float>(35 * kRadiansPerDegree);  // at most, of a foot
 constexpr float kMinOverUsual = 2, kMinOverRest = 1;                // of all of them
 constexpr double kAround = 10;  // seconds before and after in which a jump is unlike others
 
@@ -273,7 +274,8 @@ bool about_own_bone(const Series& series, int joint, const Vec3f& turn) {
 void find_flips(const Series& series, int joint, std::span<const Vec3f> turns,
                 std::vector<Finding>& flips) {
   // Turns are twice the sine of half the angle.
-  const double degrees = std::min(179.0, series.threshold(Rule::flip));
+  const double longer = std::max(1.0, kFlipRate / series.rate);
+  const double degrees = std::min(179.0, longer * series.threshold(Rule::flip));
   const auto limit = static_cast<float>(2 * std::sin(degrees * kRadiansPerDegree / 2));
   if (std::sqrt(series.largest[at(joint)]) < limit) return;
   for (int f = 1; f < series.frames; ++f) {

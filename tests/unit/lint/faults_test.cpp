@@ -245,6 +245,45 @@ TEST(LintFaults, ToesJumpToo) {
   EXPECT_NE(find(faults_of(clip), Rule::pop, kAt), nullptr) << listed(clip, faults_of(clip));
 }
 
+// Would fail if feet that slap on the ground at each step jumped, as a forearm does that turns so.
+TEST(LintFaults, FeetSlapAgainAndAgain) {
+  for (const char* name : {"LeftFoot", "LeftForeArm"}) {
+    const Clip clip = changed(usual_walk(), [&](LocalMotion& m, Clip& c) {
+      auto all = m.joint_orientations(c.skeleton.find(name));
+      for (int f = 0; f < m.frames; ++f) {
+        if (f / 30 % 2 == 1) all[at(f)] = all[at(f)] * turn(25);
+      }
+    });
+    const bool jumps = find(faults_of(clip), Rule::pop, kAt) != nullptr;
+    EXPECT_EQ(jumps, std::string(name) == "LeftForeArm") << listed(clip, faults_of(clip));
+  }
+}
+
+// Would fail if a limb that turns by 120 degrees in a seventh of a second turned over.
+TEST(LintFaults, LongFramesAreNoFlips) {
+  Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip& c) {
+    auto all = m.joint_orientations(c.skeleton.find("LeftForeArm"));
+    for (std::size_t f = kAt; f < all.size(); ++f) all[f] = all[f] * turn(120);
+  });
+  EXPECT_NE(find(faults_of(clip), Rule::flip, kAt), nullptr);
+  clip.rate = 7;
+  EXPECT_EQ(find(faults_of(clip), Rule::flip, kAt), nullptr);
+}
+
+// Would fail if the window in which a pose that is held for long ends looked smooth.
+TEST(LintFaults, HeldPosesAreNotSmoothed) {
+  const Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
+    for (int j = 0; j < m.joints; ++j) {
+      auto all = m.joint_orientations(j);
+      std::fill(all.begin(), all.begin() + 130, all[130]);
+    }
+  });
+  const auto faults = faults_of(clip);
+  for (const lint::Finding& found : faults.findings) {
+    EXPECT_NE(found.rule, Rule::over_smooth) << listed(clip, faults);
+  }
+}
+
 // Would fail if what is usual were that of most windows: two thirds of this take are smoothed.
 TEST(LintFaults, ATakeThatIsSmoothedForMostOfItsTime) {
   const Clip clip = changed(usual_walk(), [](LocalMotion& m, Clip&) {
