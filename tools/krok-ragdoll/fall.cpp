@@ -9,6 +9,7 @@
 #include "core/hash.h"
 #include "core/index.h"
 #include "core/numbers.h"
+#include "ragdoll/toes.h"
 #include "tools/cli/report.h"
 
 namespace krok::cli::ragdoll {
@@ -76,7 +77,14 @@ Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOption
   };
   fallen.undisturbed =
       fallen.fall.follows && options.pushes.empty() && std::ranges::all_of(subject.bodies, is_full);
-  if (subject.rises.empty()) return fallen;
+  const auto bend_toes = [&] {
+    krok::ragdoll::bend_toes(fallen.fall.first_frame, subject.roles, subject.bodies,
+                             heights_of(*subject.terrain), fallen.clip);
+  };
+  if (subject.rises.empty()) {
+    bend_toes();
+    return fallen;
+  }
   if (fallen.fall.rest < 0) {
     return Error("ragdoll-moving", "the body does not come to rest, so that it cannot get up",
                  "give a longer --duration");
@@ -89,6 +97,7 @@ Result<Fallen> make_fall(const Subject& subject, const krok::ragdoll::FallOption
       krok::ragdoll::get_up(fallen.clip, frame, subject.rises, subject.roles, subject.bodies, how);
   if (!risen) return risen.error();
   fallen.clip = std::move(risen->clip);
+  bend_toes();
   fallen.risen = std::move(*risen);
   return fallen;
 }
