@@ -62,7 +62,7 @@ struct HierarchyStart {
   long long lines = 0;     // lines of text before it
 };
 
-std::string hint_for(registry::Kind kind, std::string_view what) {
+std::string hint_for(registry::Kind kind, std::string_view what, const std::string& file_name) {
   switch (kind) {
     case registry::Kind::anim:
     case registry::Kind::model:
@@ -79,6 +79,13 @@ std::string hint_for(registry::Kind kind, std::string_view what) {
   }
   if (what.find("markers") != std::string_view::npos) {
     return "write the solved skeleton as BVH or FBX from the capture software";
+  }
+  if (what.find("Unity") != std::string_view::npos) {
+    return "export the character and its clips from Unity as FBX or glTF";
+  }
+  if (ascii_lower(file_name).ends_with(".csv")) {
+    return "krok-plot draws tables; arrays of positions are read as .npz and .npy, which "
+           "krok-export writes, too";
   }
   if (what.find("OBJ") != std::string_view::npos) return "krok-morph takes shapes of a mesh";
   if (what.find("binary file") != std::string_view::npos) {
@@ -137,7 +144,7 @@ Status check_file_kind(std::string_view text, const std::string& file_name) {
     return not_bvh("the file has only white space", "export or copy it again");
   }
   const std::string_view what = registry::describe_content(content);
-  return not_bvh(fmt::format("not a BVH file: it is {}", what), hint_for(kind, what));
+  return not_bvh(fmt::format("not a BVH file: it is {}", what), hint_for(kind, what, file_name));
 }
 
 constexpr const char* kChannelsHint = "after CHANNELS write the number of channels and their names";

@@ -20,6 +20,11 @@ Address address_of(const std::string& path) {
 Result<InputFile> open_address(const std::string& path) {
   Address address = address_of(path);
   auto file = InputFile::open(address.file);
+  if (file && file->text().starts_with("version https://git-lfs.")) {
+    return Error("file-lfs", "is a Git LFS pointer, not the file itself",
+                 "fetch the file with: git lfs pull")
+        .in_file(address.file);
+  }
   if (file) file->choose_part(std::move(address.animation));
   return file;
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::string_view kHierarchy = "HIERARCHY";
 
 // Other kinds of files that users may pass by mistake, by their first bytes.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kOtherKinds = {
+constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kOtherKinds = {
     {{"\x89PNG", "a PNG image"},
      {"\x1F\x8B", "a gzip archive"},
      {"BZh", "a bzip2 archive"},
@@ -29,6 +29,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kOtherKi
      {"\x02P", "a C3D file (markers, no skeleton)"},
      {"PathFileType", "a TRC file (markers, no skeleton)"},
      {"{\"version\":1.3,\"people\"", "OpenPose JSON (2D points of one frame)"},
+     {"%YAML", "YAML, as animations and scenes of Unity"},
      {"version https://git-lfs", "a Git LFS pointer, not the file itself"}}};
 
 std::string_view text_of(std::span<const std::byte> content) {

@@ -55,6 +55,32 @@ TEST_F(Mistakes, ValuesOfAnotherKind) {
   EXPECT_TRUE(has_code(run.err, "edit-cutoff")) << run.err;
 }
 
+// Would fail if habits from other tools, or files that are something else, led nowhere.
+TEST_F(Mistakes, HabitsOfOtherToolsLeadOn) {
+  put("pointer.glb", "version https://git-lfs.github.com/spec/v1\noid sha256:12ab\nsize 99\n");
+  put("unity.anim", "%YAML 1.1\n--- !u!74 &7400000\nAnimationClip:\n");
+  put("table.csv", "frame,time,joint\n0,0,Root\n");
+  const struct {
+    std::string tool;
+    std::vector<std::string> arguments;
+    const char* hint;
+  } mistakes[] = {
+      {"krok-edit", {"in.bvh", "--rate", "1/30", "-o", "a.anim"}, "frames per second: 30"},
+      {"krok-edit", {"in.bvh", "--plant=left", "-o", "a.anim"}, "--plant takes no value"},
+      {"krok-edit", {"in.bvh", "-t", "2s", "-o", "a.anim"}, "--to"},
+      {"krok-skin", {"in.bvh", "--quantize", "16", "-o", "a.glb"}, "--quantize takes no value"},
+      {"krok-info", {"--format", "json", "in.bvh"}, "--json"},
+      {"krok-diff", {"--ignore-order", "in.bvh", "in.bvh"}, "--match"},
+      {"krok-skin", {"pointer.glb", "in.bvh", "-o", "a.glb"}, "git lfs pull"},
+      {"krok-import", {"unity.anim", "-o", "a.anim"}, "from Unity as FBX"},
+      {"krok-import", {"table.csv", "-o", "a.anim"}, ".npz"}};
+  for (const auto& [tool, arguments, hint] : mistakes) {
+    EXPECT_THAT(refused(tool, arguments), HasSubstr(hint));
+  }
+  const ToolRun fast = run_here("krok-edit", {"in.bvh", "--playback-speed", "50", "-o", "a.anim"});
+  EXPECT_TRUE(has_code(fast.err, "edit-speed")) << fast.err;
+}
+
 // Would fail if a folder as input led to an error about the folder, once -o were added.
 TEST_F(Mistakes, FoldersAreForBatchesAndFoldersAreNoFiles) {
   std::filesystem::create_directory(path("takes"));

@@ -157,6 +157,18 @@ Error CommandLine::parse_error(const std::vector<std::string>& arguments,
                              spec_.name)
                : fmt::format("see {} --help", spec_.name));
   }
+  // "--plant=left"
+  constexpr std::string_view kOfFlag = "Could not convert: ";
+  if (const std::string what = error.what(); what.starts_with(kOfFlag)) {
+    const std::string given = what.substr(kOfFlag.size());
+    const std::size_t equals = given.find(" = ");
+    const CLI::Option* flag = app_.get_option_no_throw(given.substr(0, equals));
+    if (equals != std::string::npos && flag != nullptr && flag->get_items_expected_max() == 0) {
+      return usage(fmt::format("{} takes no value, and '{}' is one", given.substr(0, equals),
+                               shown(given.substr(equals + 3))),
+                   flag->get_description());
+    }
+  }
   const bool too_many = form_ == Form::single && spec_.batch &&
                         dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   std::string missing;

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "core/glob.h"
+#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/open_scene.h"
 #include "tools/cli/folder_inputs.h"
@@ -254,6 +255,11 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     return Wish::version;
   } catch (const CLI::ParseError& error) {
     return parse_error(arguments, error);
+  }
+  // "--quantize 16 walk.anim": the number is taken for an input.
+  for (std::size_t i = 1; i < arguments.size(); ++i) {
+    if (!parse_finite(arguments[i]) || std::filesystem::exists(arguments[i])) continue;
+    if (auto value = value_of_flag(arguments, arguments[i])) return *std::move(value);
   }
   if (Status status = check_use_of_batch_options(); !status) return status.error();
   note_given();

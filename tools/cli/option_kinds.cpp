@@ -163,6 +163,11 @@ ValueKind<double> rate() {
       const auto divisor = parse_finite(digits.substr(slash + 1));
       value = value && divisor ? std::optional(*value / *divisor) : std::nullopt;
     }
+    // "1/60" is a frame's time.
+    if (value && *value < 1 && digits.starts_with("1/")) {
+      return usage(fmt::format("'{}' is the time of a frame", shown(text)),
+                   fmt::format("a rate is frames per second: {}", digits.substr(2)));
+    }
     if (value && *value >= 1e-3 && *value <= 1e6) return *value;
     return usage(fmt::format("'{}' is not a frame rate from 0.001 to 1000000", shown(text)));
   };

@@ -265,7 +265,8 @@ Status mirror_sides(const Options& options, ToolContext& context, Edit& edit) {
   return {};
 }
 
-Status change_timing(const Options& options, ToolContext&, Edit& edit) {
+Status change_timing(const Options& options, ToolContext& context, Edit& edit) {
+  constexpr double kHardlyMeant = 20;
   const double rate = options.resample.value_or(edit.clip.rate);
   if (!options.resample && edit.speed == 1) return {};
   const FrameSource before = edit.source();
@@ -290,6 +291,11 @@ Status change_timing(const Options& options, ToolContext&, Edit& edit) {
   metrics["frames_before"] = before.frame_count;
   metrics["frames"] = edit.frame_count();
   std::string line;
+  if (edit.speed >= kHardlyMeant) {
+    context.warn("edit-speed",
+                 fmt::format("the motion is played {} times as fast", readable(edit.speed)),
+                 "a speed is a factor, 0.5 for 50 %");
+  }
   if (edit.speed != 1) {
     line = fmt::format("speed {}: {} become {}", readable(edit.speed), seconds(before.duration()),
                        seconds(edit.source().duration()));
