@@ -340,8 +340,11 @@ std::vector<std::string> addresses_in(const std::string& path, const GivenLimits
   }
   if (!left_out.empty()) {
     notes.push_back(make_warning(
-        "clip-still", "neither moves nor poses joints, and is left out: " + left_out, "", path));
-    notes.back().severity = Severity::note;
+        "clip-still",
+        fmt::format("{} of {} animations left out, which neither move nor pose joints: {}",
+                    scene->animations.size() - animations.size(), scene->animations.size(),
+                    left_out),
+        "in quotes, 'FILE#NAME' is one of them all the same", path));
   }
   std::vector<std::string> addresses;
   const auto is = [&](const std::string& name, int animation) {
