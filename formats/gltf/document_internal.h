@@ -213,6 +213,7 @@ class Document {
   std::set<std::string> node_names_;
   std::map<std::string, int> sockets_;  // the nodes of add_sockets()
   std::map<std::string, int> materials_;
+  std::map<int, std::set<std::string>> used_sets_;  // of texture coordinates, by materials
   std::map<const EncodedImage*, int> images_;
   std::map<std::pair<int, int>, int> textures_;  // by image and sampler
 };

@@ -68,6 +68,7 @@ Status take_nodes(const ParsedJson& parsed, Scene& scene) {
     node.weights = source.weights;
     node.fixture = (i < parsed.lights.size() && parsed.lights[i]) ||
                    (i < parsed.marked.size() && parsed.marked[i]);
+    if (i < parsed.node_parameters.size()) node.parameters = parsed.node_parameters[i];
     node.visible = i >= parsed.hidden.size() || !parsed.hidden[i];
     const std::string name = label("node", i, node.name);
     if (node.mesh != -1 && !exists(node.mesh, model.meshes.size())) {
@@ -220,6 +221,7 @@ class Builder {
     scene_.generator = model_.asset.generator;
     scene_.space = {1.0, Quat::Identity()};  // section 3.4
     scene_.not_shown = parsed_.not_shown;
+    scene_.properties = parsed_.properties;
     for (auto step : {&Builder::read_cameras, &Builder::read_nodes, &Builder::read_all_meshes,
                       &Builder::read_skins, &Builder::check_instances, &Builder::place_instances,
                       &Builder::read_animations}) {

@@ -32,8 +32,8 @@ struct ReadOptions {
       open = nullptr;
   std::uint64_t most_bytes = std::uint64_t{4} << 30;  // of the input and all its buffers together
   // Also read Scene::materials, with images from buffers, data URIs and external files (same
-  // rules). An unusable image is left out with a warning (gltf-picture), as are properties that
-  // Material does not have (gltf-material).
+  // rules). An unusable image is left out with a warning (gltf-picture), as are extensions of
+  // materials that are not only about these (gltf-material).
   bool with_materials = false;
   // Whether Draco's data is unpacked; if not, it is an error (gltf-compression). For consumers of
   // the file itself that cannot.

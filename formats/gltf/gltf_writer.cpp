@@ -58,10 +58,26 @@ Status add_weight_keys(Document& document, std::span<const Document::MeshNode> m
                        const MorphWeights& weights, const std::string& name,
                        std::size_t animation = 0) {
   if (weights.frame_count() < 2) return {};
-  const auto times = key_times(weights.frame_count(), weights.rate);
+  auto times = key_times(weights.frame_count(), weights.rate);
   if (!times) return times.error();
-  document.add_weight_keys(meshes, *times, weights.values, name, animation);
+  std::span<const float> values = weights.values;
+  const std::size_t width = weights.names.size();
+  // A face at rest is as long as its motion.
+  if (std::ranges::equal(values.subspan(width), values.first(values.size() - width))) {
+    *times = {times->front(), times->back()};
+    values = values.first(2 * width);
+  }
+  document.add_weight_keys(meshes, *times, values, name, animation);
   return {};
+}
+
+// Whether a target has other normals than the mesh.
+bool turns_normals(const MorphSet& morphs, const Model& model) {
+  if (morphs.normals.empty() || model.normals.empty()) return false;
+  for (int t = 0; t < morphs.target_count(); ++t) {
+    if (!std::ranges::equal(morphs.target_normals(t), model.normals)) return true;
+  }
+  return false;
 }
 
 // Adds them to the model's meshes that they move, which have `attributes`, and to the animations of
@@ -72,8 +88,7 @@ Status add_morphs(Document& document, const Model& model,
                   std::span<const NamedTracks> clips, const WriteOptions& options) {
   if (options.morphs == nullptr || options.morphs->names.empty()) return {};
   const MorphSet& morphs = *options.morphs;
-  const bool has_normals =
-      !morphs.normals.empty() && !model.normals.empty() && attributes.contains("NORMAL");
+  const bool has_normals = attributes.contains("NORMAL") && turns_normals(morphs, model);
   const auto meshes = document.moved_meshes(all_meshes, [&](std::size_t v) {
     for (int t = 0; t < morphs.target_count(); ++t) {
       if (morphs.target_positions(t)[v] != model.positions[v]) return true;
@@ -85,8 +100,9 @@ Status add_morphs(Document& document, const Model& model,
   for (int t = 0; t < morphs.target_count(); ++t) {
     auto& target = targets[static_cast<std::size_t>(t)];
     if (options.quantized) {
-      target = add_quantized_target(document, model, morphs, t,
-                                    PositionGrid::of(model.positions, *options.quantized));
+      target =
+          add_quantized_target(document, model, morphs, t,
+                               PositionGrid::of(model.positions, *options.quantized), has_normals);
       continue;
     }
     target["POSITION"] = document.add_displacements(
@@ -127,6 +143,17 @@ Status add_morphs(Document& document, const Model& model,
 
 using Use = Document::Use;
 
+// Of vertices on one joint each as bytes, which are exact and a quarter of the size.
+int add_weights(Document& document, std::span<const float> weights) {
+  if (!std::ranges::all_of(weights, [](float weight) { return weight == 0 || weight == 1; })) {
+    return document.add_floats(weights, TINYGLTF_TYPE_VEC4, Use::vertices, false);
+  }
+  std::vector<std::uint8_t> bytes;
+  for (const float weight : weights) bytes.push_back(weight == 0 ? 0 : 255);
+  return document.add_strided(std::as_bytes(std::span(bytes)), 4,
+                              TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, TINYGLTF_TYPE_VEC4, true);
+}
+
 // JOINTS_0, WEIGHTS_0 and, for more than four influences, JOINTS_1, WEIGHTS_1.
 void add_influences(Document& document, const Model& model,
                     std::map<std::string, int>& attributes) {
@@ -153,8 +180,7 @@ void add_influences(Document& document, const Model& model,
     }
     attributes[fmt::format("JOINTS_{}", set)] =
         document.add_integers(joints, TINYGLTF_TYPE_VEC4, largest, Use::vertices);
-    attributes[fmt::format("WEIGHTS_{}", set)] =
-        document.add_floats(weights, TINYGLTF_TYPE_VEC4, Use::vertices, false);
+    attributes[fmt::format("WEIGHTS_{}", set)] = add_weights(document, weights);
   }
 }
 

@@ -104,6 +104,8 @@ Status check_asset(const Json& json) {
 
 constexpr std::string_view kInstancing = "EXT_mesh_gpu_instancing";
 constexpr std::string_view kVisibility = "KHR_node_visibility";
+constexpr std::string_view kLights = "KHR_lights_punctual";
+constexpr std::string_view kVariants = "KHR_materials_variants";
 constexpr std::string_view kPointer = "KHR_animation_pointer";
 constexpr std::array<std::string_view, 2> kMeshopt = {"EXT_meshopt_compression",
                                                       "KHR_meshopt_compression"};
@@ -238,12 +240,103 @@ int index_between(std::string_view before, std::string_view pointer, std::string
 // Extensions whose data is read. Those of materials are read where they are on materials.
 bool is_shown(std::string_view extension) {
   constexpr std::array kOthers = {"KHR_mesh_quantization", "KHR_texture_transform", kWebp, kBasisu,
-                                  "KHR_lights_punctual",  // counted as lights
-                                  "KHR_animation_pointer"};
+                                  "KHR_lights_punctual",   "KHR_animation_pointer"};
   const auto is_it = [&](std::string_view other) { return extension == other; };
   return is_meshopt(extension) || is_it(kDraco) || is_it(kInstancing) || is_it(kVisibility) ||
-         std::ranges::any_of(kOthers, is_it) ||
-         (extension.starts_with("KHR_materials_") && extension != "KHR_materials_variants");
+         std::ranges::any_of(kOthers, is_it) || extension.starts_with("KHR_materials_");
+}
+
+// The members of an object and of those in it: "light, spot, innerConeAngle". Deeper ones are text,
+// so that names take no more than the file does.
+void add_members(const std::string& name, const Json& json,
+                 std::vector<MaterialParameter>& parameters, int depth = 0) {
+  constexpr int kMaxDepth = 3;
+  if (!json.is_object() || depth == kMaxDepth) {
+    if (!json.is_null()) parameters.push_back(parameter_of(name, json));
+    return;
+  }
+  for (const auto& [key, value] : json.items()) {
+    if (key != "name" && key != "extensions") {
+      add_members(name + ", " + shown(key), value, parameters, depth + 1);
+    }
+  }
+}
+
+const Json& entry_at(const Json& json, const char* list, const Json& index) {
+  static const Json none;
+  const auto entries = entries_of(json, list);
+  const bool exists = index.is_number_unsigned() && index.get<std::uint64_t>() < entries.size();
+  return exists ? entries[index.get<std::size_t>()] : none;
+}
+
+std::vector<std::vector<MaterialParameter>> read_node_parameters(const Json& json) {
+  std::vector<std::vector<MaterialParameter>> all;
+  const Json& lights = member(member(json, "extensions"), kLights);
+  for (const Json& node : entries_of(json, "nodes")) {
+    auto& parameters = all.emplace_back();
+    add_members("camera", entry_at(json, "cameras", member(node, "camera")), parameters);
+    const Json& light = member(member(member(node, "extensions"), kLights), "light");
+    add_members("light", entry_at(lights, "lights", light), parameters);
+  }
+  return all;
+}
+
+// Names of a file's parts, with a number where one is repeated.
+class PartNames {
+ public:
+  std::string add(const char* kind, std::size_t index, const Json& part) {
+    const std::string name = text_member(part, "name");
+    std::string text =
+        fmt::format("{} {}", kind, name.empty() ? std::to_string(index) : shown(name));
+    if (const int number = ++taken_[text]; number > 1) text += fmt::format(" ({})", number);
+    return text;
+  }
+
+ private:
+  std::map<std::string, int> taken_;
+};
+
+void add_variants(const Json& json, const std::string& mesh, const Json& primitive,
+                  std::vector<MaterialParameter>& properties) {
+  const Json& variants = member(member(json, "extensions"), kVariants);
+  for (const Json& mapping :
+       entries_of(member(member(primitive, "extensions"), kVariants), "mappings")) {
+    const Json& material = entry_at(json, "materials", member(mapping, "material"));
+    for (const Json& variant : entries_of(mapping, "variants")) {
+      const std::string name = text_member(entry_at(variants, "variants", variant), "name");
+      properties.push_back({fmt::format("variant {} of {}", shown(name), mesh),
+                            {},
+                            {},
+                            text_member(material, "name")});
+    }
+  }
+}
+
+// Without what Krok writes in extras and reads.
+std::vector<MaterialParameter> read_properties(const Json& json) {
+  std::vector<MaterialParameter> properties;
+  PartNames names;
+  for (const auto& [kind, list, own] : {std::tuple("animation", "animations", kRate),
+                                        {"node", "nodes", kMark},
+                                        {"mesh", "meshes", "targetNames"}}) {
+    const auto parts = entries_of(json, list);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const std::string name = names.add(kind, i, parts[i]);
+      if (list == std::string_view("meshes")) {
+        const auto primitives = entries_of(parts[i], "primitives");
+        for (std::size_t p = 0; p < primitives.size(); ++p) {
+          add_variants(json, p == 0 ? name : fmt::format("{}, primitive {}", name, p),
+                       primitives[p], properties);
+        }
+      }
+      const Json& extras = member(parts[i], "extras");
+      if (!extras.is_object()) continue;
+      for (const auto& [key, value] : extras.items()) {
+        if (key != own) add_members(name + ", " + shown(key), value, properties);
+      }
+    }
+  }
+  return properties;
 }
 
 std::vector<std::string> read_not_shown(const Json& json, const ParsedJson& parsed) {
@@ -251,11 +344,7 @@ std::vector<std::string> read_not_shown(const Json& json, const ParsedJson& pars
   const auto add = [&](std::int64_t count, const char* one, const char* many) {
     if (count > 0) all.push_back(counted(count, one, many));
   };
-  add(std::ranges::count(parsed.lights, true), "light", "lights");
-  std::int64_t cameras = 0, attributes = 0;
-  for (const Json& node : entries_of(json, "nodes")) {
-    cameras += node.is_object() && node.contains("camera") ? 1 : 0;
-  }
+  std::int64_t attributes = 0;
   for (const Json& mesh : entries_of(json, "meshes")) {
     for (const Json& primitive : entries_of(mesh, "primitives")) {
       const Json& named = member(primitive, "attributes");
@@ -266,7 +355,6 @@ std::vector<std::string> read_not_shown(const Json& json, const ParsedJson& pars
       }
     }
   }
-  add(cameras, "camera", "cameras");
   add(std::ssize(parsed.pointers), "animation channel of KHR_animation_pointer",
       "animation channels of KHR_animation_pointer");
   add(attributes, "vertex attribute of other names", "vertex attributes of other names");
@@ -474,6 +562,15 @@ std::vector<PointerChannel> take_pointers(Json& json) {
   return all;
 }
 
+MaterialParameter parameter_of(std::string name, const Json& value) {
+  const auto is_number = [](const Json& one) { return one.is_number(); };
+  if (value.is_number()) return {std::move(name), {value.get<double>()}};
+  if (value.is_array() && !value.empty() && std::ranges::all_of(value, is_number)) {
+    return {std::move(name), value.get<std::vector<double>>()};
+  }
+  return {std::move(name), {}, {}, json_text(value)};
+}
+
 const Json& member(const Json& object, std::string_view name) {
   static const Json none;
   if (!object.is_object()) return none;
@@ -500,7 +597,7 @@ Result<ParsedJson> parse_json(const Container& container) {
   mark_fallbacks(json, *buffers);
   result.buffers = std::move(*buffers);
   for (const Json& node : entries_of(json, "nodes")) {
-    result.lights.push_back(extension_of(node, "KHR_lights_punctual") != nullptr);
+    result.lights.push_back(extension_of(node, kLights) != nullptr);
     const Json& mark = member(member(node, "extras"), kMark);
     result.marked.push_back(mark == kEye || mark == kSocket);
     const Json* visibility = extension_of(node, kVisibility);
@@ -512,6 +609,8 @@ Result<ParsedJson> parse_json(const Container& container) {
     const Json& rate = member(member(animation, "extras"), kRate);
     result.rates.push_back(rate.is_number() ? rate.get<double>() : 0);
   }
+  result.node_parameters = read_node_parameters(json);
+  result.properties = read_properties(json);
   result.not_shown = read_not_shown(json, result);
   auto views = read_packed_views(json);
   if (!views) return views.error();

@@ -87,6 +87,8 @@ struct ParsedJson {
   std::vector<PointerChannel> pointers;
   std::vector<double> rates;           // [animations], of their extras; 0 without
   std::vector<std::string> not_shown;  // as nodes::Scene::not_shown
+  std::vector<std::vector<MaterialParameter>> node_parameters;  // [nodes], of cameras and lights
+  std::vector<MaterialParameter> properties;                    // as nodes::Scene::properties
   std::vector<PackedView> packed_views;
   std::vector<PackedPrimitive> packed_primitives;
 };
@@ -95,6 +97,9 @@ struct ParsedJson {
 const nlohmann::json& member(const nlohmann::json& object, std::string_view name);
 // A string member; empty if there is none.
 std::string text_member(const nlohmann::json& object, const char* name);
+
+// A property as numbers where it is one or a list of them, else as text.
+MaterialParameter parameter_of(std::string name, const nlohmann::json& value);
 
 // Takes the channels of KHR_animation_pointer; those of a node's own properties become channels as
 // glTF has them without the extension.

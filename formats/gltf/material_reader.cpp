@@ -186,6 +186,9 @@ class MaterialReader {
     if (!json.is_object()) return material;
     read_surface(json, material);
     read_parameters(json);
+    if (const Json& extras = member(json, "extras"); !extras.is_null()) {
+      material.extras = json_text(extras);
+    }
     const Json& normal = object_in(json, "normalTexture");
     material.normal_texture = texture(normal);
     material.normal_scale = factor(normal, "scale", 1, -kMaxNormalScale, kMaxNormalScale);
@@ -208,7 +211,10 @@ class MaterialReader {
     const Json& extensions = object_in(json, "extensions");
     material.unlit = extensions.contains("KHR_materials_unlit");
     for (const auto& [name, value] : extensions.items()) {
-      if (name != "KHR_materials_unlit") left_aside_.insert(name);
+      if (name == "KHR_materials_unlit") continue;
+      // Others may refer to parts of the file by number.
+      const bool known = name.find("_materials_") != std::string::npos && value.is_object();
+      known ? keep_extension(name, value, material) : void(left_aside_.insert(name));
     }
     const Json& surface = object_in(json, "pbrMetallicRoughness");
     const Json& glossy = object_in(extensions, "KHR_materials_pbrSpecularGlossiness");
@@ -223,6 +229,36 @@ class MaterialReader {
     material.metallic = factor(surface, "metallicFactor", 1);
     material.roughness = factor(surface, "roughnessFactor", 1);
     material.metallic_roughness_texture = texture(object_in(surface, "metallicRoughnessTexture"));
+  }
+
+  void keep_extension(const std::string& name, Json value, Material& material) {
+    MaterialExtension& kept = material.extensions.emplace_back();
+    take_textures(value, kept.textures);
+    kept.name = name;
+    kept.json = json_text(value);
+  }
+
+  // Moves the textures out, leaving their numbers; those without an image are left out.
+  void take_textures(Json& json, std::vector<Texture>& textures) {
+    if (json.is_object()) json.erase("extensions");
+    for (auto item = json.begin(); item != json.end();) {
+      Json& value = *item;
+      if (value.is_object() && value.contains("index")) {
+        Texture found = texture(value);
+        if (!found) {
+          item = json.erase(item);
+          continue;
+        }
+        const Json transform = object_in(object_in(value, "extensions"), "KHR_texture_transform");
+        value.erase("extensions");
+        if (!transform.empty()) value["extensions"]["KHR_texture_transform"] = transform;
+        value["index"] = textures.size();
+        textures.push_back(std::move(found));
+      } else if (value.is_structured()) {
+        take_textures(value, textures);
+      }
+      ++item;
+    }
   }
 
   // What Material has no members for, and texture coordinate sets and transforms as they were
@@ -243,15 +279,13 @@ class MaterialReader {
         read_parameter(shown(extension) + ", " + shown(key), value);
       }
     }
+    for (const auto& [key, value] : object_in(json, "extras").items()) {
+      read_parameter("extras, " + shown(key), value);
+    }
   }
 
   void read_parameter(const std::string& name, const Json& value) {
-    const auto is_number = [](const Json& one) { return one.is_number(); };
-    if (value.is_number()) {
-      parameters_.push_back({name, {value.get<double>()}});
-    } else if (value.is_array() && !value.empty() && std::ranges::all_of(value, is_number)) {
-      parameters_.push_back({name, value.get<std::vector<double>>()});
-    } else if (value.is_object() && value.contains("index")) {
+    if (value.is_object() && value.contains("index")) {
       parameters_.push_back({name, {}, texture_of(value)});
       read_coordinates(name, value);
       for (const auto& [key, member] : value.items()) {
@@ -260,7 +294,7 @@ class MaterialReader {
         }
       }
     } else {
-      parameters_.push_back({name, {}, {}, json_text(value)});
+      parameters_.push_back(parameter_of(name, value));
     }
   }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -13,6 +14,8 @@
 namespace krok::gltf {
 
 namespace {
+
+using Json = nlohmann::json;
 
 // The shortest decimal that gives the float: 0.8f as 0.8.
 double as_meant(float value) {
@@ -59,6 +62,54 @@ tinygltf::Material factors_of(const Material& from) {
   return material;
 }
 
+tinygltf::Value value_of(const Json& json) {
+  switch (json.type()) {
+    case Json::value_t::boolean:
+      return tinygltf::Value(json.get<bool>());
+    case Json::value_t::number_integer:
+    case Json::value_t::number_unsigned:
+      if (const double value = json.get<double>(); std::abs(value) <= 0x7FFFFFFF) {
+        return tinygltf::Value(json.get<int>());
+      }
+      [[fallthrough]];
+    case Json::value_t::number_float:
+      return tinygltf::Value(json.get<double>());
+    case Json::value_t::string:
+      return tinygltf::Value(json.get<std::string>());
+    case Json::value_t::array: {
+      tinygltf::Value::Array list;
+      for (const Json& item : json) list.push_back(value_of(item));
+      return tinygltf::Value(std::move(list));
+    }
+    case Json::value_t::object: {
+      tinygltf::Value::Object object;
+      for (const auto& [key, item] : json.items()) object[key] = value_of(item);
+      return tinygltf::Value(std::move(object));
+    }
+    default:
+      return {};
+  }
+}
+
+// Replaces the numbers of an extension's textures, which are left out where they are -1.
+void number_textures(Json& json, const std::vector<int>& numbers) {
+  for (auto item = json.begin(); item != json.end();) {
+    const Json& index = member(*item, "index");
+    if (index.is_number_unsigned() && index.get<std::size_t>() < numbers.size()) {
+      const int number = numbers[index.get<std::size_t>()];
+      if (number < 0) {
+        item = json.erase(item);
+        continue;
+      }
+      (*item)["index"] = number;
+    } else if (item->is_structured()) {
+      number_textures(*item, numbers);
+    }
+    ++item;
+  }
+}
+
+constexpr const char* kAnisotropy = "KHR_materials_anisotropy";
 constexpr const char* kUnlit = "KHR_materials_unlit";
 constexpr const char* kTransform = "KHR_texture_transform";
 
@@ -153,17 +204,20 @@ Result<int> Document::add_material(const std::string& name,
   const Material* const given = find_material(options_.materials, name);
   const Material& from = given != nullptr ? *given : usual;
   tinygltf::Material material = factors_of(from);
+  const auto use = [&](const Texture& texture) -> Result<int> {
+    const std::string set = fmt::format("TEXCOORD_{}", texture.set);
+    if (!texture || !attributes.contains(set)) return -1;
+    used_sets_[place->second].insert(set);
+    if (texture.transforms()) use_extension(kTransform);
+    return add_texture(texture);
+  };
   const auto refer = [&](const Texture& texture, auto& info) -> Status {
-    if (!attributes.contains(fmt::format("TEXCOORD_{}", texture.set))) return {};
-    const auto added = add_texture(texture);
+    const auto added = use(texture);
     if (!added) return added.error();
     info.index = *added;
-    if (!texture) return {};
+    if (*added < 0) return {};
     info.texCoord = texture.set;
-    if (texture.transforms()) {
-      info.extensions[kTransform] = transform_of(texture);
-      use_extension(kTransform);
-    }
+    if (texture.transforms()) info.extensions[kTransform] = transform_of(texture);
     return {};
   };
   Status status = refer(from.base_color_texture, material.pbrMetallicRoughness.baseColorTexture);
@@ -185,6 +239,21 @@ Result<int> Document::add_material(const std::string& name,
     material.extensions[kUnlit] = tinygltf::Value(tinygltf::Value::Object{});
     use_extension(kUnlit);
   }
+  const bool has_tangents = attributes.contains("TANGENT") || material.normalTexture.index >= 0;
+  for (const MaterialExtension& extension : from.extensions) {
+    if (extension.name == kAnisotropy && !has_tangents) continue;  // it would have no direction
+    std::vector<int> textures;
+    for (const Texture& texture : extension.textures) {
+      const auto added = use(texture);
+      if (!added) return added.error();
+      textures.push_back(*added);
+    }
+    Json json = krok::parse_json(extension.json);
+    number_textures(json, textures);
+    material.extensions[extension.name] = value_of(json);
+    use_extension(extension.name.c_str());
+  }
+  if (!from.extras.empty()) material.extras = value_of(krok::parse_json(from.extras));
   gltf.materials.push_back(std::move(material));
   return place->second;
 }

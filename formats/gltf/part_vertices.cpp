@@ -119,15 +119,9 @@ std::map<std::string, int> Document::attributes_of(const std::map<std::string, i
 std::map<std::string, int> Document::own_attributes(const tinygltf::Primitive& primitive,
                                                     const std::map<std::string, int>& whole,
                                                     const VertexRange& range) const {
-  const tinygltf::Material& material = gltf.materials[static_cast<std::size_t>(primitive.material)];
+  const auto used = used_sets_.find(primitive.material);
   const auto is_used = [&](const std::string& name) {
-    const auto uses = [&](const auto& info) {
-      return info.index >= 0 && name == fmt::format("TEXCOORD_{}", info.texCoord);
-    };
-    return uses(material.pbrMetallicRoughness.baseColorTexture) ||
-           uses(material.pbrMetallicRoughness.metallicRoughnessTexture) ||
-           uses(material.normalTexture) || uses(material.occlusionTexture) ||
-           uses(material.emissiveTexture);
+    return used != used_sets_.end() && used->second.contains(name);
   };
   std::map<std::string, int> own = whole;
   std::erase_if(own, [&](const auto& attribute) {

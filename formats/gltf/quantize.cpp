@@ -340,7 +340,7 @@ std::map<std::string, int> add_quantized_shape(Document& document, const Model& 
 
 std::map<std::string, int> add_quantized_target(Document& document, const Model& model,
                                                 const MorphSet& morphs, int target,
-                                                const PositionGrid& grid) {
+                                                const PositionGrid& grid, bool with_normals) {
   std::map<std::string, int> attributes;
   const TargetSteps steps = target_steps(model.positions, morphs.target_positions(target), grid);
   int& position = attributes["POSITION"];
@@ -352,7 +352,7 @@ std::map<std::string, int> add_quantized_target(Document& document, const Model&
     position = document.add_sparse(std::move(whole), true, TINYGLTF_COMPONENT_TYPE_SHORT);
     if (position < 0) position = add_steps(document, steps.whole);
   }
-  if (morphs.normals.empty() || model.normals.empty()) return attributes;
+  if (!with_normals) return attributes;
   const auto normals = morphs.target_normals(target);
   std::vector<Vec3f> turns(normals.size());
   for (std::size_t v = 0; v < normals.size(); ++v) turns[v] = normals[v] - model.normals[v];

@@ -40,6 +40,6 @@ VertexRows vertex_rows(const Model& model, const MorphSet& morphs,
 // The displacements of morph targets in steps of the grid.
 std::map<std::string, int> add_quantized_target(Document& document, const Model& model,
                                                 const MorphSet& morphs, int target,
-                                                const PositionGrid& grid);
+                                                const PositionGrid& grid, bool with_normals);
 
 }  // namespace krok::gltf

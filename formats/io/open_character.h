@@ -42,6 +42,8 @@ struct ActorOptions {
   bool rest_frame_is_note = false;   // as in MotionOptions
   bool moving_faces_matter = false;  // as in MotionOptions
   bool stays_still = false;  // of scenes: warn of animations, and of a pose, that will not be shown
+  // Of scenes: warn of cameras, lights and other nodes without a mesh, and of variants.
+  bool keeps_mesh_alone = false;
 };
 
 // What a file holds, whatever it is: a motion with its skeleton, a model, a character, a camera, or

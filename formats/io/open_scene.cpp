@@ -1,6 +1,7 @@
 #include "formats/io/open_scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include "formats/io/readers_internal.h"
 #include "formats/zip/zip_archive.h"
 #include "nodes/animation_choice.h"
+#include "nodes/scene_of.h"
 
 namespace krok::io {
 
@@ -138,6 +140,39 @@ std::vector<int> moving(const nodes::Scene& scene, std::span<const int> joints) 
 // Metres between a motion and its file's curves that are warned of.
 constexpr double kLost = 1e-3;
 
+// "A, B and 3 more"
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMaxNamed = 5;
+  const std::size_t named = std::min(kMaxNamed, names.size());
+  std::string text = fmt::format("{}", fmt::join(std::span(names).first(named), ", "));
+  if (names.size() > named) text += fmt::format(" and {} more", names.size() - named);
+  return text;
+}
+
+// Nodes that are neither joints nor have a mesh, and variants of materials.
+void warn_of_left_out(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                      std::span<const int> joints, Diagnostics& found) {
+  std::vector<std::string> names, variants;
+  for (const int place : nodes::places_of(scene, evaluator)) {
+    if (std::ranges::find(joints, place) != joints.end()) continue;
+    const std::string& name = scene.nodes[at(place)].name;
+    names.push_back(name.empty() ? fmt::format("node {}", place) : shown(name));
+  }
+  for (const MaterialParameter& one : scene.properties) {
+    if (one.name.starts_with("variant ")) variants.push_back(one.name);
+  }
+  if (!names.empty()) {
+    found.push_back(make_warning(
+        "scene-nodes",
+        fmt::format("{} without a mesh (cameras, lights or others): not in the result: {}",
+                    counted(std::ssize(names), "node"), some_of(names))));
+  }
+  if (!variants.empty()) {
+    found.push_back(make_warning(
+        "scene-variants", "materials to choose from: not in the result: " + some_of(variants)));
+  }
+}
+
 // The parts of a scene that are asked for; adds to `found` what is to be reported.
 Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Inputs& inputs,
                        const ActorOptions& options, Diagnostics& found) {
@@ -145,6 +180,7 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
   if (!evaluator) return evaluator.error();
   const auto rig = character::find_rig(scene, *evaluator, "", found);
   if (!rig) return rig.error();
+  if (options.keeps_mesh_alone) warn_of_left_out(scene, *evaluator, rig->joints.nodes, found);
   int animation = best_animation(scene, rig->joints.nodes).animation;
   std::vector<int> animations;
   if (options.every_clip && options.clip.empty()) animations = moving(scene, rig->joints.nodes);
@@ -243,11 +279,11 @@ void warn_of_stillness(const nodes::Scene& scene, Diagnostics& found) {
                     counted(std::ssize(scene.animations), "animation")),
         "krok-import FILE --clip all -o '{clip}.anim' writes motions to be given after "
         "the mesh"));
-    return;
   }
   for (Diagnostic& one : found) {
     if (one.code != "scene-pose") continue;
     one.severity = Severity::warning;
+    if (!scene.animations.empty()) continue;
     one.hint = "krok-import FILE -o pose.anim writes the pose that the file shows as a motion";
   }
 }

@@ -9,6 +9,8 @@
 #include <tuple>
 #include <utility>
 
+#include "math/types.h"
+
 namespace krok::compare {
 
 namespace {
@@ -160,7 +162,11 @@ std::optional<double> default_of(std::string_view name) {
       {"offset", 0},  // KHR_texture_transform
       {"rotation", 0},
       {"scale", 1},
-      {"set", 0},  // of a texture's coordinates
+      {"set", 0},    // of a texture's coordinates
+      {"color", 1},  // of lights
+      {"intensity", 1},
+      {"innerConeAngle", 0},
+      {"outerConeAngle", kPi / 4},
   });
   const std::size_t comma = name.rfind(", ");
   const std::string_view property = comma == name.npos ? name : name.substr(comma + 2);

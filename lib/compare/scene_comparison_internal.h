@@ -117,6 +117,9 @@ Status choose_moments(SceneComparison& comparison);
 // Reports what differs at rest where both have animations, which show none of it.
 void compare_rest_pose(SceneComparison& comparison);
 
+// Compares the nodes without a mesh at all moments, and the files' other properties.
+void compare_places(SceneComparison& comparison);
+
 // Fills `surfaces` from `groups`. Code: compare-value.
 Status match_surfaces(SceneComparison& comparison, int jobs);
 

@@ -105,6 +105,7 @@ Result<SceneDifference> difference(const Scene& first, const Scene& second,
   match_scene_meshes(comparison);
   if (Status status = choose_moments(comparison); !status) return status.error();
   compare_rest_pose(comparison);
+  compare_places(comparison);
   place_meshes(comparison);
   compare_shapes(comparison);
   if (Status status = match_surfaces(comparison, jobs); !status) return status.error();

@@ -88,15 +88,17 @@ struct SceneDifference {
 // one has no name or with Matching::order) at the key times of both, for as long as both last;
 // times within the tolerance are merged. Between key times, also at the ends of the parts of
 // KeyGap, and just before steps. Without animations, compares the static pose. A skinned scene can
-// be compared with one without joints; joints are then skipped. Normals or texture coordinates that
-// only one mesh has are a difference of structure; so are tangents if both materials have a normal
-// texture, and further texture coordinates if a texture uses them, otherwise they are a note.
-// Different numbers of morph targets are a note if one mesh is a bake of the other's motion. Two
-// meshes with the same triangles differ if one shows their backs. Deterministic for any number of
-// jobs. Another name of an animation (not of a bake) or (with `materials`) a material is a
-// difference except with Matching::order (an animation's also with Matching::nearest); of a mesh it
-// is a note, a difference by Matching::name. Codes: compare-value if a scene has values that are
-// not finite, compare-too-long for more than a million moments.
+// be compared with one without joints; joints are then skipped. Nodes without a mesh, cameras and
+// lights are compared by their places and properties, by name where all have one, as are extras.
+// Normals or texture coordinates that only one mesh has are a difference of structure; so are
+// tangents if both materials have a normal texture, and further texture coordinates if a texture
+// uses them, otherwise they are a note. Different numbers of morph targets are a note if one mesh
+// is a bake of the other's motion. Two meshes with the same triangles differ if one shows their
+// backs. Deterministic for any number of jobs. Another name of an animation (not of a bake) or
+// (with `materials`) a material is a difference except with Matching::order (an animation's also
+// with Matching::nearest); of a mesh it is a note, a difference by Matching::name. Codes:
+// compare-value if a scene has values that are not finite, compare-too-long for more than a million
+// moments.
 //
 // The pose without animation is compared where both have animations and joints: another one is a
 // difference of structure.

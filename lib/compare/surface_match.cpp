@@ -237,10 +237,10 @@ void report_tangents_left_out(SceneComparison& comparison) {
   }
 }
 
-// Reports attributes that a mesh has and the surface next to it has not. The other way round comes
-// with the other direction.
+// Reports attributes that a mesh has and the surface next to it has not; further texture
+// coordinates count if a texture `uses_more`. The other way round comes with the other direction.
 void report_missing_on(SceneComparison& comparison, const SceneMesh& mesh, const SceneMesh& other,
-                       bool in_second, const std::string& name) {
+                       bool in_second, bool uses_more, const std::string& name) {
   if (mesh.only_points || other.only_points) return;
   const auto report = [&](bool has, bool other_has, const char* what, bool counts) {
     if (!has || other_has) return;
@@ -253,6 +253,11 @@ void report_missing_on(SceneComparison& comparison, const SceneMesh& mesh, const
   report(!mesh.texture_coordinates.empty(), !other.texture_coordinates.empty(),
          "texture coordinates", true);
   report(mesh.is_painted(), !other.colours.empty(), "vertex colours", comparison.options.materials);
+  const auto sets_of = [](const SceneMesh& one) {
+    return std::ranges::count_if(one.more_texture_coordinates,
+                                 [](const auto& set) { return !set.empty(); });
+  };
+  report(sets_of(mesh) > sets_of(other), false, "further texture coordinates", uses_more);
 }
 
 // The static data of a mesh at its nearest points: texture coordinates, colours, sides, materials.
@@ -280,6 +285,10 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
     };
     add(mesh.texture_coordinates, other.texture_coordinates, comparison.result.texture_coordinates);
     add(mesh.colours, other.colours, comparison.result.colours);
+    const auto &sets = mesh.more_texture_coordinates, &others = other.more_texture_coordinates;
+    for (std::size_t set = 0; set < std::min(sets.size(), others.size()); ++set) {
+      add(sets[set], others[set], comparison.result.texture_coordinates);
+    }
   }
   const std::size_t few = match.points.size() / kFewOf;
   if (behind > few) {
@@ -288,10 +297,16 @@ void compare_surface(SceneComparison& comparison, const Surfaces& surfaces,
                     "the other's triangles",
                     name, behind, match.points.size()));
   }
+  const UsedTextures& textures =
+      match.in_second ? comparison.second_textures : comparison.first_textures;
+  bool uses_more = comparison.options.materials;
+  for (std::size_t set = 1; set <= mesh.more_texture_coordinates.size(); ++set) {
+    uses_more = uses_more || textures.uses(match.mesh, set);
+  }
   for (const auto& [index, count] : on_mesh) {
     const SceneMesh& other = surfaces.other.meshes[static_cast<std::size_t>(index)];
     if (count <= few) continue;
-    report_missing_on(comparison, mesh, other, match.in_second, name);
+    report_missing_on(comparison, mesh, other, match.in_second, uses_more, name);
     compare_materials(comparison, match.in_second ? other : mesh, match.in_second ? mesh : other,
                       name);
     if (other.visible == mesh.visible) continue;

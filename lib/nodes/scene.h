@@ -47,6 +47,7 @@ struct Node {
   bool visible = true;          // KHR_node_visibility of the node and of all its ancestors
   bool fixture = false;         // a light, or what a camera is aimed by: never a joint
   bool bone = false;            // the file calls it a joint, whether or not a skin has it
+  std::vector<MaterialParameter> parameters{};  // of its camera and light, for comparing files
 };
 
 struct MorphTarget {
@@ -155,8 +156,11 @@ struct Scene {
   std::vector<std::vector<MaterialParameter>> material_parameters;  // [materials]
   Space space;
   std::vector<std::string> files;  // paths of other files that were read
-  // What the file has beside that and evaluation does not show, with counts: "2 lights",
-  // "extension KHR_physics_rigid_bodies".
+  // Extras of animations, nodes and meshes, and variants of materials, for comparing files:
+  // "animation Walk, velocity".
+  std::vector<MaterialParameter> properties;
+  // What the file has beside that and evaluation does not show, with counts: "2 vertex
+  // attributes of other names", "extension KHR_physics_rigid_bodies".
   std::vector<std::string> not_shown;
   Diagnostics diagnostics;  // what was ignored or is doubtful
 };

@@ -82,6 +82,7 @@ struct Player {
   std::shared_ptr<const Scene> asset;
   Evaluator evaluator;
   std::vector<std::vector<std::uint16_t>> influence_joints;  // [instances] of the scene's list
+  std::vector<int> places{};                                 // nodes
 
   std::vector<int> windings(const Evaluation& moment) const {
     std::vector<int> windings;
@@ -131,10 +132,32 @@ struct Player {
     for (const int joint : evaluator.joints()) {
       state.joints.push_back(rigid_part(evaluation.node_to_world[static_cast<std::size_t>(joint)]));
     }
+    state.places.clear();
+    for (const int place : places) {
+      state.places.push_back(evaluation.node_to_world[static_cast<std::size_t>(place)]);
+    }
   }
 };
 
 }  // namespace
+
+std::vector<int> places_of(const Scene& scene, const Evaluator& evaluator) {
+  std::vector<char> carries(scene.nodes.size(), 0);
+  for (const int joint : evaluator.joints()) carries[static_cast<std::size_t>(joint)] = 1;
+  std::vector<int> places;
+  const auto& order = evaluator.order();
+  for (std::size_t k = order.size(); k-- > 0;) {  // children before parents
+    const auto i = static_cast<std::size_t>(order[k]);
+    const Node& node = scene.nodes[i];
+    if (carries[i] == 0 && node.mesh < 0) {
+      if (node.in_scene) places.push_back(order[k]);
+    } else if (node.parent >= 0) {
+      carries[static_cast<std::size_t>(node.parent)] = 1;
+    }
+  }
+  std::ranges::reverse(places);
+  return places;
+}
 
 Result<krok::Scene> scene_of(std::shared_ptr<const Scene> from_file) {
   const Scene& asset = *from_file;
@@ -158,6 +181,13 @@ Result<krok::Scene> scene_of(std::shared_ptr<const Scene> from_file) {
     return Error("gltf-too-large", fmt::format("{} joints exceed the limit", from.joints().size()));
   }
 
+  scene.knows_nodes = true;
+  scene.properties = asset.properties;
+  player->places = places_of(asset, from);
+  for (const int place : player->places) {
+    const Node& node = asset.nodes[static_cast<std::size_t>(place)];
+    scene.places.push_back({node.name, node.parameters});
+  }
   player->influence_joints.resize(from.instances().size());
   for (std::size_t i = 0; i < from.instances().size(); ++i) {
     const Instance& instance = from.instances()[i];

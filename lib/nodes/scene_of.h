@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "nodes/evaluate.h"
 #include "nodes/scene.h"
 #include "scene/scene.h"
 
@@ -14,6 +15,10 @@ namespace krok::nodes {
 // The displayed scene of a file: a mesh for each instance, the joints of Evaluator::joints(), all
 // animations. In the file's unit and axes. Codes: those of Evaluator::create(), gltf-too-large.
 Result<krok::Scene> scene_of(std::shared_ptr<const Scene> from_file);
+
+// The nodes without a mesh in the displayed scene that neither are joints nor carry joints or
+// meshes, in the order of evaluation.
+std::vector<int> places_of(const Scene& scene, const Evaluator& evaluator);
 
 // The gaps between the key times of an animation (Evaluator::key_times()): shape [times - 1], or
 // empty if all are straight.

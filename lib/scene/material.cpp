@@ -34,7 +34,7 @@ std::string fault_of(const Material& material) {
                   std::abs(texture->rotation)});
     return texture->set < 0 || texture->set > kMaxTextureSet || !(largest <= kMaxTextureTransform);
   };
-  if (std::ranges::any_of(textures_of(material), is_far)) {
+  if (std::ranges::any_of(all_textures_of(material), is_far)) {
     return fmt::format("a texture's set is not 0 to {} or its transform not within +-{}",
                        kMaxTextureSet, kMaxTextureTransform);
   }
@@ -63,6 +63,15 @@ std::array<Texture*, 5> textures_of(Material& material) {
 std::array<const Texture*, 5> textures_of(const Material& material) {
   return {&material.base_color_texture, &material.metallic_roughness_texture,
           &material.normal_texture, &material.occlusion_texture, &material.emissive_texture};
+}
+
+std::vector<const Texture*> all_textures_of(const Material& material) {
+  const auto own = textures_of(material);
+  std::vector<const Texture*> all(own.begin(), own.end());
+  for (const MaterialExtension& extension : material.extensions) {
+    for (const Texture& texture : extension.textures) all.push_back(&texture);
+  }
+  return all;
 }
 
 Status check(std::span<const Material> materials) {

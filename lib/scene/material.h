@@ -38,6 +38,13 @@ struct Texture {
   friend bool operator==(const Texture&, const Texture&) = default;  // same image object
 };
 
+// An extension of a glTF material that Material has no members for, kept as it came.
+struct MaterialExtension {
+  std::string name;  // "KHR_materials_clearcoat"
+  std::string json;  // an object; the "index" of a texture in it is a place in `textures`
+  std::vector<Texture> textures{};
+};
+
 // Material properties: glTF's metallic-roughness model. Factors are linear and multiply the
 // texture's value, or are used alone without a texture. Defaults: light grey and matt. Source:
 // Khronos Group, glTF 2.0 Specification (ISO/IEC 12113), section 3.9.
@@ -69,12 +76,19 @@ struct Material {
 
   // Names of shaders used by other software; kept but not used.
   std::vector<std::string> shaders;
+
+  // Of a glTF file, for another one: not in other formats, and not drawn.
+  std::vector<MaterialExtension> extensions{};
+  std::string extras{};  // JSON, or empty
 };
 
 // All its textures, including empty ones: base colour, metallic-roughness, normal, occlusion,
 // emissive.
 std::array<Texture*, 5> textures_of(Material& material);
 std::array<const Texture*, 5> textures_of(const Material& material);
+
+// The same with those of extensions.
+std::vector<const Texture*> all_textures_of(const Material& material);
 
 // Checks everything documented above for the materials of one file. Codes: material-name,
 // material-value.
@@ -83,7 +97,7 @@ Status check(std::span<const Material> materials);
 // The material with this name, or nullptr.
 const Material* find_material(std::span<const Material> materials, std::string_view name);
 
-// A property of a glTF material that Material has no member for, kept for comparing files.
+// A property of a glTF file, most of a material, that has no member elsewhere: for comparing files.
 struct MaterialParameter {
   std::string name;            // "KHR_materials_clearcoat, clearcoatFactor"
   std::vector<double> values;  // if it is a number or several

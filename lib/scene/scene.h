@@ -83,6 +83,7 @@ struct SceneState {
   // The same for meshes with tangents, ignored for others: xyz unit or zero, sign of w as in glTF.
   std::vector<std::vector<Vec4>> tangents;
   std::vector<Transform> joints;  // [joints]
+  std::vector<Mat4> places;       // [places], node_to_world
   // Of each mesh 1, or -1 if its front faces are those wound clockwise, or 0 if it is flattened;
   // empty for 1.
   std::vector<int> windings;
@@ -109,6 +110,16 @@ struct Scene {
   std::vector<std::string> joint_names;    // matched by index if names are empty or repeat
   std::vector<int> joint_parents;          // nearest ancestor that is a joint, or -1
   std::vector<std::uint8_t> joint_ends{};  // as Skeleton::end_sites, or empty for none
+
+  // Nodes without a mesh that neither are joints nor carry any: cameras, lights, sockets, markers.
+  struct Place {
+    std::string name;                                // may be empty
+    std::vector<MaterialParameter> parameters = {};  // of its camera and light
+  };
+  std::vector<Place> places{};
+  // Of other parts of the file, "animation Walk, velocity".
+  std::vector<MaterialParameter> properties{};
+  bool knows_nodes = false;  // whether those that are missing are missing in the file
 
   struct Animation {
     std::string name;

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -54,6 +55,7 @@ struct CharacterFiles {
 struct AddedCharacter {
   Character character;
   std::size_t materials = 0, images = 0;
+  std::set<std::string> extensions;  // of the materials, left out
 };
 
 // Creates file names for images in their own folder.
@@ -159,6 +161,11 @@ class Adder {
             !status) {
           return status;
         }
+      }
+    }
+    for (const Material& material : used) {
+      for (const MaterialExtension& one : material.extensions) {
+        added_.extensions.insert(shown(one.name));
       }
     }
     added_.materials = used.size();
@@ -311,6 +318,13 @@ Status SceneImporter::add_whole_character() {
   }
   const auto added = add_character(files, scene_, actor_, outputs_, textures_);
   if (!added) return added.error();
+  if (!added->extensions.empty()) {
+    warn("import-material",
+         fmt::format("{} of the materials: not written: {}",
+                     counted(std::ssize(added->extensions), "extension"),
+                     fmt::join(added->extensions, ", ")),
+         "they may look different; krok-skin with the file itself keeps them");
+  }
   report_model();
   result_["character"] = {{"materials", added->materials},
                           {"textures", added->images},

@@ -285,7 +285,7 @@ void drop_unused_sets(bool minify, std::span<const Material> materials, Model& m
   for (const Model::Part& part : model.parts) {
     const Material* const material = find_material(materials, part.material);
     if (material == nullptr) continue;
-    for (const Texture* texture : textures_of(*material)) {
+    for (const Texture* texture : all_textures_of(*material)) {
       if (*texture) used = std::max(used, static_cast<std::size_t>(texture->set) + 1);
     }
   }

@@ -66,9 +66,11 @@ class Loader {
       }
       return std::move(error).in_file(options_.subject);
     }
-    auto actor = io::open_actor(
-        *file, context_,
-        {.with_morphs = true, .with_motions = false, .stays_still = options_.motions.empty()});
+    auto actor = io::open_actor(*file, context_,
+                                {.with_morphs = true,
+                                 .with_motions = false,
+                                 .stays_still = options_.motions.empty(),
+                                 .keeps_mesh_alone = true});
     if (!actor) return actor.error();
     subject_.model = std::move(actor->model);
     subject_.materials = std::move(actor->materials);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <set>
 
+#include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/joint_tracks.h"
 #include "support/mesh_motions.h"
 #include "support/test_scenes.h"
@@ -168,7 +169,15 @@ TEST(GltfWriter, RigHoldsTheMeshItsBoundsAndItsInfluences) {
     }
     for (int set = 0; set < (influences + 3) / 4; ++set) {
       const auto joints = glb.values<std::uint8_t>(attributes[fmt::format("JOINTS_{}", set)]);
-      const auto weights = glb.values<float>(attributes[fmt::format("WEIGHTS_{}", set)]);
+      const int place = attributes[fmt::format("WEIGHTS_{}", set)];
+      std::vector<float> weights;
+      if (influences > 1) {
+        weights = glb.values<float>(place);
+      } else {
+        for (const auto byte : glb.values<std::uint8_t>(place)) {
+          weights.push_back(static_cast<float>(byte) / 255);
+        }
+      }
       const int used = std::min(4, influences - 4 * set);
       for (std::size_t v = 0; v < model.positions.size(); ++v) {
         for (int k = 0; k < 4; ++k) {
@@ -184,6 +193,26 @@ TEST(GltfWriter, RigHoldsTheMeshItsBoundsAndItsInfluences) {
     ASSERT_EQ(indices.size(), 3 * model.triangles.size());
     EXPECT_EQ(indices[5], model.triangles[1][2]);
   }
+}
+
+// A mesh that nothing bends would take four times the weights.
+TEST(GltfWriter, WeightsOfOneJointAVertexAreBytes) {
+  Model model = test::tube_model(test::human_skeleton());
+  model.influences_per_vertex = 1;
+  model.influence_joints.assign(model.positions.size(), 1);
+  model.influence_weights.assign(model.positions.size(), 1.0f);
+  const auto glb = test::written([&](OutputFile& file) {
+    return gltf::write_rig(model, test::swinging_clip(model.skeleton, 2, 30), {}, file);
+  });
+  const auto& accessor =
+      glb.json["accessors"][glb.json["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"]
+                                .get<std::size_t>()];
+  EXPECT_EQ(accessor["componentType"], 5121);
+  EXPECT_EQ(accessor["normalized"], true);
+  const auto scene = gltf::read(std::as_bytes(std::span(glb.bytes)));
+  ASSERT_TRUE(scene.ok());
+  const auto& weights = scene->meshes[0].primitives[0].influence_weights;
+  for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_EQ(weights[i], i % 4 == 0 ? 1.0f : 0.0f);
 }
 
 TEST(GltfWriter, InverseBindMatricesUndoTheReferencePose) {

@@ -388,5 +388,57 @@ TEST(GltfEyes, AreNodesUnderTheirJoints) {
             "gltf-structure");
 }
 
+// A clear coat would be gone, or show the texture that has its number in the other file.
+TEST(GltfMaterials, ExtensionsComeBackWithTheirTextures) {
+  auto materials = look();
+  Texture scaled{test::image(test::png(), "coat")};
+  scaled.scale = {2, 3};
+  Texture elsewhere{test::image(test::png(), "of a missing set")};
+  elsewhere.set = 1;
+  materials[0].extensions = {
+      {"KHR_materials_clearcoat",
+       R"({"clearcoatFactor":0.5,"clearcoatTexture":{"index":0,"extensions":)"
+       R"({"KHR_texture_transform":{"scale":[2,3]}}},"clearcoatNormalTexture":{"index":1}})",
+       {scaled, elsewhere}},
+      {"KHR_materials_anisotropy", R"({"anisotropyStrength":1})"}};
+  materials[2].extensions = {materials[0].extensions[1]};
+  materials[0].extras = R"({"surface":["wet",1,true]})";
+  gltf::WriteOptions options;
+  options.materials = materials;
+  Model model = dressed_model();
+  model.tangents.clear();
+  const auto glb = rig(model, options);
+  const auto scene = read_with_materials(glb.bytes);
+  ASSERT_TRUE(scene.ok());
+  const Material& skin = scene->materials[0];
+  ASSERT_EQ(skin.extensions.size(), 2u);
+  const MaterialExtension& coat = skin.extensions[1];
+  EXPECT_EQ(coat.name, "KHR_materials_clearcoat");
+  EXPECT_EQ(nlohmann::json::parse(coat.json),
+            nlohmann::json::parse(R"({"clearcoatFactor":0.5,"clearcoatTexture":{"index":0,)"
+                                  R"("extensions":{"KHR_texture_transform":{"scale":[2,3]}}}})"));
+  ASSERT_EQ(coat.textures.size(), 1u);
+  EXPECT_EQ(coat.textures[0].image->name, "coat");
+  EXPECT_EQ(coat.textures[0].scale, Vec2(2, 3));
+  EXPECT_EQ(skin.extras, materials[0].extras);
+  EXPECT_THAT(glb.json["extensionsUsed"].get<std::vector<std::string>>(),
+              testing::UnorderedElementsAre("KHR_materials_anisotropy", "KHR_materials_clearcoat",
+                                            "KHR_texture_transform", "KHR_materials_unlit"));
+  // Without tangents it needs a normal texture.
+  EXPECT_FALSE(glb.json["materials"][1]["extensions"].contains("KHR_materials_anisotropy"));
+  EXPECT_TRUE(scene->diagnostics.empty());
+}
+
+// Would read before the list of materials.
+TEST(GltfMaterials, ThereMayBeNone) {
+  Model model = dressed_model();
+  model.parts = {{"a", "", 0, static_cast<std::uint32_t>(model.triangles.size())}};
+  gltf::WriteOptions options;
+  options.unnamed_is_none = true;
+  const auto glb = rig(model, options);
+  EXPECT_FALSE(glb.json.contains("materials"));
+  EXPECT_TRUE(glb.json["meshes"][0]["primitives"][0]["attributes"].contains("TEXCOORD_0"));
+}
+
 }  // namespace
 }  // namespace krok

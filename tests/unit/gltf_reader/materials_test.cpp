@@ -184,7 +184,8 @@ TEST_F(GltfMaterialReader, WhatIsNotKnownIsSaid) {
   builder_.json["images"] = {{{"bufferView", builder_.add_view(test::png())}}};
   builder_.json["textures"] = {{{"source", 0}}, {{"extensions", {{"EXT_texture_webp", {}}}}}};
   builder_.json["materials"] = {{{"extensions",
-                                  {{"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
+                                  {{"VENDOR_look", {{"texture", 7}}},
+                                   {"KHR_materials_clearcoat", {{"clearcoatFactor", 1}}},
                                    {"KHR_materials_unlit", nlohmann::ordered_json::object()}}},
                                  {"emissiveTexture", {{"index", 0}, {"texCoord", 8}}},
                                  {"normalTexture", {{"index", 1}}},
@@ -197,7 +198,11 @@ TEST_F(GltfMaterialReader, WhatIsNotKnownIsSaid) {
   EXPECT_EQ(material.occlusion_strength, 1);
   std::string all;
   for (const Diagnostic& found : scene_.diagnostics) all += found.message + "\n";
-  EXPECT_NE(all.find("KHR_materials_clearcoat"), std::string::npos) << all;
+  EXPECT_NE(all.find("VENDOR_look"), std::string::npos) << all;
+  EXPECT_EQ(all.find("KHR_materials_clearcoat"), std::string::npos) << all;
+  ASSERT_EQ(material.extensions.size(), 1u);
+  EXPECT_EQ(material.extensions[0].name, "KHR_materials_clearcoat");
+  EXPECT_EQ(material.extensions[0].json, R"({"clearcoatFactor":1})");
   EXPECT_EQ(all.find("KHR_materials_unlit"), std::string::npos) << all;
   EXPECT_NE(all.find("1 texture with a texture coordinate set other than 0 to 7"),
             std::string::npos)
