@@ -213,6 +213,7 @@ void resample(CurveSet& set) {
     measure(frames, set);
     if (set.result.degrees <= kCurveDegrees && set.result.metres <= kCurveMetres) break;
   }
+  set.result.frames = lowest;
   for (Curve& curve : set.curves) add_keys(frames, curve);
 }
 

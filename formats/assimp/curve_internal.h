@@ -43,6 +43,7 @@ struct Turn {
 
 struct Resampling {
   double rate = 0;     // of the new keys, per second; 0 if there are none
+  double frames = 0;   // per second, whose whole number that is: those of the curves' own keys
   double degrees = 0;  // the largest deviation of a rotation between them
   double metres = 0;   // and of a length
   double gap = 0;      // seconds, the longest between keys of curves whose rule is not known

@@ -117,6 +117,8 @@ void report_curves(Conversion& to, const std::optional<Resampling>& resampling) 
         "{:.2g} degrees and translations by up to {:.2g} mm",
         resampling->rate, resampling->degrees, resampling->metres * 1e3);
     holds ? to.note("assimp-curves", message) : to.warn("assimp-curves", message);
+    // Its keys are more than frames: a motion has those that the curves were made for.
+    for (nodes::Animation& animation : to.scene.animations) animation.rate = resampling->frames;
   }
   constexpr double kLongGap = 1.0 / 14;  // seconds
   const bool read = resampling ? resampling->gap < kLongGap

@@ -237,6 +237,7 @@ constexpr auto kChannelFields = [](auto& io, auto& channel) {
 
 constexpr auto kAnimationFields = [](auto& io, auto& animation) {
   io.text(animation.name);
+  io.number(animation.rate);
   io.list(animation.channels, kChannelFields);
 };
 

@@ -19,6 +19,7 @@ constexpr std::array kCommonRates = {30.0,         24.0,         25.0,          
                                      60.0 / 1.001, 48.0 / 1.001, 120.0 / 1.001, 240.0 / 1.001};
 constexpr double kMinRate = 20.0;  // below this, keys are too sparse to be frames
 constexpr double kUsualRate = 30.0;
+constexpr double kFastestFrames = 250;  // per second; more are keys between frames
 constexpr double kUnevenRate = 60.0;
 constexpr double kMinFileRate = 0.001, kMaxFileRate = 100'000;  // of files, see check_frame_rate()
 constexpr double kMaxFrames = 1e7;
@@ -69,6 +70,12 @@ FoundRate find_rate(const std::vector<double>& times, double of_file) {
   }
   if (times.size() < 2) return {kUsualRate, true, "fewer than two keys", Confidence::guess};
   const auto even = even_rate(times);
+  const double finer = even && of_file > 0 ? *even / of_file : 0;
+  if (finer > 1.5 && *even > kFastestFrames && std::abs(finer - std::round(finer)) < 1e-6) {
+    return {of_file, true,
+            fmt::format("as the file's keys; its curves were resampled at {}", readable(*even)),
+            Confidence::certain};
+  }
   if (even && *even >= kMinRate) {
     return {*even, true, fmt::format("the keys are evenly spaced at {} fps", readable(*even)),
             Confidence::certain};

@@ -38,7 +38,8 @@ struct ChosenSampling {
 // frame holds it. With Animation::from_zero they begin at time 0, unless the keys are on frames of
 // no rate counted from there (and none is requested), or the first key is later than 60 s.
 //
-// The rate: as requested; or that of the file, if all keys are on its frames; or that of the keys,
+// The rate: as requested; or that of the file, if all keys are on its frames, or if they are over
+// 250 a second and a multiple of it, as of curves that were resampled; or that of the keys,
 // if they are evenly spaced at 20 fps or more, snapped to a common rate; or a common rate whose
 // frames include all keys; or 60. With `source_rate` the keys must be evenly spaced or on the
 // frames of one rate, and those are taken as frames at `source_rate`.

@@ -35,6 +35,19 @@ TEST(Sampling, EvenKeysGiveTheirRate) {
   }
 }
 
+// Readers add keys between those of splines: 1.4 s of an FBX became 1,313 frames.
+TEST(Sampling, KeysBetweenFramesAreNoFrames) {
+  nodes::Animation animation = keyed(even_times(1600, 960, 0));
+  animation.rate = 60;
+  EXPECT_EQ(chosen(animation).sampling.rate, 60);
+  EXPECT_EQ(chosen(animation).sampling.frames, 101);
+  animation.rate = 0;
+  EXPECT_EQ(chosen(animation).sampling.rate, 960) << "frames, for all that is known";
+  animation = keyed(even_times(400, 240, 0));
+  animation.rate = 60;
+  EXPECT_EQ(chosen(animation).sampling.rate, 240) << "a rate of captures";
+}
+
 TEST(Sampling, LongMotionsKeepTheirRateDespiteFloats) {
   const auto result = chosen(keyed(even_times(100000, 60, 0)));
   EXPECT_EQ(result.sampling.rate, 60);
