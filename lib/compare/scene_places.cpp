@@ -102,32 +102,32 @@ void compare_motion(SceneComparison& comparison, const Pairs& pairs) {
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const PlaceDifference now =
           between(a.places[at(pairs[k].first)], b.places[at(pairs[k].second)]);
-      PlaceDifference& most = all[k];
-      if (now.way > most.way || (most.way == 0 && now.angle > most.angle)) {
-        most.time = moment.first_time;
+      PlaceDifference& largest = all[k];
+      if (now.way > largest.way || (largest.way == 0 && now.angle > largest.angle)) {
+        largest.time = moment.first_time;
       }
-      most.way = std::max(most.way, now.way);
-      most.angle = std::max(most.angle, now.angle);
-      most.scale = std::max(most.scale, now.scale);
+      largest.way = std::max(largest.way, now.way);
+      largest.angle = std::max(largest.angle, now.angle);
+      largest.scale = std::max(largest.scale, now.scale);
     }
   }
   std::size_t over = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const PlaceDifference& most = all[k];
+    const PlaceDifference& largest = all[k];
     std::string text;
     const auto add = [&](double value, double limit, std::string words) {
       if (!(value <= limit)) text += (text.empty() ? "" : ", ") + std::move(words);
     };
-    add(most.way, tolerance.of_joint_positions(),
-        fmt::format("{} mm off", readable(1000 * most.way, 3)));
-    add(most.angle, tolerance.of_joint_orientations(),
-        fmt::format("turned by {} deg", readable(most.angle / kRadiansPerDegree, 3)));
-    add(most.scale, tolerance.ratio, fmt::format("scale {} apart", readable(most.scale, 3)));
+    add(largest.way, tolerance.of_joint_positions(),
+        fmt::format("{} mm off", readable(1000 * largest.way, 3)));
+    add(largest.angle, tolerance.of_joint_orientations(),
+        fmt::format("turned by {} deg", readable(largest.angle / kRadiansPerDegree, 3)));
+    add(largest.scale, tolerance.ratio, fmt::format("scale {} apart", readable(largest.scale, 3)));
     if (text.empty() || ++over > kMaxNamed) continue;
     const int place = pairs[k].first;
     comparison.say(fmt::format("{}: {}, at {} s",
                                label("node", comparison.first.places[at(place)].name, place), text,
-                               readable(most.time, 4)));
+                               readable(largest.time, 4)));
   }
   if (over > kMaxNamed) comparison.say(fmt::format("{} more nodes are off", over - kMaxNamed));
 }

@@ -13,7 +13,7 @@ namespace krok::ragdoll {
 
 namespace {
 
-constexpr double kMostBent = 80 * kRadiansPerDegree;
+constexpr double kMaxBent = 80 * kRadiansPerDegree;
 constexpr double kFastest = 600 * kRadiansPerDegree;  // per second; they begin before they have to
 constexpr double kTurnedOver = 0.2;                   // the upward part of the way to the shin
 
@@ -68,7 +68,7 @@ double needed(const Vec3& along, const Vec3& towards, double length, double heig
   const double off = std::acos(std::clamp(height / (length * size), -1.0, 1.0));
   // Less and less for a foot that turns over onto its instep, where no angle helps.
   const double helps = std::min(1.0, towards.y() / kTurnedOver);
-  return helps * std::clamp(best - off, 0.0, kMostBent);
+  return helps * std::clamp(best - off, 0.0, kMaxBent);
 }
 
 // The least angles of at least these that change by no more than `step` from one to the next.
