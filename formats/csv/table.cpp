@@ -207,8 +207,12 @@ Result<std::size_t> Table::find(std::string_view name) const {
   }
   if (columns_.size() > kMaxNames)
     names += fmt::format(" and {} more", columns_.size() - kMaxNames);
+  std::vector<std::string> headers;
+  for (const auto& column : columns_) headers.push_back(column.header);
+  const std::string near = nearest_name(name, headers);
   return Error("csv-column", fmt::format("no column is named '{}'", shown(name)),
-               "columns are " + names)
+               (near.empty() ? "" : fmt::format("did you mean '{}'? ", shown(near))) +
+                   "columns are " + names)
       .in_file(path_);
 }
 

@@ -1,7 +1,10 @@
 #include "formats/io/inputs.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
+#include "core/text.h"
 #include "formats/io/open_scene.h"
 
 namespace krok::io {
@@ -24,6 +27,15 @@ Result<InputFile> open_address(const std::string& path) {
     return Error("file-lfs", "is a Git LFS pointer, not the file itself",
                  "fetch the file with: git lfs pull")
         .in_file(address.file);
+  }
+  std::error_code unknown;
+  const std::size_t colon = path.rfind(':');
+  if (!file && file.error().code == "file-missing" && colon != std::string::npos &&
+      std::filesystem::is_regular_file(path.substr(0, colon), unknown)) {
+    Error error = std::move(file).error();
+    error.hint = fmt::format("an animation of a file is '{}#{}', in quotes",
+                             shown(path.substr(0, colon)), shown(path.substr(colon + 1)));
+    return error;
   }
   if (file) file->choose_part(std::move(address.animation));
   return file;

@@ -429,11 +429,12 @@ std::string start_of(const Array& array) {
 
 std::vector<zip::FileToPack> files_of(std::span<const std::pair<std::string, Array>> arrays) {
   std::vector<zip::FileToPack> files;
-  for (const auto& [name, array] : arrays) {
+  for (const auto& named : arrays) {
+    const Array& array = named.second;
     const std::string start = start_of(array);
     const std::size_t size = start.size() + array.item_size * array.count();
     files.push_back(
-        {name + ".npy", size, [start, &array, done = std::size_t{0}](auto bytes) mutable {
+        {named.first + ".npy", size, [start, &array, done = std::size_t{0}](auto bytes) mutable {
            const auto head = std::as_bytes(std::span(start)).subspan(std::min(done, start.size()));
            const std::size_t before = std::min(bytes.size(), head.size());
            std::ranges::copy(head.first(before), bytes.begin());

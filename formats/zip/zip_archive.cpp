@@ -224,8 +224,8 @@ Status pack(std::span<const FileToPack> files, const WriteAt& write_at) {
   std::vector<Entry> entries;
   entries.reserve(files.size());  // libzip keeps their addresses
   for (const FileToPack& file : files) {
-    zip_source_t* source =
-        zip_source_function(archive, read_command, &entries.emplace_back(file, state.status));
+    zip_source_t* source = zip_source_function(archive, read_command,
+                                               &entries.emplace_back(Entry{file, state.status}));
     const zip_int64_t place =
         source == nullptr ? -1 : zip_file_add(archive, file.name.c_str(), source, ZIP_FL_ENC_UTF_8);
     good = good && place >= 0 &&

@@ -288,7 +288,7 @@ std::string commonest_reasons(std::span<const DroppedStep> dropped) {
   std::ranges::sort(reasons);
   std::string text;
   for (std::size_t i = 0; i < std::min(kShown, reasons.size()); ++i) {
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", -reasons[i].first, reasons[i].second);
+    text += fmt::format("{}{} as {}", i == 0 ? "" : ", ", -reasons[i].first, reasons[i].second);
   }
   return text;
 }

@@ -73,10 +73,15 @@ TEST_F(Mistakes, HabitsOfOtherToolsLeadOn) {
       {"krok-diff", {"--ignore-order", "in.bvh", "in.bvh"}, "--match"},
       {"krok-skin", {"pointer.glb", "in.bvh", "-o", "a.glb"}, "git lfs pull"},
       {"krok-import", {"unity.anim", "-o", "a.anim"}, "from Unity as FBX"},
-      {"krok-import", {"table.csv", "-o", "a.anim"}, ".npz"}};
+      {"krok-import", {"table.csv", "-o", "a.anim"}, ".npz"},
+      {"krok-info", {"in.bvh:run"}, "'in.bvh#run'"},
+      {"krok-plot", {"table.csv", "--y", "frane", "-o", "a.svg"}, "did you mean 'frame'?"},
+      {"krok-plot", {"table.csv", "--y", "Root_Y", "-o", "a.svg"}, "--where joint=NAME"}};
   for (const auto& [tool, arguments, hint] : mistakes) {
     EXPECT_THAT(refused(tool, arguments), HasSubstr(hint));
   }
+  EXPECT_THAT(refused("krok-export", {"in.bvh", "--what", "rotations", "-o", "a.csv"}),
+              AllOf(HasSubstr("quaternions has"), Not(HasSubstr("did you mean"))));
   const ToolRun fast = run_here("krok-edit", {"in.bvh", "--playback-speed", "50", "-o", "a.anim"});
   EXPECT_TRUE(has_code(fast.err, "edit-speed")) << fast.err;
 }

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <string_view>
 
 #include "formats/io/formats.h"
 #include "tools/cli/file_name.h"
@@ -27,6 +29,8 @@ Result<std::string> extension_of(ExportFormat format) {
 }
 
 // Words that one tries first have other homes.
+constexpr std::array<std::string_view, 7> kElsewhere = {"speed", "gait",   "rotations", "rotation",
+                                                        "euler", "eulers", "events"};
 ValueKind<What> series_kind() {
   ValueKind<What> kind = choice<What>({{"positions", What::positions},
                                        {"local", What::local},
@@ -38,9 +42,12 @@ ValueKind<What> series_kind() {
     auto read = known(text);
     if (read) return read;
     Error error = std::move(read).error();
+    const bool known_elsewhere = std::ranges::find(kElsewhere, text) != kElsewhere.end();
+    if (known_elsewhere)
+      error.message = error.message.substr(0, error.message.find("; did you mean"));
     if (text == "speed" || text == "gait")
       error.hint = "krok-keys --table OUT.csv has speed and gait";
-    if (text == "rotations" || text == "euler") {
+    if (text.starts_with("rotation") || text.starts_with("euler")) {
       error.hint =
           "quaternions has rotations in the world, local relative to the parent, angles those of "
           "hips, knees and others in degrees; -o OUT.bvh has Euler angles of all joints";

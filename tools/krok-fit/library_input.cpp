@@ -311,7 +311,7 @@ class Reader {
                 "library-keytimes",
                 fmt::format("{} has {} at {} times, expected one", motion.name, name, found.size()),
                 "give \"keytimes\" here, cut the motion with \"from\" and \"to\", or set them "
-                "with krok-keys"),
+                "with krok-keys; \"steps\": \"auto\" cuts a walk into its steps"),
             motion.entry->place);
       }
       times.push_back(found.front());

@@ -84,7 +84,11 @@ Result<std::vector<std::size_t>> find_columns(const Table& table, const std::str
   for (std::size_t begin = 0; begin <= names.size();) {
     const std::size_t end = std::min(names.find(',', begin), names.size());
     const auto column = table.find(trimmed(std::string_view(names).substr(begin, end - begin)));
-    if (!column) return column.error();
+    if (!column) {
+      Error error = column.error();
+      if (table.find("joint")) error.hint += "; --where joint=NAME takes the rows of one joint";
+      return error;
+    }
     columns.push_back(*column);
     begin = end + 1;
   }
