@@ -663,7 +663,21 @@ Result<Document> read(std::string_view text, const std::string& path) {
   File file{path};
   file.find_lines(text);
   auto document = file.table().read_text(text, "timeline");
-  if (!document) return std::move(document).error().in_file(path);
+  if (!document) {
+    Error error = std::move(document).error();
+    const auto names = [&](const char* words) {
+      return error.message.find(words) != std::string::npos;
+    };
+    if (names("unknown key 'transition'") || names("unknown key 'blend'") ||
+        names("a change is ") || names("of kind cut has no")) {
+      error.hint = R"(a cross-fade is "change": {"kind": "crossfade", "duration": "0.3s"})";
+    } else if (names("the file")) {
+      error.hint += std::string(error.hint.empty() ? "" : "; ") +
+                    R"(a small one: {"schema": "krok.timeline/1", "sources": {"a": "walk.anim"}, )"
+                    R"("base": [{"source": "a"}]})";
+    }
+    return std::move(error).in_file(path);
+  }
   return document;
 }
 

@@ -59,6 +59,9 @@ TEST_F(Mistakes, ValuesOfAnotherKind) {
 TEST_F(Mistakes, HabitsOfOtherToolsLeadOn) {
   put("pointer.glb", "version https://git-lfs.github.com/spec/v1\noid sha256:12ab\nsize 99\n");
   put("unity.anim", "%YAML 1.1\n--- !u!74 &7400000\nAnimationClip:\n");
+  put("clips.json", R"({"clips": [{"file": "in.bvh"}]})");
+  put("fade.json", R"({"schema": "krok.timeline/1", "sources": {"a": "in.bvh"},
+                       "base": [{"source": "a"}, {"source": "a", "transition": 0.3}]})");
   put("table.csv", "frame,time,joint\n0,0,Root\n");
   const struct {
     std::string tool;
@@ -74,6 +77,9 @@ TEST_F(Mistakes, HabitsOfOtherToolsLeadOn) {
       {"krok-skin", {"pointer.glb", "in.bvh", "-o", "a.glb"}, "git lfs pull"},
       {"krok-import", {"unity.anim", "-o", "a.anim"}, "from Unity as FBX"},
       {"krok-import", {"table.csv", "-o", "a.anim"}, ".npz"},
+      {"krok-lint", {"in.bvh", "--only", "foot-slide=50mm"}, "--profile"},
+      {"krok-mix", {"clips.json", "-o", "a.anim"}, "\"base\": [{\"source\""},
+      {"krok-mix", {"fade.json", "-o", "a.anim"}, "\"kind\": \"crossfade\""},
       {"krok-info", {"in.bvh:run"}, "'in.bvh#run'"},
       {"krok-plot", {"table.csv", "--y", "frane", "-o", "a.svg"}, "did you mean 'frame'?"},
       {"krok-plot", {"table.csv", "--y", "Root_Y", "-o", "a.svg"}, "--where joint=NAME"}};

@@ -151,7 +151,9 @@ class Reader {
       return Error("fit-description",
                    fmt::format("is {}, not a library description",
                                registry::describe_content(file.bytes())),
-                   hint)
+                   kind == registry::Kind::steps
+                       ? "to go on with it: krok-fit EXAMPLES --resume IN.steps --refine N"
+                       : hint)
           .in_file(path_);
     }
     auto description = library::read(file.text(), path_);

@@ -22,6 +22,16 @@ ValueKind<std::string> rule() {
   for (const auto& facts : krok::lint::rules()) ids.emplace_back(facts.id);
   ValueKind<std::string> kind = words(ids);
   kind.name = "rule";
+  kind.read = [known = kind.read](const std::string& text) -> Result<std::string> {
+    auto read = known(text);
+    if (!read && text.find('=') != std::string::npos) {
+      Error error = std::move(read).error();
+      error.hint =
+          "limits are those of --profile IN.json (formats/lint/SPEC.md); --rules prints them";
+      return error;
+    }
+    return read;
+  };
   return kind;
 }
 
