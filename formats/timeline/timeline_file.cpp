@@ -669,7 +669,7 @@ Result<Document> read(std::string_view text, const std::string& path) {
       return error.message.find(words) != std::string::npos;
     };
     if (names("unknown key 'transition'") || names("unknown key 'blend'") ||
-        names("a change is ") || names("of kind cut has no")) {
+        names("a change is a number") || names("of kind cut has no")) {
       error.hint = R"(a cross-fade is "change": {"kind": "crossfade", "duration": "0.3s"})";
     } else if (names("the file")) {
       error.hint += std::string(error.hint.empty() ? "" : "; ") +
