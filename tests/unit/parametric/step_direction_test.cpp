@@ -102,7 +102,7 @@ TEST(StepDirection, MixedCapturesDoNotMix) {
   StepLibrary cut = test::library_of(walks, {"step.length"}, options);
   for (const Example& example : cut.library.examples) EXPECT_GT(example.parameters[0], 0.4);
   EXPECT_EQ(cut.dropped.size(), 27u);
-  EXPECT_THAT(commonest_reasons(cut.dropped), HasSubstr("9 it goes backward"));
+  EXPECT_THAT(commonest_reasons(cut.dropped), HasSubstr("9 as it goes backward"));
   options.gait = StepGait::backward;
   cut = test::library_of(walks, {"step.length"}, options);
   for (const Example& example : cut.library.examples) EXPECT_LT(example.parameters[0], -0.4);
