@@ -96,7 +96,7 @@ json::Kind<double> angle() {
 
 // `expected` is for numbers that are not from min to max.
 json::Kind<double> number(double min = -kMax, double max = kMax,
-                          std::string expected = "a number") {
+                          const std::string& expected = "a number") {
   return json::kind<double>(R"({"type": "number"})", [=](const Given& given, double& to) -> Status {
     to = given.value.number;
     if (given.value.kind != JsonKind::number || !(std::abs(to) <= kMax)) {
