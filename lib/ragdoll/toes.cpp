@@ -93,10 +93,12 @@ void bend_toes(int first_frame, const RoleMap& roles, const std::vector<Body>& b
       const Vec3 tip = clip.frame_positions(f)[at(toes.tip)].cast<double>();
       const Vec3 ball = clip.frame_positions(f)[at(toes.joint)].cast<double>();
       const auto floor = ground(tip.x(), tip.z());
-      if (!floor || tip.y() >= *floor) continue;
+      const double length = (tip - ball).norm();
+      // What is far over the toes is a roof, or out of their reach.
+      if (!floor || tip.y() >= *floor || *floor - ball.y() > 2 * length) continue;
       const Quat turn = clip.frame_orientations(f)[at(toes.joint)].cast<double>();
-      angles[at(f - first)] = needed(turn * toes.along, turn * toes.towards_shin,
-                                     (tip - ball).norm(), *floor - ball.y());
+      angles[at(f - first)] =
+          needed(turn * toes.along, turn * toes.towards_shin, length, *floor - ball.y());
     }
     limit_steps(kFastest / clip.rate, angles);
     for (int f = first; f < clip.frame_count(); ++f) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/index.h"
 #include "roles/joint_names.h"
@@ -111,10 +112,10 @@ FrameSource without_last_joints(FrameSource frames, int count) {
   return kept;
 }
 
-Clip without_last_joints(const Clip& clip, int count) {
+Clip without_last_joints(Clip clip, int count) {
   if (count == 0) return clip;
   auto kept = load(without_last_joints(frames_of(clip), count), 1);
-  kept->provenance = clip.provenance;
+  kept->provenance = std::move(clip.provenance);
   return *std::move(kept);
 }
 

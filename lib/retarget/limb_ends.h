@@ -19,7 +19,7 @@ Skeleton with_limb_ends(const Model& model);
 // Frames without the last `count` joints, which have no children but each other; contacts of
 // those become their parents'.
 FrameSource without_last_joints(FrameSource frames, int count);
-Clip without_last_joints(const Clip& clip, int count);
+Clip without_last_joints(Clip clip, int count);
 void give_to_parents(const Skeleton& skeleton, int count, std::vector<Contact>& contacts);
 
 }  // namespace krok::retarget

@@ -214,7 +214,7 @@ class Loader {
     auto& removed = moved->clip.provenance.removed_root_motion;
     removed = clip->provenance.removed_root_motion;
     if (removed) removed->velocity *= moved->report.path_scale;
-    return krok::retarget::without_last_joints(moved->clip,
+    return krok::retarget::without_last_joints(std::move(moved->clip),
                                                target_.skeleton.joint_count() - limbs_end_at_);
   }
 

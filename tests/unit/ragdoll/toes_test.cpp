@@ -68,9 +68,12 @@ TEST(FallenToes, AreBentOverTheGround) {
     };
     EXPECT_LT(angle_between(turn(f - 1), turn(f)), 10.1 * kRadiansPerDegree) << f;
   }
-  // From a frame on; in the air; where there is no ground; with a body of their own.
+  // From a frame on; under a roof; in the air; where there is no ground; with a body of their own.
   Clip same = before;
   bend_toes(kFrames, find_roles(before.skeleton), {}, level, same);
+  bend_toes(
+      0, find_roles(before.skeleton), {}, [](double, double) { return std::optional<double>(2.5); },
+      same);
   bend_toes(
       0, find_roles(before.skeleton), {}, [](double, double) { return std::optional<double>(-1); },
       same);
