@@ -120,6 +120,27 @@ class Compressor {
         kinds_[view].filter = found->second;
       }
     }
+    find_weights();
+  }
+
+  // The codec looks for what repeats from one element to the next: a key of all targets, or as many
+  // as have a size that it takes.
+  void find_weights() {
+    for (const tinygltf::Animation& animation : model_.animations) {
+      for (const tinygltf::AnimationChannel& channel : animation.channels) {
+        if (channel.target_path != "weights") continue;
+        const auto& sampler = animation.samplers[static_cast<std::size_t>(channel.sampler)];
+        const auto& keys = model_.accessors[static_cast<std::size_t>(sampler.input)];
+        const auto& weights = model_.accessors[static_cast<std::size_t>(sampler.output)];
+        const std::size_t size = element_size(weights) * (weights.count / keys.count);
+        for (const std::size_t keys_at_once : {1, 2, 4}) {
+          const std::size_t stride = size * keys_at_once;
+          if (stride % 4 != 0 || stride > 256) continue;
+          kinds_[static_cast<std::size_t>(weights.bufferView)].stride = stride;
+          break;
+        }
+      }
+    }
   }
 
   // Images and what cannot be encoded stay views of their own.
@@ -133,6 +154,8 @@ class Compressor {
     places_.push_back({group, bytes.size()});
     const auto from = data_.subspan(source.byteOffset, source.byteLength);
     bytes.insert(bytes.end(), from.begin(), from.end());
+    if (is_encodable(kind))
+      bytes.resize((bytes.size() + kind.stride - 1) / kind.stride * kind.stride);
   }
 
   void move(OrderedJson& accessor) const {

@@ -102,10 +102,10 @@ class Document {
                    const std::vector<std::map<std::string, int>>& targets,
                    std::span<const std::string> names);
 
-  // Keys for the morph weights [times x targets] of the meshes, in an animation, or after the last
-  // in a new one called `name`.
-  void add_weight_keys(std::span<const MeshNode> meshes, std::span<const float> times,
-                       std::span<const float> weights, const std::string& name,
+  // Keys for the morph weights of the meshes where they leave a straight line, in an animation, or
+  // after the last in a new one called `name`; `times` are the frames'. (weight_keys.cpp)
+  void add_weight_keys(std::span<const MeshNode> meshes, const MorphWeights& weights,
+                       std::span<const float> times, const std::string& name,
                        std::size_t animation = 0);
   void add_weight_channels(std::span<const MeshNode> meshes, int times, int weights,
                            const std::string& name, std::size_t animation = 0);
@@ -186,6 +186,8 @@ class Document {
   int add_rotations(std::span<const Quatf> rotations, int bits);
   int add_translations(std::span<const Vec3f> translations, int exponent);
   int add_vector_keys(std::span<const Vec3f> values);
+  // In a quantized file as the smallest whole numbers that have these values.
+  int add_weights(std::span<const float> weights);
   Status begin_binary();
   Status begin_text();
   Status append_encoded(std::span<const std::byte> bytes);

@@ -58,16 +58,9 @@ Status add_weight_keys(Document& document, std::span<const Document::MeshNode> m
                        const MorphWeights& weights, const std::string& name,
                        std::size_t animation = 0) {
   if (weights.frame_count() < 2) return {};
-  auto times = key_times(weights.frame_count(), weights.rate);
+  const auto times = key_times(weights.frame_count(), weights.rate);
   if (!times) return times.error();
-  std::span<const float> values = weights.values;
-  const std::size_t width = weights.names.size();
-  // A face at rest is as long as its motion.
-  if (std::ranges::equal(values.subspan(width), values.first(values.size() - width))) {
-    *times = {times->front(), times->back()};
-    values = values.first(2 * width);
-  }
-  document.add_weight_keys(meshes, *times, values, name, animation);
+  document.add_weight_keys(meshes, weights, *times, name, animation);
   return {};
 }
 
@@ -185,23 +178,6 @@ void add_influences(Document& document, const Model& model,
 }
 
 }  // namespace
-
-void Document::add_weight_keys(std::span<const MeshNode> meshes, std::span<const float> times,
-                               std::span<const float> weights, const std::string& name,
-                               std::size_t animation) {
-  const auto [place, made] = times_.emplace(std::vector<float>(times.begin(), times.end()), 0);
-  if (made) place->second = add_floats(times, TINYGLTF_TYPE_SCALAR, Use::data, true);
-  const int input = place->second;
-  const int output = add_floats(weights, TINYGLTF_TYPE_SCALAR, Use::data, false);
-  add_weight_channels(meshes, input, output, name, animation);
-}
-
-void Document::add_weight_channels(std::span<const MeshNode> meshes, int times, int weights,
-                                   const std::string& name, std::size_t animation) {
-  if (animation >= gltf.animations.size()) gltf.animations.emplace_back().name = name;
-  auto& to = gltf.animations[std::min(animation, gltf.animations.size() - 1)];
-  for (const MeshNode& made : meshes) add_channel(to, made.node, "weights", times, weights);
-}
 
 Status write_skeleton(const Clip& clip, const WriteOptions& options, OutputFile& file) {
   if (Status status = check(clip); !status) return status;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "formats/gltf/gltf_writer.h"
 #include "formats/gltf/joint_tracks.h"
@@ -50,6 +51,13 @@ void choose_rest(const Model& model, double tolerance, std::span<JointTracks> cl
 Result<MeshReduction> reduce_for_mesh(const TrackedMesh& model, const TrackedMesh& kept,
                                       const MeshReduceOptions& options, int jobs,
                                       JointTracks& tracks);
+
+// Morph weights with fewer keys: frames between which they are straight lines, off by at most
+// `slack` [targets]; with `bits` of 8 or 16 rounded to what normalized whole numbers hold, if all
+// are from -1 to 1. A writer finds these keys again. [frames] as before
+MorphWeights on_keys(const MorphWeights& weights, std::span<const float> slack, int bits);
+// The frames of these keys, the first and the last among them.
+std::vector<std::size_t> weight_keys(const MorphWeights& weights, std::span<const float> slack);
 
 // The largest distance between the vertices of two models of one mesh, moved by tracks of the same
 // frames, at the moments of MeshReduction.

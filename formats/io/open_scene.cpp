@@ -62,7 +62,7 @@ Result<nodes::Scene> read_zipped_gltf(const InputFile& file, Inputs& inputs, boo
                  scenes.empty() ? "the archive has no glTF scene (.gltf, .glb)"
                                 : fmt::format("the archive has {} glTF scenes, such as {} and {}",
                                               scenes.size(), shown(scenes[0]), shown(scenes[1])),
-                 "unpack it and give the file")
+                 "unpack it and give the file, or the folder of its files")
         .in_file(file.path());
   }
   constexpr std::uint64_t kSmall = std::uint64_t{256} << 20, kExpansion = 64;

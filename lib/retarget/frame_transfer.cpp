@@ -338,6 +338,10 @@ class FrameTransfer {
         foot.largest_miss = outcome.miss;
         foot.largest_miss_frame = run_.first + f;
       }
+      if (std::abs(outcome.bend) > std::abs(foot.largest_bend)) {
+        foot.largest_bend = outcome.bend;
+        foot.largest_bend_frame = run_.first + f;
+      }
       if (sunk[at(f)][side].depth > foot.largest_depth) {
         foot.largest_depth = sunk[at(f)][side].depth;
         foot.largest_depth_time = (run_.first + f) / source_.rate;

@@ -86,6 +86,11 @@ MovedLimb::Outcome MovedLimb::move_end(const Vec3& wanted, std::span<const Trans
   to_reach.softness = std::max(soft * 0.003 * full, softness);
   const TwoBoneSolution solution = solve_two_bone(chain, to_reach);
   outcome.miss = (solution.end - goal).norm();
+  const auto bend = [](const Vec3& above, const Vec3& below) {
+    return std::atan2(above.cross(below).norm(), above.dot(below));
+  };
+  outcome.bend =
+      bend(solution.middle - root, solution.end - solution.middle) - bend(upper_bone, end - middle);
   turn(solution.root_rotation, solution.middle_rotation, local, pose);
   return outcome;
 }

@@ -33,6 +33,7 @@ class MovedLimb {
   struct Outcome {
     double correction = 0;  // metres the end was to be moved
     double miss = 0;        // metres by which it was not
+    double bend = 0;        // radians by which the middle joint is bent more than before
   };
 
   // Moves the end by `correction` (world, metres) by two-bone inverse kinematics; the limb keeps

@@ -84,6 +84,8 @@ struct FootReport {
   int largest_correction_frame = -1;
   double largest_miss = 0;  // metres by which a leg was too short for its goal
   int largest_miss_frame = -1;
+  double largest_bend = 0;  // radians by which the knee is more or less bent than the source's
+  int largest_bend_frame = -1;
   // Metres by which a point of the foot is deeper in the floor than the source's foot, scaled.
   double largest_depth = 0;
   double largest_depth_time = 0;  // seconds

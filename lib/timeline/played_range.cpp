@@ -23,10 +23,14 @@ Result<double> moment_of(const ClipTime& time, const Source& source, std::string
   if (std::isfinite(seconds) && seconds >= -beyond && seconds <= last + beyond) {
     return std::clamp(seconds, 0.0, last);
   }
+  // A frame number without its unit.
+  const bool frame = !time.in_frames && time.value > last && time.value == std::floor(time.value) &&
+                     time.value < clip.frame_count();
   return Error(
       "timeline-time",
       fmt::format("plays {} {} s, outside 0 to {} s ({}) of {}", which, readable(seconds),
-                  readable(last), counted(clip.frame_count(), "frame"), shown(source.name)));
+                  readable(last), counted(clip.frame_count(), "frame"), shown(source.name)),
+      frame ? fmt::format("a bare number is seconds; \"{}f\" is a frame", time.value) : "");
 }
 
 Result<const Part*> part_of(const Play& play, const Source& source) {

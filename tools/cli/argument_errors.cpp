@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <iterator>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -30,7 +31,52 @@ std::string shown_list(const std::vector<std::string>& words) {
   return list + (words.size() > 3 ? " ..." : "");
 }
 
+// The words of a text that say something, in small letters and in the singular.
+std::set<std::string> words_in(std::string_view text) {
+  std::set<std::string> words;
+  std::string word;
+  const auto end_word = [&] {
+    if (word == "feet") word = "foot";
+    if (word.size() > 3 && word.ends_with('s')) word.pop_back();
+    constexpr std::string_view kEmpty = " the and for with not from out its are set use add all ";
+    if (word.size() > 2 && kEmpty.find(" " + word + " ") == std::string_view::npos) {
+      words.insert(word);
+    }
+    word.clear();
+  };
+  for (const char c : text) {
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
+      word += ascii_lower(c);
+    } else {
+      end_word();
+    }
+  }
+  end_word();
+  return words;
+}
+
 }  // namespace
+
+// "--match-heights" where there are --height and --match-height: up to three with a word of it.
+std::string CommandLine::options_about(const std::string& name) const {
+  const std::set<std::string> wanted = words_in(name);
+  std::vector<std::pair<std::ptrdiff_t, std::string>> found;
+  for (const OptionFacts& option : options_.facts()) {
+    if (option.positional) continue;
+    const auto words = words_in(option.names.back());
+    const auto score = std::ranges::count_if(
+        wanted, [&](const std::string& word) { return words.contains(word); });
+    if (score == 0) continue;
+    found.emplace_back(-score, option.value_name.empty()
+                                   ? option.names.back()
+                                   : option.names.back() + " " + option.value_name);
+  }
+  std::ranges::stable_sort(found, {}, &std::pair<std::ptrdiff_t, std::string>::first);
+  std::string list;
+  for (std::size_t i = 0; i < found.size() && i < 3; ++i)
+    list += (i == 0 ? "" : ", ") + found[i].second;
+  return list;
+}
 
 // The first option whose value would be the option after it: "--size -o x.png".
 std::optional<Error> CommandLine::option_without_value(
@@ -39,8 +85,12 @@ std::optional<Error> CommandLine::option_without_value(
     const std::string& next = arguments[i + 1];
     if (!arguments[i].starts_with('-') || !next.starts_with('-') || next == "-") continue;
     const CLI::Option* option = app_.get_option_no_throw(arguments[i]);
-    if (option == nullptr || option->get_items_expected_min() < 1) continue;
-    if (app_.get_option_no_throw(next.substr(0, next.find('='))) == nullptr) continue;
+    if (option == nullptr) continue;
+    if (option->get_items_expected_min() < 1) continue;
+    // "--fix -o fixed", of a tool without -o.
+    const bool is_option = next == "-o" || (next.starts_with("--") && next.size() > 2) ||
+                           app_.get_option_no_throw(next.substr(0, next.find('='))) != nullptr;
+    if (!is_option) continue;
     return usage(fmt::format("{} has no value", arguments[i]),
                  fmt::format("write {} {}; '{}' is the next option", arguments[i],
                              option->get_type_name(), next));
@@ -84,11 +134,26 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     if (const RenamedOption* row = renamed_option(spec_.name, dashed, has)) {
       return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
     }
+    std::vector<std::string> hints;
+    if (is_long && spec_.tools_with) {
+      std::vector<std::string> tools = spec_.tools_with(dashed);
+      const bool many = tools.size() > 3;
+      if (many) tools.resize(3);
+      if (!tools.empty()) {
+        hints.push_back(fmt::format("{}{} {} it", fmt::join(tools, ", "), many ? " and others" : "",
+                                    tools.size() == 1 ? "has" : "have"));
+      }
+    }
     const std::string near =
         name.size() > 2 ? nearest_name(is_long ? dashed : "-" + dashed, names) : std::string();
+    if (!near.empty()) hints.push_back(fmt::format("did you mean '{}'?", near));
+    if (near.empty() && is_long) {
+      const std::string about = options_about(dashed);
+      if (!about.empty()) hints.push_back(fmt::format("{} has {}", spec_.name, about));
+    }
+    if (near.empty()) hints.push_back(fmt::format("see {} --help", spec_.name));
     return Error("usage", fmt::format("unknown option '{}'", shown(name)),
-                 near.empty() ? fmt::format("see {} --help", spec_.name)
-                              : fmt::format("did you mean '{}'?", near));
+                 fmt::format("{}", fmt::join(hints, "; ")));
   }
   return std::nullopt;
 }

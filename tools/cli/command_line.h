@@ -108,6 +108,7 @@ class CommandLine {
   std::optional<Error> option_without_value(const std::vector<std::string>& arguments) const;
   std::optional<Error> option_with_one_dash(const std::vector<std::string>& arguments) const;
   std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
+  std::string options_about(const std::string& name) const;
   std::optional<Error> value_of_flag(const std::vector<std::string>& arguments,
                                      const std::string& word) const;
   std::optional<Error> value_in_pieces(const std::vector<std::string>& arguments) const;

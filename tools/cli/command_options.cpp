@@ -181,11 +181,34 @@ Status CommandOptions::take_values() const {
       if (texts == option.results() || !declared.take(texts)) continue;
       error.hint = fmt::format("write {}: decimals have a point", texts.back());
     }
+    if (declared.kind == "choice") {
+      if (std::string other = option_that_takes(option); !other.empty()) {
+        error.hint = std::move(other);
+      }
+    }
     if (error.hint.empty()) {
       if (declared.kind == "list") error.hint = fmt::format("write {}: ", option.get_type_name());
       error.hint += option.get_description();
     }
     return error;
+  }
+  return {};
+}
+
+// "--filter 6", where --cutoff 6 goes with --filter butterworth.
+std::string CommandOptions::option_that_takes(const CLI::Option& choice) const {
+  const std::string name = name_of(choice);
+  const std::string& text = choice.results().back();
+  if (text.find_first_of("0123456789") == std::string::npos) return {};
+  for (const DeclaredOption& other : declared_) {
+    if (other.option == nullptr || !other.take || other.kind == "choice") continue;
+    if (other.option->get_positional()) continue;
+    for (const std::vector<std::string>& conditions : other.only_with) {
+      for (const std::string& condition : conditions) {
+        if (!condition.starts_with(name + " ") || !other.take({text})) continue;
+        return fmt::format("write {} {} {}", condition, name_of(*other.option), text);
+      }
+    }
   }
   return {};
 }

@@ -160,6 +160,7 @@ class CommandOptions {
                          const std::string& preset);
   CommandOption declare(CLI::Option* option, DeclaredOption declared);
   bool met(const std::string& condition) const;
+  std::string option_that_takes(const CLI::Option& choice) const;  // a hint, or empty
 
   CLI::App& app_;
   std::deque<DeclaredOption> declared_;

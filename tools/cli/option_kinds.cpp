@@ -223,14 +223,17 @@ std::string written(const ClipTime& time) {
   return readable(time.value) + (time.in_frames ? "f" : "s");
 }
 
-namespace {
-
-// Hint which tool writes files with this ending, of no kind of formats/registry.
 std::string maker_of(const std::string& ending) {
   static constexpr std::pair<std::string_view, const char*> kMakers[] = {
       {".png .jpg .gif .mp4 .webp .webm .avi .mov",
        "krok-render makes films and images, krok-plot --sheet OUT.png sheets"},
       {".html .htm", "krok-view makes pages, krok-walk with --save-page"},
+      {".svg .pdf", "krok-plot draws charts"},
+      {".csv .tsv", "krok-export writes tables of motions, krok-keys --table those of gait"},
+      {".bvh .npz .npy .mot .sto", "krok-export writes motions so"},
+      {".anim", "krok-import makes motions of captures"},
+      {".fbx .dae .usd .usda .usdz .blend .abc .vrm .ma .mb .c3d .trc",
+       "no tool writes that; Blender, Maya, Unity and Unreal read .glb"},
       {".obj .pc2", "krok-skin writes meshes as .obj and .pc2"}};
   for (const auto& [endings, maker] : kMakers) {
     if ((" " + std::string(endings) + " ").find(" " + ending + " ") != std::string::npos) {
@@ -239,8 +242,6 @@ std::string maker_of(const std::string& ending) {
   }
   return {};
 }
-
-}  // namespace
 
 ValueKind<std::string> output(const std::vector<std::string>& endings) {
   const auto read = [endings](const std::string& text) -> Result<std::string> {

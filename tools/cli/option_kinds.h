@@ -77,6 +77,9 @@ std::string frame_hint(const ClipTime& time, int frame_count);
 // A file to write, of one of these extensions: ".svg". Code usage.
 ValueKind<std::string> output(const std::vector<std::string>& endings);
 
+// Hint which tool writes files with this ending, ".mp4"; empty if unknown.
+std::string maker_of(const std::string& ending);
+
 // "a, b or c".
 std::string either_of(const std::vector<std::string>& words);
 

@@ -173,6 +173,17 @@ int run_single(const CommandLine& line) {
                        ? "a folder is given without NAME=, which names a single motion"
                        : "to process a folder, use --out-dir DIR instead of -o";
     }
+    if (error.code == "file-missing") {
+      for (const OptionFacts& option : line.options()) {
+        const auto has = [&](const GivenOption& given) {
+          return !option.positional && option.names.back() == "--" + given.name &&
+                 std::ranges::find(given.values, error.where.file) != given.values.end();
+        };
+        if (std::ranges::none_of(line.given(), has)) continue;
+        error.hint = fmt::format("check the path; {} {}: {}", option.names.back(),
+                                 option.value_name, option.description);
+      }
+    }
     return fail(context, report, error);
   }
   if (!standard_output_written()) return fail(context, report, standard_output_error());

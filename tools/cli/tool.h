@@ -205,6 +205,9 @@ struct ToolSpec {
   // (FILE#ANIMATION), for this output. Called after the options are parsed. None: no.
   std::function<bool(const std::string& output)> each_animation;
 
+  // Tools that have an option, for whoever gives it to another; may be empty.
+  std::function<std::vector<std::string>(const std::string& option)> tools_with;
+
   // Adds the tool's own options and positionals.
   std::function<void(CommandOptions&)> declare;
   // Checks the parsed options for values that are invalid for any file; may be empty. Called before

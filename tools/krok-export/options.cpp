@@ -9,6 +9,7 @@
 
 #include "formats/io/formats.h"
 #include "tools/cli/file_name.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::exporting {
@@ -72,11 +73,12 @@ Result<ExportFormat> format_of(const Options& options, const std::string& output
   for (const auto& [word, format] : kFormats) {
     if (end == "." + word) return format;
   }
+  const std::string maker = maker_of(end);
   return Error("export-format",
                end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
                            : fmt::format("unknown extension {}", end),
-               end == ".obj" ? "krok-skin writes meshes as .obj"
-                             : "use .bvh, .glb, .gltf, .csv, .npz, .mot or .sto; or --format")
+               "use .bvh, .glb, .gltf, .csv, .npz, .mot or .sto; or --format" +
+                   (maker.empty() ? "" : "; " + maker))
       .in_file(output);
 }
 

@@ -81,7 +81,8 @@ Result<std::string> event_rows(const std::string& path, const io::FindRoles& fin
 
 // Motions that cannot be read are reported and left out.
 Result<int> write_rows(const Options& options, const char* header, Rows* rows_of, const char* task,
-                       const std::string& output, ToolContext& context) {
+                       const char* contents, const char* more, const std::string& output,
+                       ToolContext& context) {
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
   std::string text = header;
@@ -107,7 +108,8 @@ Result<int> write_rows(const Options& options, const char* header, Rows* rows_of
   const Status status = write_output(context, output, text);
   if (!status) return status.error();
   context.report.result["rows"] = std::ranges::count(text, '\n') - 1;
-  context.log(fmt::format("{}: {} of {} motions", output, motions, options.inputs.size()));
+  context.log(fmt::format("{}: {} of {} of {}{}", output, contents, motions,
+                          counted(std::ssize(options.inputs), "motion"), more));
   return motions == options.inputs.size() ? kExitDone : kExitPartly;
 }
 
@@ -132,11 +134,13 @@ GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<K
 }
 
 Result<int> write_gait_table(const Options& options, ToolContext& context) {
-  return write_rows(options, kHeader, gait_row, "measuring gait", options.table, context);
+  return write_rows(options, kHeader, gait_row, "measuring gait", "gait", "", options.table,
+                    context);
 }
 
 Result<int> write_event_table(const Options& options, ToolContext& context) {
   return write_rows(options, "file,event,time [s],frame\n", event_rows, "finding steps",
+                    "strikes and toe-offs", "; --table OUT.csv has speed, cadence and steps",
                     context.output, context);
 }
 

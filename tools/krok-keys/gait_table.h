@@ -23,6 +23,8 @@ struct GaitFacts {
   // Empty where no gait shows.
   const char* name() const {
     if (!steps.are_steady()) return "unsteady";
+    // Feet that are down for half of a cycle and more do not fly.
+    if (is_run() && gait.stance[0] + gait.stance[1] >= 1) return "";
     return !steps.are_gait() ? "" : is_run() ? "run" : "walk";
   }
 };

@@ -100,8 +100,9 @@ Json json_of(const LintedFile& file);     // for the tool's report
 // run, 5,000 of them: the worst are kept, and what is left out is counted.
 std::string sarif_of(LintedFiles files, const std::string& version);
 
-// JUnit XML: a test suite for each file, a failed test case for each rule with faults.
-std::string junit_of(LintedFiles files);
+// JUnit XML: a test suite for each file, a failed test case for each rule with faults, a
+// skipped one for each that `settings` leaves out.
+std::string junit_of(LintedFiles files, const krok::lint::Settings& settings);
 
 // Pages that play files, as links from another page.
 using PlayerLinks = std::map<const LintedFile*, std::string>;

@@ -246,7 +246,7 @@ std::string sarif_of(LintedFiles files, const std::string& version) {
   return sarif.dump(1) + "\n";
 }
 
-std::string junit_of(LintedFiles files) {
+std::string junit_of(LintedFiles files, const krok::lint::Settings& settings) {
   std::string suites;
   std::size_t tests = 0, failures = 0, errors = 0;
   for (const LintedFile* file : files) {
@@ -262,7 +262,7 @@ std::string junit_of(LintedFiles files) {
       continue;
     }
     std::string cases;
-    std::size_t here = 0, failed = 0;
+    std::size_t here = 0, failed = 0, left_out = 0;
     for (const auto& facts : krok::lint::rules()) {
       if (facts.rule == krok::lint::Rule::unreadable) continue;
       ++here;
@@ -273,6 +273,11 @@ std::string junit_of(LintedFiles files) {
         }
       }
       cases += fmt::format("    <testcase classname=\"{}\" name=\"{}\"", path, facts.id);
+      if (!settings.has(facts.rule)) {
+        ++left_out;
+        cases += "><skipped message=\"not among the rules of this run\"/></testcase>\n";
+        continue;
+      }
       if (text.empty()) {
         cases += "/>\n";
         continue;
@@ -283,8 +288,9 @@ std::string junit_of(LintedFiles files) {
                       severity_name(facts.severity), to_markup(facts.meaning), to_markup(text));
     }
     suites += fmt::format(
-        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\">\n{}  </testsuite>\n",
-        path, here, failed, cases);
+        "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\">\n{}  "
+        "</testsuite>\n",
+        path, here, failed, left_out, cases);
     tests += here, failures += failed;
   }
   return fmt::format(

@@ -245,20 +245,21 @@ Status save_players(const Options& options, LintedFiles order, PlayerLinks& play
   return {};
 }
 
-Status write_reports(const Options& options, const std::vector<LintedFile>& files,
-                     LintedFiles order, ToolContext& context) {
+Status write_reports(const Options& options, const krok::lint::Settings& settings,
+                     const std::vector<LintedFile>& files, LintedFiles order,
+                     ToolContext& context) {
   OutputSet outputs(context);
   const auto add = [&](const std::string& path, const auto& make) -> Status {
     if (path.empty()) return {};
     const std::string text = make();
     return outputs.add(path, text);
   };
-  for (const Status& status :
-       {add(options.table, [&] { return table_of(order); }),
-        add(options.sarif, [&] { return sarif_of(order, version()); }),
-        add(options.junit, [&] { return junit_of(order); }), add(options.save_baseline, [&] {
-          return lint_files::write_baseline(known_faults(files));
-        })}) {
+  for (const Status& status : {add(options.table, [&] { return table_of(order); }),
+                               add(options.sarif, [&] { return sarif_of(order, version()); }),
+                               add(options.junit, [&] { return junit_of(order, settings); }),
+                               add(options.save_baseline, [&] {
+                                 return lint_files::write_baseline(known_faults(files));
+                               })}) {
     if (!status) return status;
   }
   NewFolders folders;
@@ -321,7 +322,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   context.report.result["errors"] = counts.errors;
   context.report.result["warnings"] = counts.warnings;
   context.report.result["unreadable"] = counts.unreadable;
-  if (Status status = write_reports(options, files, order, context); !status) {
+  if (Status status = write_reports(options, *settings, files, order, context); !status) {
     return status.error();
   }
   if (!options.fix.empty()) {

@@ -28,10 +28,11 @@ Error with_home(Error error, const std::string& text) {
       {"mean average deviation sd std cycle", "cycles draws mean and standard deviation"},
       {"hip hips knee knees ankle ankles shoulder elbow joint joints",
        "angles draws hips, knees, ankles, shoulders and elbows, cycles their mean over the gait "
-       "cycle; --joint NAME another joint"},
+       "cycle; --joint NAME another joint; krok-export --what angles is a table"},
       {"sheet poses actor", "--sheet OUT.png shows the actors"}};
+  const std::string word = text.substr(0, text.find('_'));  // of hip_flexion_l, knee_angle_r
   for (const auto& [words, home] : kHomes) {
-    if ((" " + std::string(words) + " ").find(" " + text + " ") != std::string::npos) {
+    if ((" " + std::string(words) + " ").find(" " + word + " ") != std::string::npos) {
       error.hint = home;
     }
   }

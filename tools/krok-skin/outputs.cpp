@@ -16,6 +16,7 @@
 #include "motion/sample.h"
 #include "skin/morph.h"
 #include "skin/skin.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-skin/subject.h"
 
@@ -219,10 +220,11 @@ Status check_output(As as, const std::string& output) {
                  "use --as frames for one file per frame, --as pose for one pose")
         .in_file(output);
   }
+  const std::string maker = maker_of(end);
   return Error("skin-format",
                end.empty() ? fmt::format("{} has no extension; cannot determine the format", output)
                            : fmt::format("unsupported extension {}", end),
-               "use .glb, .gltf, .pc2 or .obj")
+               "use .glb, .gltf, .pc2 or .obj" + (maker.empty() ? "" : "; " + maker))
       .in_file(output);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,9 +65,11 @@ struct SmallRig {
   MorphSet morphs;
   Clips clips;
   std::optional<gltf::Quantization> quantization = {};
-  std::vector<std::uint32_t> places = {};        // of vertices, if reordered
-  std::vector<gltf::JointTracks> all_keys = {};  // as `clips` before --reduce, --quantize
-  Json facts = {};                               // about --reduce and --quantize, if given
+  std::vector<std::uint32_t> places = {};             // of vertices, if reordered
+  std::vector<gltf::JointTracks> all_keys = {};       // as `clips` before --reduce, --quantize
+  std::vector<const MorphWeights*> all_weights = {};  // the same
+  std::deque<MorphWeights> few_weights = {};          // of `clips` after them, where they have some
+  Json facts = {};                                    // about --reduce and --quantize, if given
 };
 
 // Warns where the file needs a second set of influences. Codes:

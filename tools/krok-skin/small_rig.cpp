@@ -17,6 +17,8 @@ namespace {
 
 // Of the tolerance of --reduce, what positions, and weights, of vertices may take alone, and both.
 constexpr double kMinVertexShare = 0.15, kMaxVertexShare = 0.7, kMaxShareOfBoth = 0.8;
+// And the keys of morph weights.
+constexpr double kMaxWeightShare = 0.3;
 
 // The palettes of a motion's frames.
 PaletteSource palettes_of(const Skeleton& skeleton, const Clip& clip, const Stretches& stretches) {
@@ -146,7 +148,37 @@ gltf::TrackedMesh mesh_of(const Model& model, const MorphSet& morphs, const Morp
 
 class BitsLost {
  public:
-  BitsLost(const SmallRig& rig, int jobs) : rig_(rig), full_(rig.clips.tracks), jobs_(jobs) {}
+  BitsLost(const SmallRig& rig, int jobs)
+      : rig_(rig), full_(rig.clips.tracks), few_weights_(rig.clips.weights), jobs_(jobs) {}
+
+  // Morph weights of fewer keys and bits from here on: as few as leave vertices within a share of
+  // the tolerance, or with a tolerance of 0 all keys.
+  std::deque<MorphWeights> reduce_weights(double tolerance, bool quantize) {
+    std::deque<MorphWeights> few;
+    const std::vector<double> reaches = target_reaches();
+    for (std::size_t i = 0; i < full_.size(); ++i) {
+      const MorphWeights* const weights = rig_.clips.weights[i];
+      if (weights == nullptr || reaches.empty()) continue;
+      MorphWeights& made = few.emplace_back();
+      few_weights_[i] = &made;
+      const auto fits = [&](double slack, int bits) {
+        std::vector<float> slacks;
+        for (const double reach : reaches) {
+          slacks.push_back(static_cast<float>(std::min(1.0, slack / reach)));
+        }
+        made = gltf::on_keys(*weights, slacks, bits);
+        return slack == 0 || gltf::mesh_error(original(i), full_[i],
+                                              left({rig_.model, rig_.morphs}, i), full_[i], jobs_)
+                                     .largest < kMaxWeightShare * tolerance;
+      };
+      bool done = false;
+      for (double slack = tolerance; !done && slack > 0.02 * tolerance; slack *= 0.5) {
+        done = (quantize && fits(slack, 8)) || fits(slack, quantize ? 16 : 32);
+      }
+      if (!done) fits(0, quantize ? 16 : 32);
+    }
+    return few;
+  }
 
   Shown shown(const std::optional<gltf::Quantization>& quantization) const {
     if (!quantization) return {rig_.model, rig_.morphs};
@@ -211,7 +243,22 @@ class BitsLost {
     return mesh_of(rig_.model, rig_.morphs, rig_.clips.weights[clip]);
   }
   gltf::TrackedMesh left(const Shown& shown, std::size_t clip) const {
-    return mesh_of(shown.model, shown.morphs, rig_.clips.weights[clip]);
+    return mesh_of(shown.model, shown.morphs, few_weights_[clip]);
+  }
+
+  // How far each target moves a vertex, metres.
+  std::vector<double> target_reaches() const {
+    std::vector<double> reaches;
+    for (int t = 0; t < rig_.morphs.target_count(); ++t) {
+      const auto moved = rig_.morphs.target_positions(t);
+      double reach = 1e-6;
+      for (std::size_t v = 0; v < moved.size(); ++v) {
+        const Vec3f way = moved[v] - rig_.model.positions[v];
+        reach = std::max(reach, static_cast<double>(way.norm()));
+      }
+      reaches.push_back(reach);
+    }
+    return reaches;
   }
 
   // How many shapes' errors add up in a vertex: sum |w| of the targets, |1 - sum w| of the mesh.
@@ -250,13 +297,15 @@ class BitsLost {
 
   const SmallRig& rig_;
   const std::vector<gltf::JointTracks> full_;
+  std::vector<const MorphWeights*> few_weights_;  // [clips] or null
   int jobs_;
 };
 
 // Applies --reduce and --quantize.
 Status lose_bits(const Options& options, SmallRig& rig, int jobs) {
-  const BitsLost lost(rig, jobs);
+  BitsLost lost(rig, jobs);
   const double tolerance = options.reduce.value_or(0);
+  rig.few_weights = lost.reduce_weights(tolerance, options.quantize);
   const bool filtered = options.compress && options.quantize;
   if (options.quantize) rig.quantization = lost.quantization_for(tolerance, filtered);
   rig.facts = Json::object();
@@ -273,6 +322,11 @@ Status lose_bits(const Options& options, SmallRig& rig, int jobs) {
     for (gltf::JointTracks& tracks : rig.clips.tracks) {
       for (gltf::JointTrack& track : tracks.joints) track.rotation_bits = 16;
     }
+  }
+  auto few = rig.few_weights.begin();
+  rig.all_weights = rig.clips.weights;
+  for (const MorphWeights*& weights : rig.clips.weights) {
+    if (weights != nullptr && few != rig.few_weights.end()) weights = &*few++;
   }
   return {};
 }
@@ -328,7 +382,10 @@ Result<SmallRig> small_rig(const Options& options, const Subject& subject,
 Result<bool> report_loss(const std::string& path, const Options& options, const Subject& subject,
                          SmallRig& rig, ToolContext& context) {
   std::vector<gltf::NamedTracks> all_keys = rig.clips.named();
-  for (std::size_t i = 0; i < all_keys.size(); ++i) all_keys[i].tracks = &rig.all_keys[i];
+  for (std::size_t i = 0; i < all_keys.size(); ++i) {
+    all_keys[i].tracks = &rig.all_keys[i];
+    all_keys[i].weights = rig.all_weights[i];
+  }
   const auto found = gltf::written_error(path, {subject.model, subject.morphs, all_keys},
                                          {rig.model, rig.places}, context.jobs);
   if (!found) return found.error();

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "tools/batch/batch.h"
+#include "tools/cli/command_line.h"
 #include "tools/krok/krok.h"
 #include "tools/krok/program.h"
 
@@ -54,10 +55,30 @@ const Command* find_command(std::string_view verb) {
   return found == commands().end() ? nullptr : &*found;
 }
 
+namespace {
+
+std::vector<std::string> tools_with(const std::string& option) {
+  std::vector<std::string> tools;
+  for (const Command& command : commands()) {
+    const ToolSpec spec = command.make_spec();
+    for (const OptionFacts& facts : CommandLine(spec, CommandLine::Form::single).options()) {
+      if (std::ranges::find(facts.names, option) != facts.names.end()) tools.push_back(spec.name);
+    }
+  }
+  return tools;
+}
+
+}  // namespace
+
 int run_program(const char* verb, int argc, char** argv) {
   const Command* command = find_command(verb);
-  return command != nullptr ? batch::run_tool(command->make_spec, argc, argv)
-                            : run_krok(argc, argv);
+  if (command == nullptr) return run_krok(argc, argv);
+  const auto make_spec = [command] {
+    ToolSpec spec = command->make_spec();
+    spec.tools_with = tools_with;
+    return spec;
+  };
+  return batch::run_tool(make_spec, argc, argv);
 }
 
 }  // namespace krok::cli

@@ -16,6 +16,7 @@ namespace {
 
 // Radians; feet of T-poses point up to 30 degrees outwards.
 constexpr double kTurnedFoot = 40 * kRadiansPerDegree;
+constexpr double kShownBend = 10 * kRadiansPerDegree;  // of a knee
 
 std::string method_name(krok::retarget::Method method) {
   constexpr std::array kNames = {"same skeleton", "roles", "names"};  // [Method]
@@ -59,6 +60,8 @@ Json foot_json(const std::optional<krok::retarget::FootReport>& foot) {
           {"largest_correction_frame", frame(foot->largest_correction_frame)},
           {"largest_miss", foot->largest_miss},
           {"largest_miss_frame", frame(foot->largest_miss_frame)},
+          {"largest_knee_change", foot->largest_bend},
+          {"largest_knee_change_frame", frame(foot->largest_bend_frame)},
           {"largest_depth", foot->largest_depth},
           {"largest_depth_time", foot->largest_depth_time}};
 }
@@ -112,6 +115,12 @@ std::string summary(const Outcome& outcome) {
       text += fmt::format(", hips lowered by up to {}", millimetres(report.largest_drop));
     }
     if (miss > 0.005) text += fmt::format(" (legs too short by {})", millimetres(miss));
+    const double bend = std::max(left ? std::abs(left->largest_bend) : 0,
+                                 right ? std::abs(right->largest_bend) : 0);
+    if (bend > kShownBend) {
+      text +=
+          fmt::format(", knees bent by up to {:.0f} deg more or less", bend / kRadiansPerDegree);
+    }
   }
   return text + contacts_text(report.contacts, report.path_scale);
 }

@@ -174,6 +174,8 @@ TEST_F(KrokLint, ReportsAreWhatOtherProgramsRead) {
   const std::string junit = text_of("out.xml");
   EXPECT_THAT(junit, HasSubstr("failures=\"1\" errors=\"1\""));
   EXPECT_THAT(junit, HasSubstr("name=\"pop\"><failure type=\"error\""));
+  // A rule that did not run would be green.
+  EXPECT_THAT(junit, HasSubstr("name=\"duplicate\"><skipped"));
   EXPECT_THAT(text_of("out.csv"), HasSubstr("spi ked.anim,,pop,spike,error,2,120,LeftForeArm,1,"));
 }
 

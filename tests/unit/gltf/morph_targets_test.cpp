@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
 
 #include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/gltf_writer.h"
+#include "formats/gltf/reduce_for_mesh.h"
 #include "support/test_scenes.h"
 #include "unit/gltf/glb.h"
 
@@ -32,7 +35,7 @@ struct Face {
     }
     weights = {24, morphs.names, {}};
     for (int f = 0; f < frames; ++f) {
-      weights.values.push_back(0.25f * static_cast<float>(f));
+      weights.values.push_back(0.25f * static_cast<float>(f * (4 - f)));  // no straight line
       weights.values.push_back(-0.5f);
     }
     options.morphs = &morphs;
@@ -106,17 +109,78 @@ TEST(GltfMorphTargets, WeightsAreInTheAnimationOfTheJoints) {
   EXPECT_GT(animation["channels"].size(), 10u);
 }
 
-// A face at rest would take as many keys as its motion has frames.
-TEST(GltfMorphTargets, WeightsThatStayHaveTwoKeys) {
-  Face face(4);
-  for (std::size_t i = 0; i < face.weights.values.size(); i += 2) face.weights.values[i] = 0.25f;
+// A face at rest, or one that was keyed at a few frames, would take as many keys as its motion has
+// frames.
+TEST(GltfMorphTargets, StraightWeightsHaveKeysAtTheirEnds) {
+  Face face(5);
+  const std::vector<float> smile = {0.25f, 0.5f, 0.75f, 0.75f, 0.75f};
+  for (std::size_t f = 0; f < smile.size(); ++f) face.weights.values[2 * f] = smile[f];
   const test::Glb glb = face.rig();
   for (const auto& channel : glb.json["animations"][0]["channels"]) {
     if (channel["target"]["path"] != "weights") continue;
     const auto& sampler = glb.json["animations"][0]["samplers"][channel["sampler"].get<int>()];
-    EXPECT_EQ(glb.values<float>(sampler["input"]), (std::vector<float>{0, 3 / 24.0f}));
+    EXPECT_EQ(glb.values<float>(sampler["input"]), (std::vector<float>{0, 2 / 24.0f, 4 / 24.0f}));
     EXPECT_EQ(glb.values<float>(sampler["output"]),
-              (std::vector<float>{0.25f, -0.5f, 0.25f, -0.5f}));
+              (std::vector<float>{0.25f, -0.5f, 0.75f, -0.5f, 0.75f, -0.5f}));
+  }
+}
+
+// Weights would be further off than asked, or files hold other keys than were chosen.
+TEST(GltfMorphTargets, FewerKeysStayWithinTheirSlack) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> step(-0.1f, 0.1f);
+  for (const int bits : {8, 16, 32}) {
+    MorphWeights weights{30, {"smile", "jaw"}, {0.5f, 0.5f}};
+    for (int i = 0; i < 400; ++i) {
+      const float before = weights.values[weights.values.size() - 2];
+      weights.values.push_back(std::clamp(before + step(random), 0.0f, 1.0f));
+    }
+    const std::vector<float> slack = {0.05f, 0.2f};
+    const MorphWeights kept = gltf::on_keys(weights, slack, bits);
+    const auto keys = gltf::weight_keys(weights, slack);
+    EXPECT_LT(keys.size(), 150u);
+    EXPECT_EQ(keys.back(), 200u);
+    const float rounding = bits == 32 ? 1e-6f : 0.5f / (bits == 8 ? 255.0f : 65535.0f) + 1e-6f;
+    for (std::size_t i = 0; i < weights.values.size(); ++i) {
+      EXPECT_LE(std::abs(kept.values[i] - weights.values[i]), slack[i % 2] + rounding) << i;
+    }
+    const auto again = gltf::weight_keys(kept, std::vector<float>(2, 1e-6f));
+    EXPECT_TRUE(std::ranges::includes(keys, again));
+  }
+}
+
+// A viewer would read other weights than were meant, or files be as large as those of floats.
+TEST(GltfMorphTargets, QuantizedWeightsAreWholeNumbers) {
+  for (const bool compressed : {false, true}) {
+    for (const bool is_signed : {false, true}) {
+      for (const int bits : {8, 16}) {
+        Face face(4);
+        for (std::size_t i = 1; !is_signed && i < face.weights.values.size(); i += 2) {
+          face.weights.values[i] = 0.3f;
+        }
+        face.weights = gltf::on_keys(face.weights, std::vector<float>(2, 0.0f), bits);
+        face.options.quantized = gltf::Quantization();
+        face.options.compressed = compressed;
+        const Clip clip = test::swinging_clip(face.model.skeleton, 4, 24);
+        Status status;
+        const std::string bytes = test::bytes_of(
+            [&](OutputFile& file) { return gltf::write_rig(face.model, clip, face.options, file); },
+            status);
+        ASSERT_TRUE(status);
+        const auto scene = gltf::read(std::as_bytes(std::span(bytes)));
+        ASSERT_TRUE(scene.ok()) << scene.error().message;
+        int found = 0;
+        for (const auto& channel : scene->animations.at(0).channels) {
+          if (channel.path != nodes::Path::weights) continue;
+          ++found;
+          ASSERT_EQ(channel.values->size(), face.weights.values.size());
+          for (std::size_t i = 0; i < channel.values->size(); ++i) {
+            EXPECT_NEAR((*channel.values)[i], face.weights.values[i], 1e-6);
+          }
+        }
+        EXPECT_EQ(found, 1);
+      }
+    }
   }
 }
 
