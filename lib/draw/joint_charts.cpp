@@ -177,6 +177,12 @@ CycleCharts cycle_charts(std::span<const ChartedMotion> motions) {
       if (charts.counts[s] == 0) continue;
       panel.moments.push_back({off[s] / charts.counts[s], s == 0 ? "L off" : "R off"});
     }
+    constexpr double kOneLabel = 4;  // percent; two labels would overlap
+    if (panel.moments.size() == 2 &&
+        std::abs(panel.moments[0].at - panel.moments[1].at) < kOneLabel) {
+      panel.moments[0].name = "L, R off";
+      panel.moments[1].name.clear();
+    }
     charts.panels.push_back(std::move(panel));
   }
   charts.motions = static_cast<int>(std::ranges::count(has_cycle, true));

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -15,6 +16,7 @@
 #include <optional>
 
 #include "core/file.h"
+#include "core/text.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/console_progress.h"
 #include "tools/cli/option_kinds.h"
@@ -188,7 +190,16 @@ int run_single(const CommandLine& line) {
   }
   if (!standard_output_written()) return fail(context, report, standard_output_error());
   const bool partly = *done == kExitDone && !context.left_out.empty();
-  if (partly) context.log(fmt::format("{} left out", counted(context.left_out.size(), "input")));
+  if (partly) {
+    constexpr std::size_t kNamed = 5;
+    std::vector<std::string> names;
+    for (const std::string& path : context.left_out) {
+      if (names.size() < kNamed) names.push_back(shown(path));
+    }
+    if (context.left_out.size() > kNamed) names.emplace_back("...");
+    context.log(fmt::format("{} left out: {}", counted(context.left_out.size(), "input"),
+                            fmt::join(names, ", ")));
+  }
   return finish(context, report, partly ? kExitPartly : *done);
 }
 

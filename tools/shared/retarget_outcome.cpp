@@ -290,6 +290,16 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
     note("retarget-stance",
          "the input's reference pose does not stand; a T-pose built from this take replaces it",
          "takes of an actor are aligned alike with --takes and --save-alignment, then --alignment");
+    // Of people, and of toys, 0.25 at most; of dogs and elephants 0.37 and more.
+    constexpr double kUnlikePeople = 0.3;
+    const auto stature = stature_of(outcome.source, outcome.source_roles);
+    if (stature && stature->uncertainty > kUnlikePeople * stature->metres) {
+      choices.push_back(make_warning(
+          "retarget-body",
+          "the input's legs, spine and arms are not in a person's proportions, and its reference "
+          "pose does not stand: perhaps a creature on four legs, moved as a person is",
+          "leave it out, or give a target of its own kind"));
+    }
   }
   const auto note_frame = [&](const std::optional<int>& frame, const char* whose) {
     if (!frame) return;

@@ -1,6 +1,7 @@
 // If these fail, krok-retarget writes another motion than its library makes, or its user is not
 // told which joint went where and what went wrong.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -209,6 +210,45 @@ TEST_F(KrokRetarget, MissedContactsAreWarnedOf) {
 
 // The alignment of one take for another whose own would be another: each joint keeps the same
 // offset from its source in both, and what was saved gives the same bytes for the take itself.
+// A dog would become a person who stoops, without a word.
+TEST_F(KrokRetarget, FourLeggedInputsAreWarnedOf) {
+  std::string joints, values;
+  const auto joint = [&](const char* name, const char* offset) {
+    joints += fmt::format("JOINT {} {{ OFFSET {} CHANNELS 3 Zrotation Xrotation Yrotation\n", name,
+                          offset);
+    values += " 0 0 0";
+  };
+  const auto end = [&](const char* offset, int depth) {
+    joints += fmt::format("End Site {{ OFFSET {} }}\n", offset) + std::string(depth, '}');
+  };
+  joint("Spine", "0 0 40"), joint("Neck", "0 0 40"), joint("Head", "0 15 20");
+  end("0 5 20", 2);  // the chest stays open
+  for (const std::string side : {"Left", "Right"}) {
+    joint((side + "Arm").c_str(), side == "Left" ? "10 -5 35" : "-10 -5 35");
+    joint((side + "ForeArm").c_str(), "0 -20 0");
+    joint((side + "Hand").c_str(), "0 -20 0");
+    end("0 -2 8", 3);
+  }
+  joints += "}";
+  for (const std::string side : {"Left", "Right"}) {
+    joint((side + "UpLeg").c_str(), side == "Left" ? "10 -5 0" : "-10 -5 0");
+    joint((side + "Leg").c_str(), "0 -20 0");
+    joint((side + "Foot").c_str(), "0 -20 0");
+    end("0 -2 8", 3);
+  }
+  put("dog.bvh",
+      "HIERARCHY\nROOT Hips { OFFSET 0 0 0 CHANNELS 6 Xposition Yposition Zposition "
+      "Zrotation Xrotation Yrotation\n" +
+          joints + "}\nMOTION\nFrames: 2\nFrame Time: 0.0333333\n0 47 0 0 0 0" + values +
+          "\n1 47 0 0 0 0" + values + "\n");
+  const ToolRun run = run_here("krok-retarget", {"dog.bvh", "--onto", "walk.anim", "-o", "a.anim"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("[retarget-body]"));
+  const ToolRun same =
+      run_here("krok-retarget", {"walk.anim", "--onto", "dog.bvh", "-o", "b.anim"});
+  EXPECT_THAT(same.err, Not(HasSubstr("[retarget-body]")));
+}
+
 TEST_F(KrokRetarget, ASavedAlignmentIsThatOfTheTake) {
   write("hero.model", test::tube_model(test::human_skeleton(1.2)));
   const std::vector<std::string> first = {"walk.anim", "--onto",           "hero.model",  "--feet",
