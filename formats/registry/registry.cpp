@@ -283,7 +283,8 @@ std::string_view describe_content(std::span<const std::byte> content) {
 
 std::string advice(Kind found, Kind wanted) {
   if (found == wanted) return {};
-  if (wanted == Kind::steps) return "krok-fit makes it from a description of example clips (.json)";
+  if (wanted == Kind::steps)
+    return "krok-fit makes it of walks, a folder or files, or of a description of examples (.json)";
   if (wanted == Kind::model && is_of(found, Group::capture)) {
     return "a mesh comes first, then motions: hero.model, or hero.character; krok-body makes one "
            "for a capture";

@@ -46,8 +46,12 @@ Result<int> find_animation(const Scene& scene, const std::string& wanted, const 
   if (number && *number >= 0 && *number < static_cast<long long>(count)) {
     return static_cast<int>(*number);
   }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back(animation_name(scene, i));
+  const std::string near = nearest_name(wanted, names);
   return Error("clip-name", fmt::format("there is no animation {}", shown(wanted)),
-               "available: " + animation_list(scene))
+               (near.empty() ? "" : "did you mean '" + shown(near) + "'? ") +
+                   "available: " + animation_list(scene))
       .in_file(file);
 }
 

@@ -80,29 +80,40 @@ double ankle_over_floor(const Actor& actor, Role foot, const Floor& floor) {
   return ankle - lowest_of_foot(actor, foot) + floor.sole;
 }
 
-void add_lowest(const Clip& clip, const Actor& stance, std::vector<float>& lowest) {
-  std::vector<std::pair<int, float>> heights;  // foot joints, above the lowest of the foot
-  for (const Role foot : {Role::left_foot, Role::right_foot}) {
+void add_lowest(const Clip& clip, const Actor& stance, LowestOfFeet& lowest) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    const Role foot = side == 0 ? Role::left_foot : Role::right_foot;
     const double sole = lowest_of_foot(stance, foot);
+    std::vector<std::pair<int, float>> heights;  // joints, above the lowest
     for (const int joint : joints_below(stance.skeleton, stance.roles.joint(foot))) {
       heights.emplace_back(joint, static_cast<float>(stance.pose[at(joint)].position.y() - sole));
     }
-  }
-  for (int frame = 0; frame < clip.frame_count(); ++frame) {
-    const auto positions = clip.frame_positions(frame);
-    float least = std::numeric_limits<float>::max();
-    for (const auto& [joint, height] : heights) {
-      least = std::min(least, positions[at(joint)].y() - height);
+    for (int frame = 0; frame < clip.frame_count(); ++frame) {
+      const auto positions = clip.frame_positions(frame);
+      float least = std::numeric_limits<float>::max();
+      for (const auto& [joint, height] : heights) {
+        least = std::min(least, positions[at(joint)].y() - height);
+      }
+      lowest[side].push_back(least);
     }
-    lowest.push_back(least);
   }
 }
 
-double standing_height(std::vector<float> lowest) {
-  if (lowest.empty()) return 0;
-  const auto place = lowest.begin() + static_cast<std::ptrdiff_t>(lowest.size() / 5);
-  std::nth_element(lowest.begin(), place, lowest.end());
-  return *place;
+StandingHeight standing_height(LowestOfFeet lowest) {
+  const auto in_stance = [](std::vector<float> heights) -> double {
+    if (heights.empty()) return 0;
+    const auto place = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 5);
+    std::nth_element(heights.begin(), place, heights.end());
+    return static_cast<double>(*place);
+  };
+  std::vector<float> lower = lowest[0];
+  for (std::size_t f = 0; f < lower.size(); ++f) lower[f] = std::min(lower[f], lowest[1][f]);
+  StandingHeight standing;
+  standing.lower = in_stance(std::move(lower));
+  for (std::size_t side = 0; side < 2; ++side) {
+    standing.of_foot[side] = in_stance(std::move(lowest[side]));
+  }
+  return standing;
 }
 
 std::vector<FootPoint> LegPlacement::points_of_foot(const Actor& actor, int ankle, double floor,

@@ -46,13 +46,18 @@ double lowest_of_foot(const Actor& actor, Role foot);
 // The height of the ankle above the floor in a pose in which the foot is planted.
 double ankle_over_floor(const Actor& actor, Role foot, const Floor& floor);
 
-// Adds the height of the lowest foot joint in each frame, measured from its height within the foot
-// in `stance`.
-void add_lowest(const Clip& clip, const Actor& stance, std::vector<float>& lowest);
+// The height of the lowest joint of either foot in each frame, measured from its height within the
+// foot in a stance.
+using LowestOfFeet = std::array<std::vector<float>, 2>;
+void add_lowest(const Clip& clip, const Actor& stance, LowestOfFeet& lowest);
 
-// The height of the lowest foot joints in stance over a motion: the 20th percentile of what
-// add_lowest() gives. 0 without frames.
-double standing_height(std::vector<float> lowest);
+// The heights of the feet in stance over a motion: the 20th percentile of the lower one's, and of
+// each. 0 without frames.
+struct StandingHeight {
+  double lower = 0;
+  std::array<double, 2> of_foot = {0, 0};
+};
+StandingHeight standing_height(LowestOfFeet lowest);
 
 // The stance of a foot in a frame, each from 0 to 1.
 struct FootStance {

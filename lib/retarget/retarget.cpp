@@ -276,10 +276,11 @@ class Transfer {
              *options_.target_floor;
     }
     if (target_clip_.frame_count() == 0) return std::nullopt;
-    std::vector<float> lowest;
+    LowestOfFeet lowest;
     add_lowest(target_clip_, to, lowest);
-    const double sole = standing_height(std::move(lowest));
-    return is_sole(sole, leg_length(target_, target_roles_)) ? std::optional(sole) : std::nullopt;
+    const double leg = leg_length(target_, target_roles_);
+    const double sole = standing_height(std::move(lowest)).lower;
+    return is_sole(sole, leg) ? std::optional(sole) : std::nullopt;
   }
 
   // Whether foot joints at this height in stance have soles on a floor at 0.
@@ -287,15 +288,40 @@ class Transfer {
     return height > -0.02 * leg && height < 0.08 * leg;
   }
 
+  // By how much each of the source's legs is shorter than the other, beyond what the target's is:
+  // so much higher its foot stands, on level ground. Captures have such legs (2 %), which bent the
+  // knees of even ones by 20 degrees.
+  std::array<double, 2> shorter_by() const {
+    const auto right_over_left = [](const Skeleton& skeleton, const RoleMap& roles) {
+      double longer = 0;
+      for (const LegRoles& leg : kLegRoles) {
+        const int hip = roles.joint(leg.upper), knee = roles.joint(leg.lower);
+        const double length =
+            length_of(skeleton, hip, knee) + length_of(skeleton, knee, roles.joint(leg.foot));
+        longer = length - longer;
+      }
+      return longer;
+    };
+    const double uneven = right_over_left(source_.skeleton, source_roles_) -
+                          right_over_left(target_, target_roles_) / report_->scale;
+    return {std::max(0.0, uneven), std::max(0.0, -uneven)};
+  }
+
   Status prepare_feet(const krok::Feet& feet) {
-    const double standing = standing_height(std::exchange(lowest_, {}));
+    const double leg = leg_length(source_.skeleton, source_roles_);
+    const StandingHeight standing = standing_height(std::exchange(lowest_, {}));
     const auto sole = target_sole(onto());
-    if (sole && is_sole(standing, leg_length(source_.skeleton, source_roles_))) {
-      source_floor_.sole = standing;
-      target_floor_.sole = *sole;
-    } else {
-      source_floor_.motion = standing;
+    const bool has_soles = sole && is_sole(standing.lower, leg);
+    const auto floor_at = [&](double height) {
+      return has_soles ? Floor{height, 0} : Floor{0, height};
+    };
+    source_floor_ = floor_at(standing.lower);
+    const auto uneven = shorter_by();
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double higher = standing.of_foot[side] - standing.lower;
+      floors_of_feet_[side] = floor_at(standing.lower + std::clamp(higher, 0.0, uneven[side]));
     }
+    if (has_soles) target_floor_.sole = *sole;
     target_floor_.motion = report_->scale * source_floor_.motion;
     report_->floor = plan_.floor = target_floor_.motion;
     for (const Role foot : {Role::left_foot, Role::right_foot}) {
@@ -322,8 +348,9 @@ class Transfer {
       for (const SolePoint& point : feet.points[is_left ? 0 : 1]) {
         if (point.part == FootPart::heel) heel = point.offset;
       }
-      auto leg = LegPlacement::create(from(), onto(), turns_, report_->scale, source_floor_,
-                                      target_floor_, is_left, heel, source_points, target_points);
+      auto leg = LegPlacement::create(from(), onto(), turns_, report_->scale,
+                                      floors_of_feet_[is_left ? 0 : 1], target_floor_, is_left,
+                                      heel, source_points, target_points);
       if (!leg) continue;
       (is_left ? report_->left_foot : report_->right_foot).emplace();
       plan_.legs.push_back({std::move(*leg), {}, is_left});
@@ -354,8 +381,8 @@ class Transfer {
       heels[leg.is_left ? 0 : 1] = leg.placement.heel();
     }
     if (options_.touches == Touches::free) return {};
-    plan_.kept = kept_contacts(contacts, from(), onto(), plan_.scale, source_floor_, target_floor_,
-                               source_.rate, stances(), heels);
+    plan_.kept = kept_contacts(contacts, from(), onto(), plan_.scale, floors_of_feet_,
+                               target_floor_, source_.rate, stances(), heels);
     return {};
   }
 
@@ -420,8 +447,9 @@ class Transfer {
   std::vector<Transform> rest_;         // the source's reference pose, joint_to_world
   std::vector<Transform> target_rest_;  // that of the target
   std::vector<Quat> turns_;             // [target joints], alignment of the reference pose
-  std::vector<float> lowest_;           // of add_lowest(), until the floor is known
+  LowestOfFeet lowest_;                 // of add_lowest(), until the floor is known
   Floor source_floor_, target_floor_;
+  std::array<Floor, 2> floors_of_feet_;  // the source's, of left and right: see StandingHeight
   std::optional<TouchKeeping> touches_;  // those of a take that is one block
   TransferPlan plan_;
   std::vector<Transform> poses_;

@@ -438,7 +438,8 @@ void TouchKeeping::place_arms(int frame, std::span<const Transform> source_pose,
 }
 
 std::vector<KeptContact> kept_contacts(std::span<const Contact> contacts, const Actor& source,
-                                       const Actor& target, double scale, const Floor& source_floor,
+                                       const Actor& target, double scale,
+                                       const std::array<Floor, 2>& source_floors,
                                        const Floor& target_floor, double rate,
                                        const StancesOfFeet& feet,
                                        const std::array<std::optional<PointPair>, 2>& heels) {
@@ -450,6 +451,7 @@ std::vector<KeptContact> kept_contacts(std::span<const Contact> contacts, const 
       if (role != leg.foot && role != leg.toes) continue;
       const int onto = target.roles.joint(role);
       if (onto < 0 || target.roles.joint(leg.foot) < 0) continue;
+      const Floor& source_floor = source_floors[is_left ? 0 : 1];
       const auto height = [&](const Actor& actor, int joint, const Floor& floor) {
         return actor.pose[at(joint)].position.y() - lowest_of_foot(actor, leg.foot) + floor.sole +
                floor.motion;
@@ -461,6 +463,7 @@ std::vector<KeptContact> kept_contacts(std::span<const Contact> contacts, const 
                     static_cast<int>(std::floor(contact.end * rate + 1e-6))};
       if (const auto& heel = heels[is_left ? 0 : 1]; heel && role == leg.foot) {
         entry.point = *heel;
+        entry.rise = target_floor.motion - scale * source_floor.motion;
       } else {
         entry.rise = height(target, onto, target_floor) -
                      scale * height(source, contact.joint, source_floor);

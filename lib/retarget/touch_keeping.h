@@ -162,7 +162,8 @@ class TouchKeeping {
 // The contacts of feet that stand by their stances. Heights are those above the actors' floors,
 // `heels` what the ankles' contacts are of.
 std::vector<KeptContact> kept_contacts(std::span<const Contact> contacts, const Actor& source,
-                                       const Actor& target, double scale, const Floor& source_floor,
+                                       const Actor& target, double scale,
+                                       const std::array<Floor, 2>& source_floors,
                                        const Floor& target_floor, double rate,
                                        const StancesOfFeet& feet,
                                        const std::array<std::optional<PointPair>, 2>& heels);

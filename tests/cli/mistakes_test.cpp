@@ -235,6 +235,16 @@ TEST_F(Mistakes, WhatOtherToolsOrOptionsTakeLeadsThere) {
   EXPECT_THAT(refused("krok-export", {"in.bvh", "-o", "a.fbx"}), HasSubstr("read .glb"));
   EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--onto", "0,1 2,3", "-o", "a.anim"}),
               HasSubstr("check the path; --onto IN.model"));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--filter", "butterworth,6", "-o", "a.anim"}),
+              HasSubstr("write --filter butterworth --cutoff 6"));
+  EXPECT_THAT(refused("krok-info", {"in.bvh", "--csv"}), HasSubstr("krok-keys has --table"));
+  EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--onto", "in.bvh", "-o", "a.glb"}),
+              HasSubstr("krok-skin MESH MOTION --retarget"));
+  EXPECT_THAT(refused("krok-walk", {"--path", "way.svg", "-o", "a.anim"}),
+              HasSubstr("which krok-fit makes"));
+  // It was 40 m to the side.
+  EXPECT_THAT(refused("krok-ik", {"in.bvh", "--reach", "Head=-40,110cm,50cm@1f", "-o", "a.anim"}),
+              HasSubstr("write -40cm"));
   // A folder of this name was made.
   EXPECT_THAT(refused("krok-lint", {"in.bvh", "--fix", "-o", "fixed"}),
               HasSubstr("--fix has no value"));

@@ -144,6 +144,13 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
                                     tools.size() == 1 ? "has" : "have"));
       }
     }
+    if (is_long && hints.empty()) {
+      for (const RenamedOption& row : kRenamedOptions) {
+        if (row.before != dashed || row.tool.empty() || !row.now.starts_with("--")) continue;
+        hints.push_back(fmt::format("{} has {}", row.tool, row.now));
+        break;
+      }
+    }
     const std::string near =
         name.size() > 2 ? nearest_name(is_long ? dashed : "-" + dashed, names) : std::string();
     if (!near.empty()) hints.push_back(fmt::format("did you mean '{}'?", near));
@@ -240,8 +247,9 @@ Error CommandLine::parse_error(const std::vector<std::string>& arguments,
   for (const CLI::Option* option : app_.get_options()) {
     if (!option->get_required() || !option->empty()) continue;
     const std::string& type = option->get_type_name();
-    missing = fmt::format("give {}{}; ", option->get_positional() ? "" : option->get_name() + " ",
-                          type.empty() ? option->get_name() : type);
+    missing = fmt::format("give {}{}{}; ", option->get_positional() ? "" : option->get_name() + " ",
+                          type.empty() ? option->get_name() : type,
+                          type.ends_with(".steps") ? ", which krok-fit makes" : "");
     break;
   }
   return Error("usage", error.what(),

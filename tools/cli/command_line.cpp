@@ -270,6 +270,7 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   }
   if (form_ == Form::single && spec_.default_output && output.empty()) {
     output = spec_.default_output();
+    output_is_default = !output.empty();
     std::error_code unknown;
     if (!output.empty() && std::filesystem::exists(output, unknown)) {
       return usage(fmt::format("no output given, and {} exists already", shown(output)),
@@ -291,6 +292,9 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
     return no_output();
   }
   if (Status status = open_folders(); !status) return status.error();
+  if (of_folder) {
+    if (Status status = options_.take_values(); !status) return status.error();
+  }
   // Those of a list stand in part on its lines.
   if (form_ == Form::single || form_ == Form::one_file) {
     if (Status status = options_.check_conditions(); !status) return status.error();

@@ -78,7 +78,8 @@ class CommandLine {
 
   // The common options.
   std::string output;
-  std::string json_path;  // "-" is standard output
+  bool output_is_default = false;  // that of ToolSpec::default_output
+  std::string json_path;           // "-" is standard output
   ProgressStyle style = ProgressStyle::automatic;
   int jobs = 0;
   std::optional<double> limit_seconds;

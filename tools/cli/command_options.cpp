@@ -198,7 +198,8 @@ Status CommandOptions::take_values() const {
 // "--filter 6", where --cutoff 6 goes with --filter butterworth.
 std::string CommandOptions::option_that_takes(const CLI::Option& choice) const {
   const std::string name = name_of(choice);
-  const std::string& text = choice.results().back();
+  std::string text = choice.results().back();
+  text.erase(0, text.find_last_of(",:=") + 1);  // "butterworth,6"
   if (text.find_first_of("0123456789") == std::string::npos) return {};
   for (const DeclaredOption& other : declared_) {
     if (other.option == nullptr || !other.take || other.kind == "choice") continue;

@@ -84,6 +84,23 @@ bool looks_like_radians(std::string_view text) {
   return std::abs(turns - nearest) * 2 * kPi / kParts < std::pow(0.1, digits);
 }
 
+// Of "-40,110cm,50cm" the first would be metres.
+Status alike_units(std::string_view text, char between) {
+  std::string_view bare, unit;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(between, begin), text.size());
+    const std::string_view word = trimmed(text.substr(begin, end - begin));
+    const auto value = parse_finite(word);
+    if (value && *value != 0) bare = word;
+    const std::size_t digits = word.find_last_of("0123456789.") + 1;
+    if (!value && word.substr(digits).ends_with("m")) unit = word.substr(digits);
+    begin = end + 1;
+  }
+  if (bare.empty() || unit.empty()) return {};
+  return Error("quantity-no-unit", fmt::format("'{}' has no unit, others have", shown(bare)),
+               fmt::format("write {}{}", bare, unit));
+}
+
 Result<double> parse_seconds(std::string_view text) {
   const auto time = parse_clip_time(text);
   if (!time) return time.error();
@@ -205,6 +222,11 @@ ValueKind<std::vector<double>> numbers(const std::vector<ValueKind<double>>& kin
       more = end != std::string_view::npos;
       if (more) rest.remove_prefix(end + 1);
     }
+    const bool of_one_kind = std::ranges::all_of(
+        kinds, [&](const ValueKind<double>& kind) { return kind.name == kinds.front().name; });
+    if (of_one_kind) {
+      if (Status status = alike_units(text, between); !status) return status.error();
+    }
     if (!more && values.size() >= least) return values;
     const auto given = 1 + std::ranges::count(text, between);
     return usage(fmt::format("'{}' has too {} values, {}, separated by '{}'", shown(text),
@@ -294,7 +316,8 @@ std::string maker_of(Kind kind, Kind from) {
   switch (kind) {
     case Kind::glb:
     case Kind::gltf:
-      return from == Kind::anim ? "krok-export converts .anim files to glTF"
+      return from == Kind::anim ? "krok-export converts .anim files to glTF, krok-skin MESH MOTION "
+                                  "--retarget puts motions on a character"
                                 : "krok-skin creates glTF from a .model and a .anim file";
     case Kind::bvh:
       return "krok-export converts .anim files to BVH";

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 #include <malloc.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -189,6 +190,12 @@ int run_single(const CommandLine& line) {
     return fail(context, report, error);
   }
   if (!standard_output_written()) return fail(context, report, standard_output_error());
+  // "krok export walk.anim --format csv > walk.csv"
+  struct stat standard_output {};
+  if (line.output_is_default && fstat(STDOUT_FILENO, &standard_output) == 0 &&
+      S_ISREG(standard_output.st_mode) && standard_output.st_size == 0) {
+    context.log("standard output goes to a file, which is left empty: -o - writes there");
+  }
   const bool partly = *done == kExitDone && !context.left_out.empty();
   if (partly) {
     constexpr std::size_t kNamed = 5;

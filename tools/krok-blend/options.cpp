@@ -8,6 +8,7 @@
 
 #include "core/numbers.h"
 #include "formats/csv/table.h"
+#include "formats/io/formats.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::blend {
@@ -90,8 +91,10 @@ ToolSpec make_spec() {
   spec.summary = "Blends motions: a weighted sum, time-aligned by keytimes";
   spec.inputs = "IN.anim:WEIGHT...";
   spec.writes = registry::Kind::anim;
+  spec.folder_endings = io::motion_endings();
   spec.examples = {
       {"krok-blend slow.anim:0.3 fast.anim:0.7 -o brisk.anim", "a blend of two walks"},
+      {"krok-blend walks -o mean.anim", "the mean of all motions of a folder"},
       {"krok-blend walk.anim:@out.csv run.anim:@in.csv -o start.anim --save-warp warp.csv",
        "a transition from walk to run, with weight curves over generic time (columns generic, "
        "weight)"},

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+
 #include <nlohmann/json.hpp>
 
 #include "cli/fixture.h"
@@ -46,6 +48,20 @@ TEST_F(KrokBlend, AMotionWithItselfIsItself) {
   EXPECT_EQ(diff.exit_code, 0) << diff.out << diff.err;
   EXPECT_THAT(listing(),
               UnorderedElementsAre("walk.anim", "quick.anim", "out.anim", "out.keys.json"));
+}
+
+// Its files would have to be listed one by one.
+TEST_F(KrokBlend, AFolderIsAllItsMotions) {
+  std::filesystem::create_directory(path("walks"));
+  for (const char* name : {"walk.anim", "quick.anim"}) {
+    std::filesystem::copy(path(name), path("walks/" + std::string(name)));
+  }
+  ASSERT_EQ(run_here("krok-blend", {"walks", "-o", "mean.anim"}).exit_code, 0);
+  ASSERT_EQ(
+      run_here("krok-blend", {"walks/quick.anim", "walks/walk.anim", "-o", "two.anim"}).exit_code,
+      0);
+  const ToolRun diff = run_here("krok-diff", {"mean.anim", "two.anim", "--tolerance", "0.01mm"});
+  EXPECT_EQ(diff.exit_code, 0) << diff.out << diff.err;
 }
 
 TEST_F(KrokBlend, KeytimesAreFoundAndWritten) {

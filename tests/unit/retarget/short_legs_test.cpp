@@ -8,6 +8,7 @@
 #include "contacts/hip_widths.h"
 #include "contacts/legs.h"
 #include "contacts/sole_points.h"
+#include "motion/local_motion.h"
 #include "plant/follow_feet.h"
 #include "retarget/foot_points.h"
 #include "samples/generator/walk.h"
@@ -279,6 +280,36 @@ TEST(ShortLegs, WhatKneesAreBentByIsReported) {
     EXPECT_GT(std::abs(most), 3);
     EXPECT_NEAR(report.largest_bend / kRadiansPerDegree, most, 1.5);
   }
+}
+
+// Captures whose legs differ by 2 % bent the shorter leg's knee by 20 degrees on even legs, all the
+// way: its foot was kept as much higher as the skeleton has it.
+TEST(ShortLegs, UnevenLegsOfTheInputDoNotBendKnees) {
+  const auto walk = samples::make_walk({});
+  ASSERT_TRUE(walk.ok());
+  Clip uneven = walk->clip;
+  Skeleton& skeleton = uneven.skeleton;
+  const RoleMap roles = find_roles(skeleton);
+  LocalMotion local = local_motion(walk->clip);
+  const std::vector<Transform> even = skeleton.reference;
+  for (int j = 1; j < skeleton.joint_count(); ++j) {
+    const bool shorter =
+        j == roles.joint(Role::left_lower_leg) || j == roles.joint(Role::left_foot);
+    const double scale = shorter ? 0.98 : 1;
+    const std::size_t parent = at(skeleton.parents[at(j)]);
+    skeleton.reference[at(j)].position = skeleton.reference[parent].position +
+                                         scale * (even[at(j)].position - even[parent].position);
+    for (Vec3& position : local.joint_positions(j)) position *= scale;
+  }
+  set_local_motion(local, uneven);
+  const auto made = transfer(uneven, with_other_axes(walk->clip.skeleton, 4), {.scale = 1});
+  ASSERT_TRUE(made.ok());
+  double mean = 0;
+  for (int f = 0; f < uneven.frame_count(); ++f) {
+    mean += (knee_bend(made->clip, f, kLegRoles[0]) - knee_bend(uneven, f, kLegRoles[0])) /
+            uneven.frame_count();
+  }
+  EXPECT_LT(std::abs(mean), 3);
 }
 
 // A leg that is too short for its steps straightened from 25 degrees and more in a frame.
