@@ -54,6 +54,7 @@ class ActorView {
   const Skeleton& skeleton() const { return actor_.skeleton; }
   int joint(Role role) const { return actor_.roles.joint(role); }
   Vec3 place(int joint) const { return actor_.pose[at(joint)].position; }
+  const Quat& orientation(int joint) const { return actor_.pose[at(joint)].orientation; }
 
   // The unit direction between two joints; empty if either is missing or they coincide.
   std::optional<Vec3> direction(int from, int to) const;

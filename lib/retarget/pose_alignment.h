@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,7 +21,9 @@
 // direction of its fingers and of its knuckles (or thumbs, if one side has no more). Feet are
 // turned about the vertical only, since soles are flat in a stance whatever the height of the
 // ankle and the stoop of the trunk, unless the legs lean with the trunk, or their pitch differs by
-// more than 30 degrees and neither is level, or one points up or down.
+// more than 30 degrees and neither is level, or one points up or down. Where the source's soles are
+// tilted to the side, as in reference poses whose legs are spread with the feet as they are below
+// upright ones, the target's are, too.
 
 namespace krok::retarget {
 
@@ -30,9 +34,12 @@ struct Actor {
   std::span<const Transform> pose;  // joint_to_world, shape [joints]
 };
 
-// Shape [target joints]; unmapped joints get the rotation of their parent.
+// Shape [target joints]; unmapped joints get the rotation of their parent. `heels` are those of the
+// source's left and right foot in the ankles' frames, metres, as they are in stance; none if
+// unknown.
 std::vector<Quat> align_by_roles(const Actor& source, const Actor& target,
-                                 const JointMapping& mapping);
+                                 const JointMapping& mapping,
+                                 const std::array<std::optional<Vec3>, 2>& heels = {});
 
 // For skeletons mapped by names: each joint is rotated so that the bones to its mapped children
 // point as the source's; without such children it gets the rotation of its parent.

@@ -107,7 +107,8 @@ class Transfer {
     report_->target_frame = target_stance->frame;
     report_->source_pose = rest_;
     report_->target_pose = target_rest_;
-    if (Status status = by_roles ? prepare_roles() : prepare_names(); !status) {
+    const krok::Feet feet = by_roles ? find_feet(*sample, source_roles_) : krok::Feet();
+    if (Status status = by_roles ? prepare_roles(feet) : prepare_names(); !status) {
       return status.error();
     }
     if (!(report_->scale > 0) || !std::isfinite(report_->scale)) {
@@ -123,7 +124,7 @@ class Transfer {
     for (const Transform& joint : rest_) plan_.rest_back.push_back(joint.orientation.conjugate());
     plan_.scale = report_->path_scale = report_->scale;
     if (by_roles) {
-      if (Status status = prepare_feet(find_feet(*sample, source_roles_)); !status) {
+      if (Status status = prepare_feet(feet); !status) {
         return status.error();
       }
     }
@@ -229,7 +230,18 @@ class Transfer {
     return feet;
   }
 
-  Status prepare_roles() {
+  // Of the source, in the ankles' frames.
+  static std::array<std::optional<Vec3>, 2> heels_of(const krok::Feet& feet) {
+    std::array<std::optional<Vec3>, 2> heels;
+    for (std::size_t side = 0; side < 2; ++side) {
+      for (const SolePoint& point : feet.points[side]) {
+        if (point.part == FootPart::heel) heels[side] = point.offset;
+      }
+    }
+    return heels;
+  }
+
+  Status prepare_roles(const krok::Feet& feet) {
     report_->method = Method::roles;
     bool& left_rests = report_->left_fingers_at_rest = true;
     bool& right_rests = report_->right_fingers_at_rest = true;
@@ -244,7 +256,7 @@ class Transfer {
     if (!status) return status;
     plan_.mapping = map_by_roles(source_.skeleton, source_roles_, target_, target_roles_,
                                  left_rests, right_rests);
-    turns_ = align_by_roles(from(), onto(), plan_.mapping);
+    turns_ = align_by_roles(from(), onto(), plan_.mapping, heels_of(feet));
     report_->scale = options_.scale.value_or(leg_length(target_, target_roles_) /
                                              leg_length(source_.skeleton, source_roles_));
     take_anchor_of_roles();
@@ -343,14 +355,11 @@ class Transfer {
     const std::vector<BodyPoint> target_points =
         options_.target_feet.empty() ? estimated_tips(find_feet(target_clip_, target_roles_))
                                      : options_.target_feet;
+    const auto heels = heels_of(feet);
     for (const bool is_left : {true, false}) {
-      std::optional<Vec3> heel;
-      for (const SolePoint& point : feet.points[is_left ? 0 : 1]) {
-        if (point.part == FootPart::heel) heel = point.offset;
-      }
       auto leg = LegPlacement::create(from(), onto(), turns_, report_->scale,
                                       floors_of_feet_[is_left ? 0 : 1], target_floor_, is_left,
-                                      heel, source_points, target_points);
+                                      heels[is_left ? 0 : 1], source_points, target_points);
       if (!leg) continue;
       (is_left ? report_->left_foot : report_->right_foot).emplace();
       plan_.legs.push_back({std::move(*leg), {}, is_left});

@@ -54,6 +54,37 @@ Skeleton actor_of(double stature, double thigh, double shank, double foot, doubl
   return with_other_axes(skeleton, 11);
 }
 
+// Captures have reference poses with legs spread by 20 degrees and the feet tilted with them. Feet
+// headed inwards by 14 degrees on rigs whose legs are upright there.
+TEST(Feet, LegsSpreadInTheReferencePoseDoNotTurnFeet) {
+  const samples::Walk walk = walk_of({});
+  for (const double angle : {10.0, 20.0, 30.0}) {
+    Clip spread = walk.clip;
+    for (const double sign : {1.0, -1.0}) {
+      spread.skeleton = posed(spread.skeleton, sign > 0 ? "LeftUpLeg" : "RightUpLeg",
+                              from_rotation_vector(Vec3(0, 0, sign * angle * kRadiansPerDegree)));
+    }
+    const auto made = transfer(spread, with_other_axes(walk.clip.skeleton, 4), {.scale = 1});
+    ASSERT_TRUE(made.ok());
+    for (const std::string side : {"Left", "Right"}) {
+      const auto heading = [&](const Clip& clip, int frame, const std::string& prefix) {
+        const auto place = [&](const char* joint) {
+          const int index = clip.skeleton.find(prefix + side + joint);
+          return Vec3(clip.frame_positions(frame)[at(index)].cast<double>());
+        };
+        const Vec3 foot = place("ToeBase") - place("Foot");
+        return std::atan2(foot.x(), foot.z()) / kRadiansPerDegree;
+      };
+      double mean = 0;
+      for (int f = 0; f < walk.clip.frame_count(); ++f) {
+        mean += std::abs(heading(made->clip, f, "rig:") - heading(walk.clip, f, "")) /
+                walk.clip.frame_count();
+      }
+      EXPECT_LT(mean, 2) << side << angle;
+    }
+  }
+}
+
 // Rigs have ankles as low as the toes, or as high as in people. Would fail if the bone of a foot
 // that stands were turned to the other's pitch, and its sole with it.
 TEST(Feet, AnkleHeightsDoNotTiltSoles) {
