@@ -26,23 +26,12 @@ constexpr double kForwards = 0.7;       // cosine to where the toes point
 constexpr double kPointed = 0.5;        // of a foot's length, ahead of the shin
 constexpr double kLookAt = 30;          // poses a second that limits are checked in
 
-Finding finding_of(Rule rule, const Series& series, double value) {
-  const RuleFacts& facts = facts_of(rule);
-  Finding finding;
-  finding.rule = rule;
-  finding.last = std::max(0, series.frames - 1);
-  finding.value = value;
-  finding.threshold = series.threshold(rule);
-  finding.unit = facts.unit;
-  return finding;
-}
-
 void find_unit(const Series& series, MotionFaults& out) {
   const auto stature = stature_of(series.clip.skeleton, series.roles);
   if (!stature) return;
   const double ratio = stature->metres / kUsualStature, limit = series.threshold(Rule::unit);
   if (ratio < limit && ratio > 1 / limit) return;
-  Finding finding = finding_of(Rule::unit, series, ratio);
+  Finding finding = finding_of(Rule::unit, series, ratio, series.whole());
   finding.detail = fmt::format("the body is {} m tall", readable(stature->metres, 3));
   out.findings.push_back(finding);
 }
@@ -100,7 +89,7 @@ void find_bones(const Series& series, MotionFaults& out) {
     }
     const double mean = sum / series.frames;
     if (mean < kShortestBone * series.scale) continue;
-    Finding finding = finding_of(Rule::bone_length, series, 100 * range / mean);
+    Finding finding = finding_of(Rule::bone_length, series, 100 * range / mean, series.whole());
     if (finding.value <= finding.threshold) continue;
     finding.joint = j;
     double farthest = 0, largest = 0;
@@ -141,22 +130,20 @@ void find_limits(const Series& series, MotionFaults& out) {
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     const LegJoints leg = leg_joints(series.roles, side);
     if (leg.upper < 0 || leg.lower < 0 || leg.foot < 0 || leg.toes < 0) continue;
-    Finding finding = finding_of(Rule::joint_limit, series, 0);
+    Finding finding = finding_of(Rule::joint_limit, series, 0, series.whole());
     finding.kind = "knee";
-    finding.joint = leg.lower;
-    int first = -1;
-    for (int f = 0; f < series.frames + stride; f += stride) {
-      const double over =
-          f < series.frames ? knee_bent_forwards(series.clip.frame_positions(f), leg) : 0;
-      if (over > limit) {
-        if (first < 0) first = f, finding.value = 0;
-        if (over > finding.value) finding.value = over, finding.worst = f;
-      } else if (first >= 0) {
-        finding.first = first, finding.last = std::min(f, series.frames) - 1;
-        finding.detail = "bent forwards";
-        if (f - first > kLongEnough * series.rate) found.push_back(finding);
-        first = -1;
-      }
+    finding.joint = leg.lower, finding.detail = "bent forwards";
+    std::vector<double> bent;  // of every `stride`th frame
+    for (int f = 0; f < series.frames; f += stride) {
+      bent.push_back(knee_bent_forwards(series.clip.frame_positions(f), leg));
+    }
+    const auto is_over = [&](int i) { return bent[at(i)] > limit; };
+    for (const auto& [first, end] : runs_of(static_cast<int>(bent.size()), is_over)) {
+      if ((end - first) * stride <= kLongEnough * series.rate) continue;
+      const auto worst = std::max_element(&bent[at(first)], &bent[at(end - 1)] + 1);
+      finding.value = *worst, finding.worst = static_cast<int>(worst - bent.data()) * stride;
+      finding.first = first * stride, finding.last = std::min(end * stride, series.frames) - 1;
+      found.push_back(finding);
     }
   }
   merge_joints(found, 0);
@@ -170,7 +157,7 @@ void find_asymmetry(const Series& series, MotionFaults& out) {
     const auto& reference = series.clip.skeleton.reference;
     return (reference[at(a)].position - reference[at(b)].position).norm();
   };
-  Finding worst = finding_of(Rule::asymmetric_rest_pose, series, 0);
+  Finding worst = finding_of(Rule::asymmetric_rest_pose, series, 0, series.whole());
   const auto compare = [&](std::array<Role, 2> upper, std::array<Role, 2> lower) {
     const double left = length(upper[0], lower[0]), right = length(upper[1], lower[1]);
     if (std::min(left, right) < kShortestBone * series.scale ||
@@ -194,7 +181,7 @@ void find_asymmetry(const Series& series, MotionFaults& out) {
 }
 
 void find_seam(const Series& series, MotionFaults& out) {
-  Finding worst = finding_of(Rule::loop_seam, series, 0);
+  Finding worst = finding_of(Rule::loop_seam, series, 0, series.whole());
   const int last = series.frames - 1;
   const auto local = [&](int joint, int frame) {
     const auto pose = series.clip.frame_orientations(frame);
@@ -227,7 +214,7 @@ void find_body_faults(const Series& series, MotionFaults& out) {
   if (series.frames < 3) return;
   const RestPose rest = find_rest_pose(series.clip, series.roles);
   if (rest.first_frame_is_rest) {
-    Finding finding = finding_of(Rule::rest_frame, series, 1);
+    Finding finding = finding_of(Rule::rest_frame, series, 1, series.whole());
     finding.last = 0;
     finding.detail = rest.reason;
     out.findings.push_back(finding);

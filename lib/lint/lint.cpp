@@ -117,6 +117,16 @@ double Series::fall(int first, int last, bool all) const {
   return 2 * sag / (seconds * seconds) / scale;
 }
 
+Finding finding_of(Rule rule, const Series& series, double value, const Span& span) {
+  Finding finding;
+  finding.rule = rule;
+  finding.first = span.first, finding.last = span.last, finding.worst = span.worst;
+  finding.value = value;
+  finding.unit = facts_of(rule).unit;
+  finding.threshold = series.threshold(rule) * (finding.unit == "m" ? series.scale : 1);
+  return finding;
+}
+
 void merge_joints(std::vector<Finding>& findings, int near) {
   std::ranges::stable_sort(findings, {}, [](const Finding& f) {
     return std::tuple(static_cast<int>(f.rule), f.kind, f.first);

@@ -36,6 +36,10 @@ struct Detail {
 struct Windows {
   int length = 0, stride = 0, count = 0;
   int first(int window) const { return 1 + window * stride; }  // a turn's frame
+  Span span(int window) const {
+    const int before = first(window) - 1;
+    return {before, before + length, before + length / 2};
+  }
 };
 
 Windows windows_of(const Series& series) {
@@ -102,15 +106,9 @@ void find_jitter(const Series& series, int joint, const Windows& windows,
   for (int w = 0; w < windows.count; ++w) {
     const Detail& detail = details[at(w)];
     if (detail.noise <= limit || detail.correlation > kNoiseLike) continue;
-    Finding finding;
-    finding.rule = Rule::jitter;
-    finding.joint = joint;
-    finding.first = windows.first(w) - 1;
-    finding.last = finding.first + windows.length;
-    finding.worst = finding.first + windows.length / 2;
-    finding.value = detail.noise / kRadiansPerDegree;
-    finding.threshold = limit / kRadiansPerDegree, finding.unit = "deg";
-    found.push_back(finding);
+    found.push_back(
+        finding_of(Rule::jitter, series, detail.noise / kRadiansPerDegree, windows.span(w)));
+    found.back().joint = joint;
   }
 }
 
@@ -171,40 +169,24 @@ void find_smooth(const Series& series, const Windows& windows, const DetailOfBod
   for (int w = 0; w < windows.count; ++w) {
     const double less = usual - detail[at(w)];
     if (std::isnan(less) || less < std::log(limit) || less < kDeviations * spread) continue;
-    Finding finding;
-    finding.rule = Rule::over_smooth;
-    finding.first = windows.first(w) - 1;
-    finding.last = finding.first + windows.length;
-    finding.worst = finding.first + windows.length / 2;
-    finding.value = std::exp(less);
-    finding.threshold = limit;
-    finding.detail = "times less detail than the rest of the motion";
-    found.push_back(finding);
+    found.push_back(finding_of(Rule::over_smooth, series, std::exp(less), windows.span(w)));
+    found.back().detail = "times less detail than the rest of the motion";
   }
 }
 
 void find_frozen(const Series& series, std::vector<Finding>& found) {
   const int shortest = series.frames_in(series.threshold(Rule::frozen), 3);
-  int still = 0;
   const auto moving =
       std::ranges::count_if(series.moved, [](float moved) { return moved > 1e-4F; });
   // A pose that is held all the time is a pose and no fault.
   if (moving < series.frames / 10 + 2) return;
-  for (int f = 1; f <= series.frames; ++f) {
-    if (f < series.frames && series.moved[at(f)] < kStill) {
-      ++still;
-      continue;
-    }
-    if (still >= shortest) {
-      Finding finding;
-      finding.rule = Rule::frozen;
-      finding.first = f - 1 - still, finding.last = f - 1;
-      finding.worst = finding.first;
-      finding.value = std::min(kFrozenLongest, still / series.rate);
-      finding.threshold = shortest / series.rate, finding.unit = "s";
-      found.push_back(finding);
-    }
-    still = 0;
+  const auto is_still = [&](int f) { return f > 0 && series.moved[at(f)] < kStill; };
+  for (const auto& [first, end] : runs_of(series.frames, is_still)) {
+    if (end - first < shortest) continue;
+    found.push_back(finding_of(Rule::frozen, series,
+                               std::min(kFrozenLongest, (end - first) / series.rate),
+                               {first - 1, end - 1, first - 1}));
+    found.back().threshold = shortest / series.rate;
   }
 }
 

@@ -45,11 +45,10 @@ void find_doubled(const Series& series, MotionFaults& out) {
     doubled += series.moved[at(f)] < kStill && next ? 1 : 0;
   }
   if (moving < 10 || doubled < kDoubled * moving) return;
-  Finding finding;
-  finding.rule = Rule::frame_rate;
+  Finding finding =
+      finding_of(Rule::frame_rate, series,
+                 static_cast<double>(moving) / std::max(1, moving - doubled), series.whole());
   finding.kind = "doubled";
-  finding.last = series.frames - 1;
-  finding.value = static_cast<double>(moving) / std::max(1, moving - doubled);
   finding.threshold = 1 / (1 - kDoubled);
   finding.detail = "frames for each one that moves";
   out.findings.push_back(finding);
@@ -85,24 +84,22 @@ std::vector<Swing> swings_of(const Series& series, Role role) {
   const double usual = high_of(95);
   std::erase_if(sorted, [&](double speed) { return speed < 0.1 * usual; });
   const double limit = kSwingSpeed * high_of(91);
-  int first = -1;
-  for (int f = 1; f < series.frames; ++f) {
-    const bool fast = speeds[at(f)] > limit;
-    if (fast && first < 0) first = f;
-    if (fast || first < 0) continue;
-    Vec3f moved = place(f) - place(first - 1);
+  const auto is_fast = [&](int f) { return speeds[at(f)] > limit; };
+  for (const auto& [first, end] : runs_of(series.frames, is_fast)) {
+    Vec3f moved = place(end) - place(first - 1);
     const double way = moved.norm() / series.scale;
     moved.y() = 0;
-    if (first > 1 && way > kShortestStep && way < kLongestStep && is_below_hips((first + f) / 2)) {
-      // Fractions of frames at both ends.
-      const auto crossing = [&](int a, int b) {
-        const double rise = std::abs(speeds[at(b)] - speeds[at(a)]);
-        return rise > 0 ? std::abs(speeds[at(b)] - limit) / rise : 0.5;
-      };
-      const double part = crossing(first - 1, first) + crossing(f, f - 1);
-      swings.push_back({first, f, (f - 1 - first + part) / series.rate, moved});
+    if (first < 2 || way <= kShortestStep || way >= kLongestStep ||
+        !is_below_hips((first + end) / 2)) {
+      continue;
     }
-    first = -1;
+    // Fractions of frames at both ends.
+    const auto crossing = [&](int a, int b) {
+      const double rise = std::abs(speeds[at(b)] - speeds[at(a)]);
+      return rise > 0 ? std::abs(speeds[at(b)] - limit) / rise : 0.5;
+    };
+    const double part = crossing(first - 1, first) + crossing(end, end - 1);
+    swings.push_back({first, end, (end - 1 - first + part) / series.rate, moved});
   }
   return swings;
 }
@@ -185,11 +182,8 @@ void find_speed(const Series& series, MotionFaults& out) {
   const double limit = series.threshold(Rule::frame_rate);
   const double factor = runs ? std::sqrt(kFall / *found) : *found / usual;
   if (factor < limit && factor > 1 / limit) return;
-  Finding finding;
-  finding.rule = Rule::frame_rate;
+  Finding finding = finding_of(Rule::frame_rate, series, factor, series.whole());
   finding.kind = factor > 1 ? "slow" : "fast";
-  finding.last = series.frames - 1;
-  finding.value = factor, finding.threshold = limit;
   finding.detail = runs ? fmt::format("falls with {} m/s2 in a run, people do with {} m/s2",
                                       readable(*found, 2), readable(kFall, 3))
                         : fmt::format("swings of {} s, people's take {} s", readable(*found, 2),

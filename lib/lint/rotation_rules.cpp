@@ -281,14 +281,10 @@ void find_flips(const Series& series, int joint, std::span<const Vec3f> turns,
   for (int f = 1; f < series.frames; ++f) {
     const float size = turns[at(f)].norm();
     if (size < limit) continue;
-    Finding finding;
-    finding.rule = Rule::flip;
-    finding.kind = about_own_bone(series, joint, turns[at(f)]) ? "twist" : "limb";
-    finding.joint = joint;
-    finding.first = f - 1, finding.last = finding.worst = f;
-    finding.value = 2 * std::asin(std::min(1.0F, size / 2)) / kRadiansPerDegree;
-    finding.threshold = degrees, finding.unit = "deg";
-    flips.push_back(finding);
+    const double turned = 2 * std::asin(std::min(1.0F, size / 2)) / kRadiansPerDegree;
+    Finding& flip = flips.emplace_back(finding_of(Rule::flip, series, turned, {f - 1, f, f}));
+    flip.kind = about_own_bone(series, joint, turns[at(f)]) ? "twist" : "limb";
+    flip.joint = joint, flip.threshold = degrees;
   }
 }
 
@@ -301,16 +297,17 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
   std::vector<float> sizes;
   const std::vector<int> joints = moving(series);
   const auto add = [&](const Pop& pop, int joint, bool path) {
-    Finding finding;
-    finding.rule = Rule::pop;
+    Finding& finding = (pop.kind == PopKind::kink ? kinks : pops)
+                           .emplace_back(finding_of(Rule::pop, series, pop.value,
+                                                    {pop.first, pop.last, pop.worst}));
     finding.kind = pop.kind == PopKind::spike ? "spike" : "step";
     finding.joint = joint;
-    finding.first = pop.first, finding.last = pop.last, finding.worst = pop.worst;
-    finding.value = path ? pop.value : pop.value / kRadiansPerDegree;
-    finding.threshold = path ? kMinPath * series.scale : degrees;
-    finding.unit = path ? "m" : "deg";
-    if (path) finding.detail = "path of the hips";
-    (pop.kind == PopKind::kink ? kinks : pops).push_back(std::move(finding));
+    if (path) {
+      finding.threshold = kMinPath * series.scale, finding.unit = "m";
+      finding.detail = "path of the hips";
+    } else {
+      finding.value /= kRadiansPerDegree;
+    }
   };
   const auto limit = static_cast<float>(degrees * kRadiansPerDegree);
   for (const int j : joints) {

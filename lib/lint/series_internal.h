@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "lint/lint.h"
@@ -7,6 +8,11 @@
 // What the rules of one motion share.
 
 namespace krok::lint {
+
+// Frames of a finding, inclusive, and the one at which it shows best.
+struct Span {
+  int first = 0, last = 0, worst = 0;
+};
 
 // A motion as the rules look at it.
 struct Series {
@@ -27,6 +33,7 @@ struct Series {
   // twice the vector part of its quaternion, [frames]; the first is zero.
   std::vector<Vec3f> turns_of(int joint) const;
   int frames_in(double seconds, int at_least) const;
+  Span whole() const { return {0, frames > 0 ? frames - 1 : 0, 0}; }
   // The hips' mean acceleration downwards, metres per second squared of legs of 0.86 m; `all`: that
   // of the mean of all joints.
   double fall(int first, int last, bool all = false) const;
@@ -37,6 +44,21 @@ struct Series {
 
 // Radians or metres a frame, more than rounding leaves of a pose that is held.
 inline constexpr float kStill = 2e-5F;
+
+// With the rule's limit and unit; limits in metres scale with the legs.
+Finding finding_of(Rule rule, const Series& series, double value, const Span& span);
+
+// The runs [first, end) of frames of which something is so.
+template <class Is>
+std::vector<std::pair<int, int>> runs_of(int frames, const Is& is) {
+  std::vector<std::pair<int, int>> runs;
+  for (int f = 0; f < frames; ++f) {
+    if (!is(f)) continue;
+    if (runs.empty() || runs.back().second < f) runs.emplace_back(f, f);
+    runs.back().second = f + 1;
+  }
+  return runs;
+}
 
 // One finding for all joints with the same fault at the same time: of findings of one rule and kind
 // that overlap in time (or are `near` frames apart) the worst stays and counts the others' joints.
