@@ -21,9 +21,11 @@ namespace {
 constexpr double kUsualStature = 1.72;  // metres
 constexpr double kMinChange = 0.0025;   // metres, of a bone
 constexpr double kShortestBone = 0.02;  // metres
+constexpr double kCollar = 10;          // times the threshold; shoulder blades glide on the ribs
 constexpr double kLongEnough = 0.1;     // seconds beyond a limit
 constexpr double kForwards = 0.7;       // cosine to where the toes point
 constexpr double kPointed = 0.5;        // of a foot's length, ahead of the shin
+constexpr double kTurnedOut = 0.7;      // cosine from the line of the hips to where the toes point
 constexpr double kLookAt = 30;          // poses a second that limits are checked in
 
 void find_unit(const Series& series, MotionFaults& out) {
@@ -90,7 +92,9 @@ void find_bones(const Series& series, MotionFaults& out) {
     const double mean = sum / series.frames;
     if (mean < kShortestBone * series.scale) continue;
     Finding finding = finding_of(Rule::bone_length, series, 100 * range / mean, series.whole());
-    if (finding.value <= finding.threshold) continue;
+    const Role role = series.roles.roles[at(j)];
+    const bool collar = role == Role::left_collar || role == Role::right_collar;
+    if (finding.value <= (collar ? kCollar : 1) * finding.threshold) continue;
     finding.joint = j;
     double farthest = 0, largest = 0;
     for (int f = 0; f < series.frames; ++f) {
@@ -108,7 +112,7 @@ void find_bones(const Series& series, MotionFaults& out) {
 
 // Degrees by which a knee is bent forwards: the shin out of the thigh's direction to where the toes
 // point. From places alone, so that reference poses and axes of joints do not matter.
-double knee_bent_forwards(std::span<const Vec3f> places, const LegJoints& leg) {
+double knee_bent_forwards(std::span<const Vec3f> places, const LegJoints& leg, int other_hip) {
   const auto place = [&](int joint) -> Vec3 { return places[at(joint)].cast<double>(); };
   Vec3 thigh = place(leg.lower) - place(leg.upper), shin = place(leg.foot) - place(leg.lower);
   const Vec3 foot = place(leg.toes) - place(leg.foot);
@@ -118,6 +122,9 @@ double knee_bent_forwards(std::span<const Vec3f> places, const LegJoints& leg) {
   const Vec3 ahead = foot - foot.dot(shin) * shin;
   if (ahead.norm() < kPointed * foot.norm()) return 0;  // toes point along the shin
   const Vec3 forwards = ahead.normalized();
+  // Turned out or held beside the other knee, as in a dance, toes do not show where knees point.
+  const Vec3 across = place(other_hip) - place(leg.upper);
+  if (std::abs(forwards.dot(across)) > kTurnedOut * across.norm()) return 0;
   const Vec3 bend = shin.dot(thigh) * shin - thigh;  // at a right angle to the shin, too
   if (!(bend.norm() > 1e-6) || bend.normalized().dot(forwards) < kForwards) return 0;
   return std::atan2(bend.norm(), shin.dot(thigh)) / kRadiansPerDegree;
@@ -129,13 +136,15 @@ void find_limits(const Series& series, MotionFaults& out) {
   std::vector<Finding> found;
   for (const FootSide side : {FootSide::left, FootSide::right}) {
     const LegJoints leg = leg_joints(series.roles, side);
-    if (leg.upper < 0 || leg.lower < 0 || leg.foot < 0 || leg.toes < 0) continue;
+    const auto other = side == FootSide::left ? FootSide::right : FootSide::left;
+    const int other_hip = leg_joints(series.roles, other).upper;
+    if (std::min({leg.upper, leg.lower, leg.foot, leg.toes, other_hip}) < 0) continue;
     Finding finding = finding_of(Rule::joint_limit, series, 0, series.whole());
     finding.kind = "knee";
     finding.joint = leg.lower, finding.detail = "bent forwards";
     std::vector<double> bent;  // of every `stride`th frame
     for (int f = 0; f < series.frames; f += stride) {
-      bent.push_back(knee_bent_forwards(series.clip.frame_positions(f), leg));
+      bent.push_back(knee_bent_forwards(series.clip.frame_positions(f), leg, other_hip));
     }
     const auto is_over = [&](int i) { return bent[at(i)] > limit; };
     for (const auto& [first, end] : runs_of(static_cast<int>(bent.size()), is_over)) {

@@ -12,9 +12,10 @@ namespace krok::lint {
 
 namespace {
 
-constexpr double kWindow = 0.5;           // seconds
-constexpr double kMedianOfNorm = 1.538;   // of three normal variables (Maxwell distribution)
-constexpr double kFourthDifference = 70;  // its variance over that of white noise: 1+16+36+16+1
+constexpr double kWindow = 0.5;            // seconds
+constexpr double kMedianOfNorm = 1.538;    // of three normal variables (Maxwell distribution)
+constexpr double kQuartileOfNorm = 1.101;  // the lower one
+constexpr double kFourthDifference = 70;   // its variance over that of white noise: 1+16+36+16+1
 // Lag-1 correlation of accelerations: -2/3 for white noise, near 1 for a smooth motion.
 constexpr double kNoiseLike = -0.45;
 constexpr float kMoves = 2e-3F;          // rad a frame
@@ -28,6 +29,7 @@ constexpr double kEase = 0.75;
 // What a window of one joint shows; the windows overlap by half.
 struct Detail {
   float noise = 0;        // rad, the standard deviation of each axis
+  float jitter = 0;       // the same by the calmer quarter of the window
   float correlation = 1;  // of successive accelerations
   float speed = 0;        // rad a frame, root mean square
   float usual = 0;        // rad a frame, of the slower half, which a jump leaves as it is
@@ -58,9 +60,10 @@ struct Sizes {
   std::vector<float> sorted;
 };
 
-// Details of one joint, [windows]; without noise where it is slower than `still`, rad a frame.
-void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, Sizes& sizes,
-             std::vector<Detail>& details) {
+// Details of one joint, [windows]; without noise where it is slower than `still`, rad a frame, and
+// jitter where noise is not over the limit.
+void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, double limit,
+             Sizes& sizes, std::vector<Detail>& details) {
   for (auto* list : {&sizes.turn, &sizes.acceleration, &sizes.product, &sizes.noise}) {
     list->resize(turns.size());
   }
@@ -94,9 +97,15 @@ void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, 
       return sizes.noise.begin() + static_cast<std::ptrdiff_t>(f);
     };
     sizes.sorted.assign(place(first + 3), place(end));
-    const auto middle = sizes.sorted.begin() + static_cast<std::ptrdiff_t>(sizes.sorted.size() / 2);
-    std::ranges::nth_element(sizes.sorted, middle);
-    detail.noise = static_cast<float>(std::sqrt(*middle / kFourthDifference) / kMedianOfNorm);
+    const auto quantile = [&](std::size_t quarters, double of_norm) {
+      const auto nth =
+          sizes.sorted.begin() + static_cast<std::ptrdiff_t>(quarters * sizes.sorted.size() / 4);
+      std::ranges::nth_element(sizes.sorted, nth);
+      return static_cast<float>(std::sqrt(*nth / kFourthDifference) / of_norm);
+    };
+    detail.noise = quantile(2, kMedianOfNorm);
+    // A jerky gesture of half of the window is no noise.
+    if (detail.noise > limit) detail.jitter = quantile(1, kQuartileOfNorm);
   }
 }
 
@@ -105,7 +114,7 @@ void find_jitter(const Series& series, int joint, const Windows& windows,
   const double limit = series.threshold(Rule::jitter) * kRadiansPerDegree;
   for (int w = 0; w < windows.count; ++w) {
     const Detail& detail = details[at(w)];
-    if (detail.noise <= limit || detail.correlation > kNoiseLike) continue;
+    if (detail.jitter <= limit || detail.correlation > kNoiseLike) continue;
     found.push_back(
         finding_of(Rule::jitter, series, detail.noise / kRadiansPerDegree, windows.span(w)));
     found.back().joint = joint;
@@ -198,14 +207,14 @@ void find_noise_faults(const Series& series, MotionFaults& out) {
     const Windows windows = windows_of(series);
     DetailOfBody body(windows.count);
     // Noise is at most 1.14 times the speed, so slower joints have none that counts.
-    const float still = std::min(
-        kMoves, static_cast<float>(series.threshold(Rule::jitter) * kRadiansPerDegree / 1.2));
+    const double limit = series.threshold(Rule::jitter) * kRadiansPerDegree;
+    const float still = std::min(kMoves, static_cast<float>(limit / 1.2));
     Sizes sizes;
     std::vector<Detail> details;
     for (int j = 0; j < series.joints; ++j) {
       if (std::sqrt(series.largest[at(j)]) < 0.99F * still) continue;
       if (series.clip.skeleton.end_sites[at(j)] != 0) continue;
-      look_at(series.turns_of(j), windows, still, sizes, details);
+      look_at(series.turns_of(j), windows, still, limit, sizes, details);
       // Toes give way to the ground and spring back, as fast as noise.
       const Role role = series.roles.roles[at(j)];
       if (role != Role::left_toes && role != Role::right_toes) {

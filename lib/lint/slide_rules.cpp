@@ -13,16 +13,18 @@ namespace krok::lint {
 
 namespace {
 
-constexpr double kShortestSlide = 0.1;  // seconds
-constexpr double kResting = 0.045;      // metres per second; slower is rest
-constexpr double kCreeping = 0.2;       // metres per second; faster is a slide or a step
-constexpr double kCreepTime = 1;        // seconds
-constexpr double kStayTime = 2;         // seconds
-constexpr double kMinCreep = 1.35;      // times the threshold of foot-slide
-constexpr double kTogether = 0.35;      // difference of two feet's velocities over their size
-constexpr double kLift = 0.012;         // metres; a foot that is lifted by more steps
-constexpr double kLongestLift = 0.3;    // seconds
-constexpr double kHipsStay = 0.2;       // of how far feet slide
+constexpr double kShortestSlide = 0.1;   // seconds
+constexpr double kResting = 0.045;       // metres per second; slower is rest
+constexpr double kCreeping = 0.2;        // metres per second; faster is a slide or a step
+constexpr double kCreepTime = 1;         // seconds
+constexpr double kStayTime = 2;          // seconds
+constexpr double kMinCreep = 1.35;       // times the threshold of foot-slide
+constexpr double kTogether = 0.35;       // difference of two feet's velocities over their size
+constexpr double kLift = 0.012;          // metres; a foot that is lifted by more steps
+constexpr double kLongestLift = 0.3;     // seconds
+constexpr double kShuffle = 0.8;         // metres per second; what is faster for a short time steps
+constexpr double kLongestShuffle = 0.4;  // seconds
+constexpr double kHipsStay = 0.2;        // of how far feet slide
 
 // Whether a foot is higher for a short time, [first, end) with the fastest frame among it, than
 // before and after: a low step.
@@ -70,7 +72,11 @@ void find_moving(const Series& series, const Soles& soles, std::vector<Finding>&
     const Rule rule = is_carried(soles, first, end) ? Rule::drift : Rule::foot_slide;
     Finding finding = finding_of(rule, series, way.norm(), {first, end - 1, worst});
     const int track = soles.bearing[at(worst)];
-    if (finding.value <= finding.threshold ||
+    // Out of a rest; what is carried away slides from its landing on.
+    const bool shuffles = rule == Rule::foot_slide && speed(worst) > kShuffle * series.scale &&
+                          first > 0 && soles.bearing[at(first - 1)] >= 0 &&
+                          end - first <= series.frames_in(kLongestShuffle, 1);
+    if (finding.value <= finding.threshold || shuffles ||
         is_lifted(series, soles.places[at(track)], first, end, worst)) {
       continue;
     }

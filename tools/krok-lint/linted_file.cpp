@@ -35,8 +35,10 @@ using krok::lint::Finding;
 // Files that are open at once.
 constexpr std::size_t kOpenFiles = 64;
 
+// By the animation's name in a file of several.
 bool is_named_loop(const LintedFile& file) {
-  const std::string name = ascii_lower(name_of_input(file.path) + " " + file.animation);
+  const std::string name =
+      ascii_lower(file.animation.empty() ? name_of_input(file.path) : file.animation);
   return name.find("loop") != std::string::npos || name.find("cycle") != std::string::npos;
 }
 
@@ -193,8 +195,11 @@ Status lint_frames(const FrameSource& motion, const Clip* whole,
     return found;
   };
   const auto mine = options_for(file, options, how);
-  auto faults = whole != nullptr ? Result(judge(*whole, mine))
-                                 : krok::lint::lint_long_take(motion, mine, 1, judge);
+  const auto look = [&](const krok::lint::MotionOptions& by) {
+    return whole != nullptr ? Result(judge(*whole, by))
+                            : krok::lint::lint_long_take(motion, by, 1, judge);
+  };
+  auto faults = look(mine);
   if (!faults) return faults.error();
   file.findings.insert(file.findings.end(), std::make_move_iterator(faults->findings.begin()),
                        std::make_move_iterator(faults->findings.end()));
@@ -202,8 +207,7 @@ Status lint_frames(const FrameSource& motion, const Clip* whole,
   if (!options.save_baseline.empty()) {
     krok::lint::MotionOptions lower = mine;
     lower.settings = krok::lint::near_limits(mine.settings);
-    auto near = whole != nullptr ? Result(judge(*whole, lower))
-                                 : krok::lint::lint_long_take(motion, lower, 1, judge);
+    auto near = look(lower);
     if (!near) return near.error();
     file.near = std::move(near->findings);
   }

@@ -32,10 +32,6 @@ bool has(const LintedFile& file, Rule rule) {
   return std::ranges::any_of(file.findings, [&](const Finding& f) { return f.rule == rule; });
 }
 
-bool can_be_mended(const LintedFile& file) {
-  return has(file, Rule::pop) || has(file, Rule::flip) || has(file, Rule::foot_slide);
-}
-
 // A mended motion, and what was done.
 struct Repair {
   Clip clip;
@@ -109,7 +105,9 @@ Status fix_all(const Options& options, const krok::lint::MotionOptions& how,
   std::set<std::string> names;
   Json list = Json::array();
   for (const LintedFile& file : files) {
-    if (file.error || !can_be_mended(file)) continue;
+    const bool can_be =
+        has(file, Rule::pop) || has(file, Rule::flip) || has(file, Rule::foot_slide);
+    if (file.error || !can_be) continue;
     io::PlainInputs inputs;
     auto actor = io::open_actor(file.path, inputs, {.clip = file.animation, .with_mesh = false});
     if (!actor) return actor.error();
@@ -271,9 +269,7 @@ Status write_reports(const Options& options, const krok::lint::Settings& setting
     }
     const auto page = page_of(order, players, context);
     if (!page) return page.error();
-    if (Status status = outputs.add(options.html, *page); !status) {
-      return status;
-    }
+    if (Status status = outputs.add(options.html, *page); !status) return status;
   }
   if (Status status = outputs.finish(); !status) return status;
   folders.keep();

@@ -257,6 +257,18 @@ TEST_F(KrokLint, EachAnimationOfAFileIsJudged) {
                                   "walk [duplicate]"));
 }
 
+// Would fail if each animation of a file that is named for its loops were one.
+TEST_F(KrokLint, APackOfLoopsHasOtherAnimations) {
+  write_walk(8);
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--to", "2.3s", "-o", "cut.anim"}).exit_code, 0);
+  ASSERT_EQ(run_here("krok-body", {"walk.anim", "-o", "body.model"}).exit_code, 0);
+  ASSERT_EQ(
+      run_here("krok-skin", {"body.model", "walk.anim", "cut.anim", "-o", "loops.glb"}).exit_code,
+      0);
+  EXPECT_EQ(run_here("krok-lint", {"loops.glb", "--only", "loop-seam"}).exit_code, 0);
+  EXPECT_EQ(run_here("krok-lint", {"loops.glb", "--only", "loop-seam", "--loops"}).exit_code, 1);
+}
+
 // Would fail if a file with an animation for each joint were as many motions of one joint.
 TEST_F(KrokLint, AnAnimationForEachJointIsNoMotion) {
   write_walk(8);

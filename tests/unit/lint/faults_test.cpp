@@ -659,6 +659,87 @@ TEST(LintFaults, LowStepsAreNoSlides) {
   }
 }
 
+// Would fail if a foot that leaves its rest and goes 20 cm along the ground in a quarter of a
+// second, as in a dance, slid there; a slower one does.
+TEST(LintFaults, QuickFeetShuffle) {
+  for (const double duration : {0.25, 0.8}) {
+    const Clip clip = stander(0, [&](double seconds) {
+      const double part = std::clamp((seconds - 2) / duration, 0.0, 1.0);
+      return std::pair(Vec3(0.2 * part * part * (3 - 2 * part), 0, 0), 0.0);
+    });
+    EXPECT_EQ(slides(clip), duration > 0.5) << duration;
+  }
+}
+
+// Would fail if a jerky gesture of a third of a second shook, as a joint with noise for a second
+// does.
+TEST(LintFaults, JerksAreNoJitter) {
+  for (const int frames : {8, 60}) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> noise(0, 2 * kRadiansPerDegree);
+    const Clip clip = changed(usual_walk(30), [&](LocalMotion& m, Clip& c) {
+      auto all = m.joint_orientations(c.skeleton.find("LeftHand"));
+      for (int f = 70; f < std::min(m.frames, 70 + frames); ++f) {
+        all[at(f)] =
+            all[at(f)] * from_rotation_vector(Vec3(noise(random), noise(random), noise(random)));
+      }
+    });
+    const auto faults = faults_of(clip);
+    const bool found = std::ranges::any_of(
+        faults.findings, [](const lint::Finding& one) { return one.rule == Rule::jitter; });
+    EXPECT_EQ(found, frames > 10) << listed(clip, faults);
+  }
+}
+
+// Would fail if a forearm that starts to turn from one frame to the next, and goes on, jumped.
+TEST(LintFaults, QuickStartsAreNoJumps) {
+  for (const double speed : {0.7, 0.0}) {
+    const Clip clip = changed(usual_walk(30), [&](LocalMotion& m, Clip& c) {
+      auto all = m.joint_orientations(c.skeleton.find("LeftForeArm"));
+      double turned = 0, now = 20;
+      for (int f = 75; f < m.frames; ++f, now *= speed) {
+        turned += now;
+        all[at(f)] = all[at(f)] * turn(turned);
+      }
+    });
+    const auto faults = faults_of(clip);
+    EXPECT_EQ(find(faults, Rule::pop, 75) == nullptr, speed > 0) << listed(clip, faults);
+  }
+}
+
+// Would fail if toes that lie down on the ground within a frame jumped, at 30 frames a second.
+TEST(LintFaults, ToesLieDownWithinAFrame) {
+  for (const double rate : {30.0, 60.0}) {
+    const Clip clip = changed(usual_walk(rate), [](LocalMotion& m, Clip& c) {
+      auto all = m.joint_orientations(c.skeleton.find("LeftToeBase"));
+      for (int f = kAt / 2; f < m.frames; ++f) all[at(f)] = all[at(f)] * turn(30);
+    });
+    EXPECT_EQ(find(faults_of(clip), Rule::pop, kAt / 2) == nullptr, rate < 40)
+        << listed(clip, faults_of(clip));
+  }
+}
+
+// Would fail if the knee of a foot that is turned out, as in ballet, bent forwards.
+TEST(LintFaults, TurnedOutFeetDoNotBendKnees) {
+  Clip clip = usual_walk();
+  const auto joint = [&](const char* name) { return at(clip.skeleton.find(name)); };
+  for (const bool out : {false, true}) {
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      const auto places = clip.frame_positions(f);
+      const Vec3f hip = places[joint("LeftUpLeg")];
+      const Vec3f across = (hip - places[joint("RightUpLeg")]).normalized();
+      const Vec3f ahead = out ? across : Vec3f(across.cross(Vec3f::UnitY()).normalized());
+      places[joint("LeftLeg")] = hip - 0.4F * Vec3f::UnitY() - 0.15F * ahead;
+      places[joint("LeftFoot")] = hip - 0.8F * Vec3f::UnitY();
+      places[joint("LeftToeBase")] = places[joint("LeftFoot")] + 0.15F * ahead;
+    }
+    const auto faults = faults_of(clip);
+    const bool found = std::ranges::any_of(
+        faults.findings, [](const lint::Finding& one) { return one.rule == Rule::joint_limit; });
+    EXPECT_EQ(found, !out) << listed(clip, faults);
+  }
+}
+
 // Would fail if feet that settle by 6 cm within eight seconds, which nobody sees, slid.
 TEST(LintFaults, FeetSettleSlowly) {
   for (const double duration : {1.5, 8.0}) {
@@ -764,6 +845,20 @@ TEST(LintFaults, PointedToesDoNotBendKnees) {
     const bool found = std::ranges::any_of(
         faults.findings, [](const lint::Finding& one) { return one.rule == Rule::joint_limit; });
     EXPECT_EQ(found, back > 1) << listed(clip, faults);
+  }
+}
+
+// Would fail if shoulder blades that glide on the ribs were bones that grow, as a forearm is.
+TEST(LintFaults, ShoulderBladesGlide) {
+  for (const char* name : {"LeftShoulder", "LeftForeArm"}) {
+    const Clip clip = changed(usual_walk(), [&](LocalMotion& m, Clip& c) {
+      auto places = m.joint_positions(c.skeleton.find(name));
+      for (int f = 0; f < m.frames; ++f) places[at(f)] *= 1 + 0.06 * std::sin(0.05 * f);
+    });
+    const auto faults = faults_of(clip);
+    const bool found = std::ranges::any_of(
+        faults.findings, [](const lint::Finding& one) { return one.rule == Rule::bone_length; });
+    EXPECT_EQ(found, std::string(name) == "LeftForeArm") << listed(clip, faults);
   }
 }
 
