@@ -105,6 +105,7 @@ class KeytimeFinder {
     std::erase_if(gait.keytimes, [&](const Keytime& key) { return !feet_.upright(key.time); });
     std::ranges::stable_sort(gait.keytimes, {}, &Keytime::time);
     make_alternate(gait);
+    leave_out_cut_swings(gait);
     for (std::size_t i = 1; i < gait.keytimes.size(); ++i) {
       gait.keytimes[i].time = std::max(gait.keytimes[i].time, gait.keytimes[i - 1].time + kApart);
     }
@@ -112,6 +113,23 @@ class KeytimeFinder {
   }
 
  private:
+  // A foot that is still behind as the clip ends may slow down, and be taken for one that strikes.
+  void leave_out_cut_swings(Gait& gait) const {
+    constexpr double kNearEnd = 0.2, kWholeSwing = 0.55;  // seconds; of the usual swing
+    const double usual = usual_length(gait.keytimes, false);
+    std::vector<Keytime>& keytimes = gait.keytimes;
+    for (const std::string side : {"left", "right"}) {
+      const auto of_side = [&](const Keytime& key) { return key.name.starts_with(side); };
+      const auto last = std::ranges::find_if(keytimes.rbegin(), keytimes.rend(), of_side);
+      if (last == keytimes.rend() || !last->name.ends_with("strike")) continue;
+      const auto before = std::ranges::find_if(std::next(last), keytimes.rend(), of_side);
+      if (before == keytimes.rend() || !before->name.ends_with("off")) continue;
+      const bool is_cut = last->time > clip_.duration() - kNearEnd &&
+                          last->time - before->time < kWholeSwing * usual;
+      if (is_cut) keytimes.erase(std::next(last).base());
+    }
+  }
+
   // The median time from the strikes of both feet to their next toe-offs, or from toe-offs to
   // strikes; 0 if there is none.
   static double usual_length(const std::vector<Keytime>& keytimes, bool of_stances) {

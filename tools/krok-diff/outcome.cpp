@@ -179,9 +179,12 @@ const Row* worst_row(const Outcome& outcome) {
 // "positions 28.6 mm (286 x the tolerance) at vertex 12 of body, frame 32 (1.067 s)"
 std::string to_text(const Row& row, const Outcome& outcome) {
   const compare::Measure& measure = row.measure;
+  // --tolerance is of lengths.
+  const std::string which =
+      row.unit == Unit::length ? "" : " of " + in_unit(measure.tolerance, row.unit);
   const std::string excess =
       measure.tolerance > 0
-          ? fmt::format(" ({} x the tolerance)", readable(excess_of(measure), kDigits))
+          ? fmt::format(" ({} x the tolerance{})", readable(excess_of(measure), kDigits), which)
           : "";
   return fmt::format("{} {}{}{} at {}", row.what, row.at_least ? "at least " : "",
                      in_unit(measure.largest, row.unit), excess,

@@ -69,7 +69,8 @@ Result<Description> describe_bvh(const InputFile& file, const SkeletonOptions& h
     return status.error();
   add_choice("positions", capture->positions, out);
   out.json["rest_frame"] = capture->rest_frame_found;
-  if (capture->rest_frame_found) out.add("rest pose", "frame 0, not part of the motion");
+  if (capture->rest_frame_found)
+    out.add("rest pose", "frame 0; it is kept, --skip-rest-frame auto of krok-import drops it");
   return out;
 }
 
