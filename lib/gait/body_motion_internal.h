@@ -134,6 +134,7 @@ class BodyMotion {
                                    const PlannedWalk& plan, const WalkOptions& options);
 
   const std::vector<BodyStep>& steps() const { return steps_; }
+  double rate() const { return rate_; }  // frames per second of the examples
   // Seconds, when the foot's ball leaves that print: before the other foot strikes in a run, and as
   // it does where a run begins; after the walk for the last two prints.
   double off_of(std::size_t print) const {

@@ -28,9 +28,12 @@ constexpr double kMaxToesUp = 15 * kRadiansPerDegree;
 constexpr double kToesEdge = 0.25;     // of the bump: below, it does not raise the toes
 constexpr double kToesLeftCost = 300;  // per metre, of a radian times the exponents
 constexpr double kRamp = 0.35;         // of the time from strike to flat, and from flat to off
-constexpr double kMaxHeld = 0.04;   // metres by which a foot is drawn back for the tip of its toes
-constexpr double kTipSlips = 0.05;  // metres, in the blend, of a tip that has left the ground
-constexpr double kLettingGo = 0.2;  // seconds after that
+constexpr double kMaxHeld = 0.04;  // metres by which a foot is drawn back for the tip of its toes
+// Metres over the ground of a tip that has left it: a foot that were held back in the air would
+// have to catch up at once.
+constexpr double kTipRises = 0.002;
+constexpr double kTipSlips = 0.05;      // metres, in the blend, of a tip that has left the ground
+constexpr double kLettingGo = 0.3;      // seconds after that
 constexpr double kTurningAside = 0.15;  // seconds, in which a foot turns aside in full
 
 double ramp_of(double lasts) {
@@ -216,9 +219,12 @@ double Swing::tip_stays_until(double until, std::span<const double> times,
   double stays = off_;
   for (std::size_t i = 0; i < times.size() && times[i] <= until; ++i) {
     if (times[i] <= off_) continue;
+    const FootPose free = free_at(times[i], blend[i]);
     const Vec3 slipped = sole_points(*leg_, blend[i])[2] - blend_tip_;
-    const Vec3 held = to_tip(free_at(times[i], blend[i]));
-    if (slipped.norm() > kTipSlips || held.norm() > kMaxHeld) return stays;
+    const double risen = (sole_points(*leg_, free)[2] - tip_).dot(up_);
+    if (risen > kTipRises || slipped.norm() > kTipSlips || to_tip(free).norm() > kMaxHeld) {
+      return stays;
+    }
     stays = times[i];
   }
   return until;

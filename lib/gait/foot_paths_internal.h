@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,8 @@ class Stance {
   double pitch(const FootPose& blend) const { return deviation(blend).x(); }
 
   double strike = 0, flat_from = 0, flat_to = 0, off = 0;  // seconds
+  // Seconds, when the tip of the toes leaves the print, if it is before the blend's toe-off.
+  double tip_off = std::numeric_limits<double>::infinity();
   FootPose at(double time, const FootPose& blend) const;
   // When the ball comes to rest: with the heel, unless it strikes first.
   double ball_from() const { return gait_.forefoot >= 1 ? strike : flat_from; }
@@ -87,9 +90,9 @@ class Swing {
   };
   void set_ends(const Ends& off, const Ends& strike);
 
-  // Until when, `until` at the latest, the tip of the toes stays where it is: as long as the
-  // blend's does, and the foot need not be drawn far for it. `blend` has its poses at `times` of
-  // the swing.
+  // Until when, `until` at the latest, the tip of the toes stays where it is: as long as it is on
+  // the ground and the blend's stays, and the foot need not be drawn far for it. `blend` has its
+  // poses at `times` of the swing.
   double tip_stays_until(double until, std::span<const double> times,
                          std::span<const FootPose> blend) const;
   // Keeps the tip where it is until `until`. `blend` has its poses then and 1 and 2 `spacing`
@@ -103,6 +106,7 @@ class Swing {
              double clearance, double from);
 
   FootPose at(double time, const FootPose& blend) const;
+  double lifted() const { return lifted_; }  // seconds, when the tip leaves the ground
 
   // Whether a foot is so far from both prints, or so near to the middle of the swing, that it is to
   // be clear of the ground in full.

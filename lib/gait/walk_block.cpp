@@ -14,7 +14,7 @@ namespace krok::gait {
 
 namespace {
 
-constexpr double kSpacing = 0.01;       // seconds, of derivatives at the ends of a swing
+constexpr double kSpacing = 0.01;       // seconds, of derivatives at the ends of a swing, at least
 constexpr double kLoweringReach = 0.2;  // seconds over which the pelvis is lowered
 // Steps that are computed on either side of a block: what the lowering of the pelvis takes from
 // farther ones is below the rounding of floats, and they depend on their neighbours.
@@ -254,8 +254,11 @@ Swing WalkBlock::make_swing(std::size_t step) const {
               steps[first].runs() ? kMatchingInRun : kMatching);
   Swing::Ends off, strike;
   const bool is_last = step + 1 == steps.size();
-  off.spacing = std::min(kSpacing, (leaves - steps[first].start) / 3);
-  strike.spacing = kSpacing;
+  // Between their frames examples go straight on: over less time than that a foot would be as fast
+  // as in one frame by chance, and have no acceleration or that of a corner.
+  const double spacing = std::max(kSpacing, 1 / parts_.body.rate());
+  off.spacing = std::min(spacing, (leaves - steps[first].start) / 3);
+  strike.spacing = spacing;
   for (std::size_t i = 0; i < 3; ++i) {
     const double time = leaves - off.spacing * static_cast<double>(i);
     off.blend[i] = blend_foot(first, time, side, signs);
@@ -279,11 +282,12 @@ Swing WalkBlock::make_swing(std::size_t step) const {
   if (parts_.leg_of(step).toes >= 0 && first == step && toes_off < now.strike) {
     const double until = swing.tip_stays_until(toes_off, times, blend);
     if (until >= leaves + 2 * kSpacing) {
+      const double apart = std::min(spacing, 0.5 * (until - leaves));
       std::array<FootPose, 3> before;
       for (std::size_t i = 0; i < 3; ++i) {
-        before[i] = blend_foot(step, until - kSpacing * static_cast<double>(i), side, signs);
+        before[i] = blend_foot(step, until - apart * static_cast<double>(i), side, signs);
       }
-      swing.keep_tip(until, before, kSpacing);
+      swing.keep_tip(until, before, apart);
     }
   }
   const double height =
@@ -296,6 +300,7 @@ void WalkBlock::place_feet(std::size_t step, MadeStep& made) {
   const BodyStep& now = parts_.body.steps()[step];
   SampledStep& frames = sampled(step);
   const Swing swing = make_swing(step);
+  if (!now.runs() && parts_.leg_of(step).toes >= 0) changed_stance(step).tip_off = swing.lifted();
   const FootSide moving = parts_.side_of(step), standing = parts_.side_of(step + 1);
   const double leaves = parts_.body.off_of(step), next_leaves = parts_.body.off_of(step + 1);
   std::optional<Swing> next;  // of the stance foot, in flight
@@ -418,7 +423,7 @@ MotionKeys keys_of(const WalkParts& parts, std::span<const Stance> stances, doub
     const Leg& leg = parts.leg_of(print);
     GroundedPrint& grounded = prints[print];
     grounded.strike = stance.strike;
-    const double toes_off = parts.body.toes_off_of(print);
+    const double toes_off = std::min(parts.body.toes_off_of(print), stance.tip_off);
     grounded.off = std::min(toes_off, duration);
     const Transform flat = flat_foot(leg, grounded);
     const std::string side = name_of(grounded.side);

@@ -59,7 +59,7 @@ namespace {
 constexpr int kMeanSamples = 32;        // of a step, for means over it
 constexpr double kRaised = 0.004;       // metres
 constexpr double kRaisedInRun = 0.012;  // the toes push on
-constexpr double kEarliestOff = 0.3;    // of the time to the off
+constexpr double kEarliestOff = 0.15;   // of the time to the off
 constexpr double kStandingLeg = 0.994;  // of the length: as straight as solve_legs() leaves it
 constexpr double kToeShare = 0.35;  // of the sole, from the ball to the tip, where no end site is
 

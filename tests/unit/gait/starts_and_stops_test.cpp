@@ -250,7 +250,8 @@ TEST(StepTimes, FeetAreOffWhenTheToesOfTheExamplesLeave) {
   for (std::size_t k = 2; k + 3 < prints.size(); ++k) {
     const double step = prints[k + 2].strike - prints[k + 1].strike;
     const double part = (prints[k].off - prints[k + 1].strike) / step;
-    EXPECT_GT(part, first - 0.01) << k;
+    // The tip of the toes leaves its print up to 30 ms before that.
+    EXPECT_GT(part, first - 0.06) << k;
     EXPECT_LT(part, last + 0.01) << k;
   }
 }

@@ -82,11 +82,13 @@ TEST(Swing, TheTipOfTheToesStaysTillItLeaves) {
   Swing::Ends off, strike;
   off.spacing = strike.spacing = 0.01;
   std::vector<double> times;
-  std::vector<FootPose> slow, fast;
+  std::vector<FootPose> slow, fast, rising;
   for (double time = kOff; time < kStrike; time += 0.01) {
     times.push_back(time);
     slow.push_back(moving(time, 0.3));
     fast.push_back(moving(time, 1.5));
+    rising.push_back(moving(time, 0.3));
+    rising.back().foot.position.y() += 0.1 * (time - kOff);
   }
   std::array<FootPose, 3> before;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -99,6 +101,8 @@ TEST(Swing, TheTipOfTheToesStaysTillItLeaves) {
   swing.set_ends(off, strike);
   // A tip that has left the ground in the blend is not kept.
   EXPECT_LT(swing.tip_stays_until(kUntil, times, fast), kUntil);
+  // Would fail if a foot in the air were held back, to catch up with twice the jerk of people's.
+  EXPECT_NEAR(swing.tip_stays_until(kUntil, times, rising), kOff + 0.02, 0.011);
   ASSERT_EQ(swing.tip_stays_until(kUntil, times, slow), kUntil);
   const Vec3 place = sole_points(leg, off.wanted[0])[2];
   const FootPose free = swing.at(kUntil, before[0]);
