@@ -21,7 +21,6 @@ namespace {
 constexpr double kUsualStature = 1.72;  // metres
 constexpr double kMinChange = 0.0025;   // metres, of a bone
 constexpr double kShortestBone = 0.02;  // metres
-constexpr double kCollar = 10;          // times the threshold; shoulder blades glide on the ribs
 constexpr double kLongEnough = 0.1;     // seconds beyond a limit
 constexpr double kForwards = 0.7;       // cosine to where the toes point
 constexpr double kPointed = 0.5;        // of a foot's length, ahead of the shin
@@ -92,9 +91,7 @@ void find_bones(const Series& series, MotionFaults& out) {
     const double mean = sum / series.frames;
     if (mean < kShortestBone * series.scale) continue;
     Finding finding = finding_of(Rule::bone_length, series, 100 * range / mean, series.whole());
-    const Role role = series.roles.roles[at(j)];
-    const bool collar = role == Role::left_collar || role == Role::right_collar;
-    if (finding.value <= (collar ? kCollar : 1) * finding.threshold) continue;
+    if (finding.value <= finding.threshold) continue;
     finding.joint = j;
     double farthest = 0, largest = 0;
     for (int f = 0; f < series.frames; ++f) {
@@ -102,8 +99,12 @@ void find_bones(const Series& series, MotionFaults& out) {
       if (off > farthest) farthest = off, finding.worst = f;
       if (f > 0) largest = std::max(largest, std::abs(1.0 * lengths[at(f)] - lengths[at(f - 1)]));
     }
+    const bool jumps = largest > range / 2;
+    const Role role = series.roles.roles[at(j)];
+    // Shoulder blades glide on the ribs.
+    if (!jumps && (role == Role::left_collar || role == Role::right_collar)) continue;
     finding.detail = fmt::format("{} to {} m{}", readable(low, 3), readable(high, 3),
-                                 largest > range / 2 ? ", in one frame" : "");
+                                 jumps ? ", in one frame" : "");
     found.push_back(finding);
   }
   merge_joints(found, 0);

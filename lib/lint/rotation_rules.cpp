@@ -18,7 +18,6 @@ constexpr int kNeighbours = 4;         // frames looked at on either side
 constexpr double kSeamJoints = 0.3;    // of the joints that move
 constexpr double kFlipRate = 20;       // frames per second; joints turn farther in longer frames
 constexpr double kMinPath = 0.03;      // metres, of a jump of the hips
-constexpr double kSlowRate = 40;       // frames per second
 
 enum class PopKind : std::uint8_t { spike, step, kink };
 
@@ -321,11 +320,7 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
     // A change of speed is at most twice the largest speed.
     if (4.001F * series.largest[at(j)] < limit * limit) continue;
     PopFinder finder(turns, limit, block, around, toes ? INFINITY : feet ? kSlap : 0.0F, sizes);
-    for (const Pop& pop : finder.find()) {
-      // Toes lie down and leave within a frame of these.
-      const bool lands = toes && pop.kind == PopKind::step && series.rate < kSlowRate;
-      if (!lands) add(pop, j, false);
-    }
+    for (const Pop& pop : finder.find()) add(pop, j, false);
   }
   if (series.has(Rule::pop)) {
     PopFinder finder(series.steps, static_cast<float>(kMinPath * series.scale), block, around, 0,

@@ -707,18 +707,6 @@ TEST(LintFaults, QuickStartsAreNoJumps) {
   }
 }
 
-// Would fail if toes that lie down on the ground within a frame jumped, at 30 frames a second.
-TEST(LintFaults, ToesLieDownWithinAFrame) {
-  for (const double rate : {30.0, 60.0}) {
-    const Clip clip = changed(usual_walk(rate), [](LocalMotion& m, Clip& c) {
-      auto all = m.joint_orientations(c.skeleton.find("LeftToeBase"));
-      for (int f = kAt / 2; f < m.frames; ++f) all[at(f)] = all[at(f)] * turn(30);
-    });
-    EXPECT_EQ(find(faults_of(clip), Rule::pop, kAt / 2) == nullptr, rate < 40)
-        << listed(clip, faults_of(clip));
-  }
-}
-
 // Would fail if the knee of a foot that is turned out, as in ballet, bent forwards.
 TEST(LintFaults, TurnedOutFeetDoNotBendKnees) {
   Clip clip = usual_walk();
