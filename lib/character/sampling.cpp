@@ -157,7 +157,13 @@ std::optional<double> even_rate(const std::vector<double>& times) {
 std::optional<double> common_grid(const std::vector<double>& times) {
   if (times.empty()) return std::nullopt;
   for (const double rate : kCommonRates) {
-    if (misfit(times, rate, false)) return rate;
+    // Nearly one each frame, but for a hold: times may be rounded as those of all frames are.
+    std::size_t frames_long = 0;
+    for (std::size_t i = 1; i < times.size(); ++i) {
+      frames_long += std::lround((times[i] - times[i - 1]) * rate) == 1 ? 1 : 0;
+    }
+    const bool in_a_row = times.size() >= 10 && 10 * frames_long >= 9 * (times.size() - 1);
+    if (misfit(times, rate, in_a_row)) return rate;
   }
   return std::nullopt;
 }

@@ -73,6 +73,17 @@ TEST(Sampling, TimesOfThreeDecimalsAreUnderstood) {
   EXPECT_EQ(result.sampling.frames, 50);
 }
 
+// A hold before keys of each frame whose times an exporter rounded to 8,192nds of a second: 60 fps
+// were taken instead of 100, and steps between them shook.
+TEST(Sampling, AHoldBeforeRoundedTimesIsNoOtherRate) {
+  std::vector<float> times = {0};
+  for (int i = 10; i < 900; ++i) {
+    times.push_back(static_cast<float>(std::round(0.01 * i * 8192) / 8192));
+  }
+  EXPECT_EQ(chosen(keyed(times)).sampling.rate, 100);
+  EXPECT_EQ(chosen(keyed(times)).sampling.frames, 900);
+}
+
 TEST(Sampling, SparseKeysFallOnFrames) {
   const auto result = chosen(keyed({0, 10 / 30.0f, 11 / 30.0f, 2}));
   EXPECT_EQ(result.sampling.rate, 30);
