@@ -78,7 +78,8 @@ Document::Document(const WriteOptions& options) : options_(options) {
 }
 
 std::vector<std::byte>& Document::own_part() {
-  if (parts_.empty() || !parts_.back().view.empty()) parts_.emplace_back();
+  const bool is_own = !parts_.empty() && parts_.back().view.empty() && parts_.back().to_read == 0;
+  if (!is_own) parts_.emplace_back();
   return parts_.back().own;
 }
 
@@ -102,7 +103,7 @@ int Document::add_accessor(std::span<const std::byte> bytes, int component,
 
 void Document::put(std::span<const std::byte> bytes, Keep keep) {
   if (keep == Keep::view && bytes.size() % 4 == 0) {
-    parts_.push_back({{}, bytes});
+    parts_.emplace_back().view = bytes;
     size_ += bytes.size();
   } else {
     std::vector<std::byte>& own = own_part();
@@ -338,15 +339,18 @@ void Document::add_animation(const JointTracks& tracks, const std::string& name)
   };
   for (std::size_t j = 0; j < inner.size(); ++j) {
     const JointTrack& track = tracks.joints[j];
-    if (!track.translations.empty()) {
+    if (track.read_translations || !track.translations.empty()) {
       const int input = times(track.translation_frames);
       add_channel(animation, outer_[j], "translation", input,
-                  add_translations(track.translations, track.translation_exponent));
+                  track.read_translations
+                      ? promise_keys(tracks, j, false)
+                      : add_translations(track.translations, track.translation_exponent));
     }
-    if (!track.rotations.empty()) {
+    if (track.read_rotations || !track.rotations.empty()) {
       const int input = times(track.rotation_frames);
       add_channel(animation, outer_[j], "rotation", input,
-                  add_rotations(track.rotations, track.rotation_bits));
+                  track.read_rotations ? promise_keys(tracks, j, true)
+                                       : add_rotations(track.rotations, track.rotation_bits));
     }
     if (!track.scales.empty()) {
       const int input = times({});
@@ -365,6 +369,22 @@ void Document::add_animation(const JointTracks& tracks, const std::string& name)
     add_channel(animation, outer_[0], "translation", input, add_vectors(still, Use::data));
   }
   gltf.animations.push_back(std::move(animation));
+}
+
+int Document::promise_keys(const JointTracks& tracks, std::size_t joint, bool rotations) {
+  if (promised_keys_.empty() || promised_keys_.back().tracks != &tracks) {
+    const std::vector<KeyPlace> none(tracks.joints.size());
+    promised_keys_.push_back({&tracks, none, none});
+  }
+  PromisedKeys& promised = promised_keys_.back();
+  (rotations ? promised.rotations : promised.translations)[joint] = {size_, parts_.size()};
+  const std::size_t bytes = tracks.times.size() * (rotations ? sizeof(Quatf) : sizeof(Vec3f));
+  const int accessor =
+      add_accessor_of(bytes, TINYGLTF_COMPONENT_TYPE_FLOAT, sizeof(float),
+                      rotations ? TINYGLTF_TYPE_VEC4 : TINYGLTF_TYPE_VEC3, Use::data);
+  parts_.emplace_back().to_read = bytes;
+  size_ += bytes;
+  return accessor;
 }
 
 Result<tinygltf::Primitive> Document::primitive_of(const Model& model, const Model::Part& part,

@@ -132,10 +132,11 @@ class Document {
   tinygltf::Model gltf;
 
  private:
-  // A range of the buffer: owned bytes or a view.
+  // A range of the buffer: owned bytes, a view, or keys that are read when they are written.
   struct Part {
     std::vector<std::byte> own;
     std::span<const std::byte> view;
+    std::size_t to_read = 0;  // bytes
     std::span<const std::byte> bytes() const { return own.empty() ? view : own; }
   };
 
@@ -163,6 +164,9 @@ class Document {
                                            const std::map<std::string, int>& attributes,
                                            const VertexRange& range);
   void add_animation(const JointTracks& tracks, const std::string& name);
+  int promise_keys(const JointTracks& tracks, std::size_t joint, bool rotations);
+  // Reads the promised keys into the file, in place of zeros, or for null into the parts.
+  Status read_keys(OutputFile* file);
   void find_bounds(tinygltf::Accessor& accessor) const;
   std::span<const std::byte> bytes_from(std::size_t offset) const;
   std::span<const std::byte> bytes_of(const tinygltf::Accessor& accessor) const;  // of its view
@@ -196,8 +200,19 @@ class Document {
   void add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
                    int values);
 
+  // Where the keys of promise_keys() are.
+  struct KeyPlace {
+    std::uint64_t offset = 0;  // in the buffer
+    std::size_t part = 0;
+  };
+  struct PromisedKeys {
+    const JointTracks* tracks;
+    std::vector<KeyPlace> translations, rotations;  // [joints]
+  };
+
   const WriteOptions& options_;
   std::vector<Part> parts_;
+  std::vector<PromisedKeys> promised_keys_;
   std::vector<int> outer_;  // [joints] the node that places a joint: its own, or the one above it
   std::map<int, Filter> filters_;                    // of buffer views
   std::map<int, std::vector<VertexRange>> ranges_;   // of the primitives of a mesh
@@ -210,6 +225,7 @@ class Document {
   std::uint64_t promised_ = 0;                   // bytes of the streamed data
   std::size_t bounds_ = 0;                       // bounds that are not filled in yet
   OutputFile* file_ = nullptr;
+  std::uint64_t data_begin_ = 0;      // of the buffer in the file
   std::string json_;                  // with space reserved for the bounds
   std::vector<std::byte> unencoded_;  // the last bytes, fewer than one Base64 group
   std::set<std::string> node_names_;

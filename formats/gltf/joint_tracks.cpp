@@ -28,88 +28,109 @@ constexpr std::size_t kFramesAtOnce = 128;
 // again with those; each pass settles the decisions of one more level of the hierarchy.
 class TrackBuilder {
  public:
-  TrackBuilder(const Skeleton& rest, const FrameSource& source, double tolerance, int jobs,
-               JointTracks& tracks)
-      : rest_(rest),
+  // `rest`: those of rest_tracks(). The skeleton and the source must outlive it.
+  TrackBuilder(const Skeleton& skeleton, const JointTracks& rest, const FrameSource& source,
+               double tolerance, int jobs)
+      : parents_(skeleton.parents),
         source_(source),
         tolerance_(tolerance),
         jobs_(jobs),
-        result_(tracks),
-        joints_(rest.names.size()),
+        joints_(skeleton.names.size()),
         frames_(static_cast<std::size_t>(source.frame_count)),
         blocks_((frames_ + kFramesAtOnce - 1) / kFramesAtOnce),
         tracks_(joints_, track_detail::kRotates) {
-    for (const JointTrack& joint : tracks.joints) {
+    for (const JointTrack& joint : rest.joints) {
       for (int k = 0; k < 3; ++k) rest_translations_.push_back(joint.rest_translation[k]);
       for (int k = 0; k < 4; ++k) rest_rotations_.push_back(joint.rest_rotation.coeffs()[k]);
     }
   }
 
-  Status build() {
-    if (frames_ == 0) return {};
+  bool moves(std::size_t joint) const { return (tracks_[joint] & track_detail::kMoves) != 0; }
+  bool rotates(std::size_t joint) const { return (tracks_[joint] & track_detail::kRotates) != 0; }
+
+  // Finds which tracks there are. `begin` is called before a pass over all frames, whose keys
+  // `take` gets, if set: those of the last pass are the result.
+  Status find(const std::function<void()>& begin, const JointTracks::TakeKeys& take) {
+    if (frames_ == 0) {
+      tracks_.assign(joints_, 0);
+      return {};
+    }
     if (Status status = settle_on_samples(); !status) return status;
     for (;;) {
-      take_memory();
+      begin();
       Seen seen(joints_, 0);
-      if (Status status = fill(seen); !status) return status;
-      if (seen == tracks_) break;
+      if (Status status = read(take, seen); !status) return status;
+      if (seen == tracks_) return {};
       tracks_ = std::move(seen);
     }
-    parallel_for(joints_, 1, jobs_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t j = begin; j < end; ++j) join_blocks(result_.joints[j]);
-    });
-    return {};
+  }
+
+  Status read(const JointTracks::TakeKeys& take) const {
+    Seen seen(joints_, 0);
+    return read(take, seen);
   }
 
  private:
   using Seen = std::vector<std::uint8_t>;
 
   // Working memory for a block of frames.
-  struct Room {
+  struct Block {
     std::vector<Vec3f> positions;
     std::vector<Quatf> orientations;
     std::vector<double> scratch;
     std::vector<track_detail::Places> places;
+    std::vector<Vec3f> translations;  // [joints x kFramesAtOnce], as the rotations
+    std::vector<Quatf> rotations;
     Seen seen;
+
+    template <typename Value>
+    static std::span<Value> keys_of(std::size_t joint, std::size_t count,
+                                    std::vector<Value>& values) {
+      return std::span(values).subspan(joint * kFramesAtOnce, count);
+    }
   };
 
   track_detail::Nodes nodes() const {
-    return {rest_.parents.data(),   joints_,        rest_translations_.data(),
+    return {parents_.data(),        joints_,        rest_translations_.data(),
             rest_rotations_.data(), tracks_.data(), tolerance_,
             kAngleTolerance};
   }
 
-  // Adds the tracks that the block's frames need to room.seen; stores the values if `keep`.
-  Status do_block(std::size_t block, bool keep, Room& room) {
+  std::size_t frames_in(std::size_t block) const {
+    return std::min(kFramesAtOnce, frames_ - block * kFramesAtOnce);
+  }
+
+  // Adds the tracks that the block's frames need to made.seen; computes the keys if `keep`.
+  Status do_block(std::size_t block, bool keep, Block& made) const {
     constexpr std::size_t kAlignment = 64;
-    const std::size_t first = block * kFramesAtOnce;
-    const std::size_t count = std::min(kFramesAtOnce, frames_ - first);
-    room.positions.resize(kFramesAtOnce * joints_);
-    room.orientations.resize(kFramesAtOnce * joints_);
-    room.scratch.resize(track_detail::kScratch * joints_ + kAlignment / sizeof(double));
-    room.seen.resize(joints_, 0);
+    const std::size_t first = block * kFramesAtOnce, count = frames_in(block);
+    made.positions.resize(kFramesAtOnce * joints_);
+    made.orientations.resize(kFramesAtOnce * joints_);
+    made.scratch.resize(track_detail::kScratch * joints_ + kAlignment / sizeof(double));
+    made.seen.resize(joints_, 0);
     Status status = source_.read(static_cast<int>(first), static_cast<int>(count),
-                                 std::span(room.positions).first(count * joints_),
-                                 std::span(room.orientations).first(count * joints_));
+                                 std::span(made.positions).first(count * joints_),
+                                 std::span(made.orientations).first(count * joints_));
     if (!status) return status;
-    room.places.assign(joints_, {});
-    for (std::size_t j = 0; keep && j < joints_; ++j) {
-      JointTrack& track = result_.joints[j];
-      if (!track.rotations.empty())
-        room.places[j].rotations = track.rotations[first].coeffs().data();
-      if (!track.translations.empty())
-        room.places[j].translations = track.translations[first].data();
+    made.places.assign(joints_, {});
+    if (keep) {
+      made.translations.resize(kFramesAtOnce * joints_);
+      made.rotations.resize(kFramesAtOnce * joints_);
     }
-    void* scratch = room.scratch.data();
-    std::size_t space = room.scratch.size() * sizeof(double);
-    std::align(kAlignment, 1, scratch, space);
-    track_detail::joint_tracks(nodes(), room.positions.data()->data(),
-                               room.orientations.data()->coeffs().data(), count, room.places.data(),
-                               static_cast<double*>(scratch), room.seen.data());
     for (std::size_t j = 0; keep && j < joints_; ++j) {
-      if (!result_.joints[j].rotations.empty()) {
-        join_signs(std::span(result_.joints[j].rotations).subspan(first, count));
+      if (rotates(j)) {
+        made.places[j].rotations = made.rotations[j * kFramesAtOnce].coeffs().data();
       }
+      if (moves(j)) made.places[j].translations = made.translations[j * kFramesAtOnce].data();
+    }
+    void* scratch = made.scratch.data();
+    std::size_t space = made.scratch.size() * sizeof(double);
+    std::align(kAlignment, 1, scratch, space);
+    track_detail::joint_tracks(nodes(), made.positions.data()->data(),
+                               made.orientations.data()->coeffs().data(), count, made.places.data(),
+                               static_cast<double*>(scratch), made.seen.data());
+    for (std::size_t j = 0; keep && j < joints_; ++j) {
+      if (rotates(j)) join_signs(Block::keys_of(j, count, made.rotations));
     }
     return {};
   }
@@ -117,39 +138,45 @@ class TrackBuilder {
   Status settle_on_samples() {
     constexpr std::size_t kSamples = 4;
     for (std::size_t round = 0; round < kSamples; ++round) {
-      Room room;
+      Block made;
       for (std::size_t i = 0; i < std::min(kSamples, blocks_); ++i) {
-        if (Status status = do_block(i * blocks_ / kSamples % blocks_, false, room); !status)
+        if (Status status = do_block(i * blocks_ / kSamples % blocks_, false, made); !status)
           return status;
       }
-      if (room.seen == tracks_) break;
-      tracks_ = std::move(room.seen);
+      if (made.seen == tracks_) break;
+      tracks_ = std::move(made.seen);
     }
     return {};
   }
 
-  void take_memory() {
-    for (std::size_t j = 0; j < joints_; ++j) {
-      JointTrack& track = result_.joints[j];
-      track.rotations.resize((tracks_[j] & track_detail::kRotates) != 0 ? frames_ : 0);
-      track.translations.resize((tracks_[j] & track_detail::kMoves) != 0 ? frames_ : 0);
-    }
-  }
-
-  Status fill(Seen& seen) {
-    std::vector<Room> rooms(slots_for(jobs_));
+  Status read(const JointTracks::TakeKeys& take, Seen& seen) const {
+    std::vector<Block> made(slots_for(jobs_));
+    // The last rotations: each block is turned into the hemisphere of the one before, the first
+    // into that of the rest rotation.
+    std::vector<Quatf> before;
+    for (std::size_t j = 0; j < joints_; ++j) before.emplace_back(&rest_rotations_[4 * j]);
     const auto make = [&](std::size_t block, std::size_t slot) {
-      return do_block(block, true, rooms[slot]);
+      return do_block(block, static_cast<bool>(take), made[slot]);
     };
-    const auto take = [&](std::size_t block, std::size_t) {
-      if (source_.release) {
-        source_.release(static_cast<int>(std::min((block + 1) * kFramesAtOnce, frames_)));
+    const auto pass_on = [&](std::size_t block, std::size_t slot) -> Status {
+      const std::size_t first = block * kFramesAtOnce, count = frames_in(block);
+      for (std::size_t j = 0; take && j < joints_; ++j) {
+        std::span<Vec3f> translations;
+        std::span<Quatf> rotations;
+        if (moves(j)) translations = Block::keys_of(j, count, made[slot].translations);
+        if (rotates(j)) {
+          rotations = Block::keys_of(j, count, made[slot].rotations);
+          if (before[j].dot(rotations.front()) < 0) std::ranges::for_each(rotations, turn_over);
+          before[j] = rotations.back();
+        }
+        if (Status status = take(j, first, translations, rotations); !status) return status;
       }
-      return Status();
+      if (source_.release) source_.release(static_cast<int>(first + count));
+      return {};
     };
-    if (Status status = make_in_order(blocks_, jobs_, make, take); !status) return status;
-    for (const Room& room : rooms) {
-      for (std::size_t j = 0; j < room.seen.size(); ++j) seen[j] |= room.seen[j];
+    if (Status status = make_in_order(blocks_, jobs_, make, pass_on); !status) return status;
+    for (const Block& block : made) {
+      for (std::size_t j = 0; j < block.seen.size(); ++j) seen[j] |= block.seen[j];
     }
     return {};
   }
@@ -163,29 +190,24 @@ class TrackBuilder {
     }
   }
 
-  // Negates whole blocks that are not in the hemisphere of the previous one; the first block is
-  // compared with the rest rotation.
-  void join_blocks(JointTrack& track) const {
-    Quatf before = track.rest_rotation;
-    for (std::size_t first = 0; first < track.rotations.size(); first += kFramesAtOnce) {
-      const auto block =
-          std::span(track.rotations).subspan(first, std::min(kFramesAtOnce, frames_ - first));
-      if (before.dot(block.front()) < 0) {
-        for (Quatf& rotation : block) turn_over(rotation);
-      }
-      before = block.back();
-    }
-  }
-
-  const Skeleton& rest_;
+  const std::vector<int> parents_;
   const FrameSource& source_;
   const double tolerance_;
   const int jobs_;
-  JointTracks& result_;
   const std::size_t joints_, frames_, blocks_;
   Seen tracks_;  // [joints], the tracks that each is assumed to have
   std::vector<float> rest_translations_, rest_rotations_;
 };
+
+Result<JointTracks> tracks_at_rest(const Skeleton& rest, const FrameSource& source) {
+  assert(rest.joint_count() == source.joint_count());
+  auto times = key_times(source.frame_count, source.rate);
+  if (!times) return times.error();
+  JointTracks tracks = rest_tracks(rest);
+  tracks.times = std::move(*times);
+  tracks.rate = source.rate;
+  return tracks;
+}
 
 }  // namespace
 
@@ -223,14 +245,37 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double 
 
 Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
                                  double tolerance) {
-  assert(rest.joint_count() == source.joint_count());
-  auto times = key_times(source.frame_count, source.rate);
-  if (!times) return times.error();
-  JointTracks tracks = rest_tracks(rest);
-  tracks.times = std::move(*times);
-  tracks.rate = source.rate;
-  TrackBuilder builder(rest, source, tolerance, jobs, tracks);
-  if (Status status = builder.build(); !status) return status.error();
+  auto tracks = tracks_at_rest(rest, source);
+  if (!tracks) return tracks;
+  TrackBuilder builder(rest, *tracks, source, tolerance, jobs);
+  const auto begin = [&] {
+    for (std::size_t j = 0; j < tracks->joints.size(); ++j) {
+      tracks->joints[j].translations.resize(builder.moves(j) ? tracks->times.size() : 0);
+      tracks->joints[j].rotations.resize(builder.rotates(j) ? tracks->times.size() : 0);
+    }
+  };
+  const auto take = [&](std::size_t joint, std::size_t first, std::span<const Vec3f> translations,
+                        std::span<const Quatf> rotations) {
+    const auto place = static_cast<std::ptrdiff_t>(first);
+    std::ranges::copy(translations, tracks->joints[joint].translations.begin() + place);
+    std::ranges::copy(rotations, tracks->joints[joint].rotations.begin() + place);
+    return Status();
+  };
+  if (Status status = builder.find(begin, take); !status) return status.error();
+  return tracks;
+}
+
+Result<JointTracks> streamed_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
+                                    double tolerance) {
+  auto tracks = tracks_at_rest(rest, source);
+  if (!tracks) return tracks;
+  const auto builder = std::make_shared<TrackBuilder>(rest, *tracks, source, tolerance, jobs);
+  if (Status status = builder->find([] {}, {}); !status) return status.error();
+  for (std::size_t j = 0; j < tracks->joints.size(); ++j) {
+    tracks->joints[j].read_translations = builder->moves(j);
+    tracks->joints[j].read_rotations = builder->rotates(j);
+  }
+  tracks->read = [builder](const JointTracks::TakeKeys& take) { return builder->read(take); };
   return tracks;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -31,6 +33,9 @@ struct JointTrack {
   std::vector<Vec3f> scales;
   std::vector<Quatf> inner_rotations;
 
+  // Whether there are keys for all frames that JointTracks::read gives, in place of those above.
+  bool read_translations = false, read_rotations = false;
+
   // After reduce_tracks(), for tracks with fewer keys than frames: the keys' frames, increasing.
   std::vector<int> translation_frames, rotation_frames;
 
@@ -45,6 +50,13 @@ struct JointTracks {
   double rate = 0;           // of the frames
   std::optional<RootMotion> removed_root_motion = {};  // of a motion in place, see Provenance
   std::vector<JointTrack> joints;                      // [joints]
+
+  // Of streamed_tracks(): computes the keys and passes them on in the order of the frames, some
+  // frames of a joint at a time; of a joint without such keys none.
+  using TakeKeys =
+      std::function<Status(std::size_t joint, std::size_t first_frame,
+                           std::span<const Vec3f> translations, std::span<const Quatf> rotations)>;
+  std::function<Status(const TakeKeys& take)> read;
 
   bool are_stretched() const;  // whether a joint has scales
 };
@@ -65,6 +77,12 @@ Result<JointTracks> joint_tracks(const Skeleton& rest, const Clip& clip, double 
 // with release().
 Result<JointTracks> joint_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
                                  double tolerance = 1e-6);
+
+// The same keys, computed when they are read, so that those of a long take are not held in memory:
+// for files without reduced or encoded keys. The source is traversed once or more beforehand, and
+// must outlive the result.
+Result<JointTracks> streamed_tracks(const Skeleton& rest, const FrameSource& source, int jobs,
+                                    double tolerance = 1e-6);
 
 // As above for joints that are stretched, [frames x joints]; with none, the same. Nodes inherit the
 // scales of their parents, so that joints below a flattened one can only be where it puts them;

@@ -61,9 +61,43 @@ int Document::promise_positions(std::size_t count) {
 
 Status Document::write(OutputFile& file) {
   assert(promised_ == 0);
-  if (options_.compressed && options_.binary && size_ > 0) return write_compressed(file);
+  const bool compressed = options_.compressed && options_.binary && size_ > 0;
+  const bool in_place = options_.binary && !compressed && file.can_overwrite();
+  if (!in_place) {
+    if (Status status = read_keys(nullptr); !status) return status;
+  }
+  if (compressed) return write_compressed(file);
   if (Status status = begin(file); !status) return status;
+  if (in_place) {
+    if (Status status = read_keys(&file); !status) return status;
+  }
   return end({});
+}
+
+Status Document::read_keys(OutputFile* file) {
+  const auto put = [&](const KeyPlace& to, std::size_t first,
+                       std::span<const std::byte> bytes) -> Status {
+    if (file != nullptr) return file->overwrite(data_begin_ + to.offset + first, bytes);
+    Part& part = parts_[to.part];
+    part.own.resize(part.to_read);
+    std::ranges::copy(bytes, part.own.begin() + static_cast<std::ptrdiff_t>(first));
+    return {};
+  };
+  for (const PromisedKeys& keys : promised_keys_) {
+    Status status = keys.tracks->read([&](std::size_t joint, std::size_t first,
+                                          std::span<const Vec3f> translations,
+                                          std::span<const Quatf> rotations) -> Status {
+      if (!translations.empty()) {
+        Status moved =
+            put(keys.translations[joint], first * sizeof(Vec3f), std::as_bytes(translations));
+        if (!moved) return moved;
+      }
+      if (rotations.empty()) return {};
+      return put(keys.rotations[joint], first * sizeof(Quatf), std::as_bytes(rotations));
+    });
+    if (!status) return status;
+  }
+  return {};
 }
 
 Status Document::begin(OutputFile& file, std::span<const Bounds> bounds) {
@@ -82,8 +116,16 @@ Status Document::begin(OutputFile& file, std::span<const Bounds> bounds) {
   }
   fill_in(bounds);
   if (Status status = options_.binary ? begin_binary() : begin_text(); !status) return status;
+  data_begin_ = file.size();
+  const std::vector<std::byte> zeros(std::size_t{1} << 20);
   for (const Part& part : parts_) {
     if (Status status = append(part.bytes()); !status) return status;
+    // Keys that are read later overwrite these.
+    for (std::size_t left = part.own.empty() ? part.to_read : 0; left > 0;) {
+      const std::size_t count = std::min(left, zeros.size());
+      if (Status status = append(std::span(zeros).first(count)); !status) return status;
+      left -= count;
+    }
   }
   return {};
 }

@@ -9,6 +9,7 @@
 #include "roles/roles.h"
 #include "scene/camera_track.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 // A camera that keeps a character framed: it follows a joint, orbits the character, or is static
 // and shows the whole motion.
@@ -107,7 +108,10 @@ inline constexpr double kClearance = 0.1;
 //
 // Codes: camera-empty, camera-part, camera-value (options out of range), camera-frame (no distance
 // up to 10 km shows everything).
-// up to 10 km shows all).
 Result<ActorShot> film(const Clip& clip, const RoleMap& roles, const ActorCamera& camera);
+// The same of frames that are read on `jobs` threads, in two passes for a given distance, else
+// three or more. Kept are about 150 bytes for each. Errors are those of the source, too.
+Result<ActorShot> film(const FrameSource& source, const RoleMap& roles, const ActorCamera& camera,
+                       int jobs);
 
 }  // namespace krok

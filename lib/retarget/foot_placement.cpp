@@ -327,7 +327,7 @@ LegPlacement::Stances LegPlacement::find_stances(Track track, double rate) {
   std::vector<char> still(at(frames));
   for (std::size_t f = 0; f < at(frames); ++f) still[f] = heel[f] | front[f];
   const std::vector<double> touching(still.begin(), still.end());
-  Stances result{std::vector<FootStance>(at(frames)), softened(touching, reach),
+  Stances result{std::vector<KeptStance>(at(frames)), softened(touching, reach),
                  softened(touching, reach / 4)};
   for (std::size_t f = 0; f < at(frames); ++f) {
     result.feet[f] = {track.upright[f] * stands[f], rolls[f]};

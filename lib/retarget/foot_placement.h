@@ -59,12 +59,15 @@ struct StandingHeight {
 };
 StandingHeight standing_height(LowestOfFeet lowest);
 
-// The stance of a foot in a frame, each from 0 to 1.
-struct FootStance {
+// The stance of a foot in a frame, as it is kept for all frames of a take. Both from 0 to 1.
+struct KeptStance {
   double standing = 0;  // how far its place is kept
   double on_ball = 0;   // whether the ball is placed, or the heel (0)
   // Metres along X and Z from the source's place, scaled, for the width of the hips.
   std::array<float, 2> beside = {0, 0};
+};
+
+struct FootStance : KeptStance {
   BendAngles bend = {};
 };
 
@@ -92,7 +95,7 @@ class LegPlacement {
   // flight. `bearing` is that of its contacts alone, `touching` is 0 sooner before and
   // after them. `contacts` are those of the source.
   struct Stances {
-    std::vector<FootStance> feet;
+    std::vector<KeptStance> feet;
     std::vector<double> bearing, touching;
   };
 

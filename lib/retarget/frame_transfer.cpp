@@ -228,7 +228,7 @@ class FrameTransfer {
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       for (std::size_t i = 0; i < bends.size(); ++i) {
         const PlacedLeg& leg = plan_.legs[i];
-        bends[i][f] = leg.placement.needed_bend(from, pose, leg.stances.feet[in_take(f)]);
+        bends[i][f] = leg.placement.needed_bend(from, pose, {leg.stances.feet[in_take(f)]});
       }
     });
     for (std::vector<double>& angles : bends) {
@@ -239,7 +239,7 @@ class FrameTransfer {
 
   FootStance stance_of(std::size_t leg, std::size_t frame) const {
     const LegPlacement::Stances& stances = plan_.legs[leg].stances;
-    FootStance stance = stances.feet[in_take(frame)];
+    FootStance stance{stances.feet[in_take(frame)]};
     if (leg < bends_.size() && !bends_[leg].empty()) {
       stance.bend = bend_angles(bends_[leg][frame], 1 - stances.touching[in_take(frame)]);
     }

@@ -252,7 +252,7 @@ void TouchKeeping::settle(const GroundStays& stays, const StancesOfFeet& feet, i
     const std::size_t frames = entry.place.size();
     const bool is_left = entry.part == BodyPart::left_foot;
     const bool is_foot = is_left || entry.part == BodyPart::right_foot;
-    const auto stances = is_foot ? feet[is_left ? 0 : 1] : std::span<const FootStance>();
+    const auto stances = is_foot ? feet[is_left ? 0 : 1] : std::span<const KeptStance>();
     for (std::size_t f = 0; f < frames && !stances.empty(); ++f) {
       entry.touch.weight[f] *= 1 - stances[at(first) + f].standing;
     }

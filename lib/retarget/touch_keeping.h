@@ -57,7 +57,7 @@ struct GroundStay {
 using GroundStays = std::array<std::vector<GroundStay>, kBodyParts>;  // in order, apart
 
 // [2][frames of the take], empty where a foot's stances are unknown.
-using StancesOfFeet = std::array<std::span<const FootStance>, 2>;
+using StancesOfFeet = std::array<std::span<const KeptStance>, 2>;
 
 // A contact of a foot that stands, kept by LegPlacement.
 struct KeptContact {

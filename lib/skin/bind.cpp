@@ -6,6 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/index.h"
 #include "core/numbers.h"
 #include "scene/model.h"
 
@@ -31,22 +32,6 @@ Diagnostic warning(std::string code, std::string joint, std::string message, std
 }
 
 constexpr double kPlaceTolerance = 1e-3;  // metres
-
-// The offset of joint `j` in its parent's frame that is nearest to `wanted`, over the reference
-// pose and all frames.
-Vec3 nearest_place(const Clip& motion, int j, const Vec3& wanted) {
-  Vec3 nearest = motion.skeleton.reference_local(j).position;
-  const int parent = motion.skeleton.parents[j];
-  for (int f = 0; f < motion.frame_count(); ++f) {
-    // The offsets of most joints are constant: the reference pose suffices.
-    if ((nearest - wanted).norm() <= kPlaceTolerance) break;
-    const auto positions = motion.frame_positions(f);
-    const Quat orientation = motion.frame_orientations(f)[parent].cast<double>().normalized();
-    const Vec3 place = orientation.conjugate() * (positions[j] - positions[parent]).cast<double>();
-    if ((place - wanted).norm() < (nearest - wanted).norm()) nearest = place;
-  }
-  return nearest;
-}
 
 }  // namespace
 
@@ -99,35 +84,81 @@ Result<Model> bind_to(Model model, const Skeleton& skeleton) {
 
 namespace {
 
-// Whether a joint at the root moves away from it, as hips do below a root at the origin.
-bool leaves_root(const Clip& motion, int joint) {
-  constexpr float kFar = 0.1F;  // metres
-  const int parent = motion.skeleton.parents[static_cast<std::size_t>(joint)];
-  if (parent < 0 || motion.skeleton.parents[static_cast<std::size_t>(parent)] >= 0) return false;
-  float least = std::numeric_limits<float>::infinity(), most = 0;
-  for (int f = 0; f < motion.frame_count(); ++f) {
-    const auto places = motion.frame_positions(f);
-    const float length =
-        (places[static_cast<std::size_t>(joint)] - places[static_cast<std::size_t>(parent)]).norm();
-    least = std::min(least, length);
-    most = std::max(most, length);
+// Joints whose offset from their parent is not that of the model, in the reference pose and the
+// frames that were added.
+class OffsetDifferences {
+ public:
+  OffsetDifferences(const Skeleton& model, const Skeleton& motion)
+      : model_(model), lengths_(model.names.size(), {std::numeric_limits<float>::infinity(), 0}) {
+    for (int j = 0; j < model.joint_count(); ++j) {
+      nearest_.push_back(motion.reference_local(j).position);
+    }
   }
-  return most - least > kFar;
-}
 
-}  // namespace
+  // Whether further frames matter: the offsets of most joints are constant, and the reference pose
+  // suffices.
+  bool any() const {
+    for (int j = 0; j < model_.joint_count(); ++j) {
+      if (differs(j)) return true;
+    }
+    return false;
+  }
 
-Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
+  void add(const Clip& motion) {
+    for (int j = 0; j < model_.joint_count(); ++j) {
+      const int parent = model_.parents[at(j)];
+      if (parent < 0) continue;
+      for (int f = 0; is_at_root(j) && f < motion.frame_count(); ++f) {
+        const auto places = motion.frame_positions(f);
+        const float length = (places[at(j)] - places[at(parent)]).norm();
+        lengths_[at(j)] = {std::min(lengths_[at(j)].first, length),
+                           std::max(lengths_[at(j)].second, length)};
+      }
+      for (int f = 0; differs(j) && f < motion.frame_count(); ++f) {
+        const auto places = motion.frame_positions(f);
+        const Quat orientation =
+            motion.frame_orientations(f)[at(parent)].cast<double>().normalized();
+        const Vec3 place =
+            orientation.conjugate() * (places[at(j)] - places[at(parent)]).cast<double>();
+        const Vec3 wanted = model_.reference_local(j).position;
+        if ((place - wanted).norm() < (nearest_[at(j)] - wanted).norm()) nearest_[at(j)] = place;
+      }
+    }
+  }
+
+  Diagnostics result() const;
+
+ private:
+  // The position of the root does not distort a mesh.
+  bool differs(int joint) const {
+    if (model_.parents[at(joint)] == Skeleton::kNoParent) return false;
+    return (nearest_[at(joint)] - model_.reference_local(joint).position).norm() > kPlaceTolerance;
+  }
+
+  bool is_at_root(int joint) const {
+    const int parent = model_.parents[at(joint)];
+    return parent >= 0 && model_.parents[at(parent)] < 0;
+  }
+
+  // Whether a joint at the root moves away from it, as hips do below a root at the origin.
+  bool leaves_root(int joint) const {
+    constexpr float kFar = 0.1F;  // metres
+    return is_at_root(joint) && lengths_[at(joint)].second - lengths_[at(joint)].first > kFar;
+  }
+
+  const Skeleton& model_;
+  std::vector<Vec3> nearest_;                     // [joints], to the model's
+  std::vector<std::pair<float, float>> lengths_;  // [joints], of those at the root
+};
+
+Diagnostics OffsetDifferences::result() const {
   double largest_length = 0, largest_turn = 0;
   int length_joint = 0, turn_joint = 0;
-  for (int j = 0; j < model.joint_count(); ++j) {
-    // The position of the root does not distort a mesh, nor that of a body below a root that stays
-    // behind.
-    if (model.parents[j] == Skeleton::kNoParent || leaves_root(motion, j)) continue;
-    const Vec3 wanted = model.reference_local(j).position;
-    const Vec3 found = nearest_place(motion, j, wanted);
-    const double length = std::abs(wanted.norm() - found.norm());
-    const double turn = (wanted - found).norm();
+  for (int j = 0; j < model_.joint_count(); ++j) {
+    if (!differs(j) || leaves_root(j)) continue;
+    const Vec3 wanted = model_.reference_local(j).position;
+    const double length = std::abs(wanted.norm() - nearest_[at(j)].norm());
+    const double turn = (wanted - nearest_[at(j)]).norm();
     if (length > largest_length) {
       largest_length = length;
       length_joint = j;
@@ -142,7 +173,7 @@ Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
       "FIRST.anim, and --retarget brings a person's motion onto the model's";
   Diagnostics result;
   if (largest_length > kPlaceTolerance) {
-    const std::string& name = model.names[length_joint];
+    const std::string& name = model_.names[length_joint];
     result.push_back(warning("skin-proportions", name,
                              fmt::format("the bone to {} is {} mm longer or shorter in the motion "
                                          "than in the model, so the mesh is stretched",
@@ -150,7 +181,7 @@ Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
                              hint));
   }
   if (largest_turn > kPlaceTolerance) {
-    const std::string& name = model.names[turn_joint];
+    const std::string& name = model_.names[turn_joint];
     result.push_back(warning("skin-reference", name,
                              fmt::format("the bone to {} points in different directions in the "
                                          "motion and in the model, so the mesh is bent",
@@ -158,6 +189,25 @@ Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
                              hint));
   }
   return result;
+}
+
+}  // namespace
+
+Diagnostics reference_differences(const Skeleton& model, const Clip& motion) {
+  OffsetDifferences differences(model, motion.skeleton);
+  differences.add(motion);
+  return differences.result();
+}
+
+Result<Diagnostics> reference_differences(const Skeleton& model, const FrameSource& motion,
+                                          int jobs) {
+  OffsetDifferences differences(model, motion.skeleton);
+  if (!differences.any()) return Diagnostics();
+  Status status = for_each_block(motion, jobs, [&](int, const Clip& block) {
+    differences.add(block);
+    return Status();
+  });
+  return status ? Result(differences.result()) : status.error();
 }
 
 }  // namespace krok

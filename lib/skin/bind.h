@@ -2,6 +2,7 @@
 
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/model.h"
 
 // Binds a model to the skeleton of a motion.
@@ -22,6 +23,10 @@ Result<Model> bind_to(Model model, const Skeleton& skeleton);
 // mesh is stretched) or only the direction (code skin-reference: the joint frames differ). At most
 // one warning of each kind, for the joint with the largest difference.
 Diagnostics reference_differences(const Skeleton& model, const Clip& motion);
+// The same of frames that are read on `jobs` threads, if they matter. Errors are those of the
+// source.
+Result<Diagnostics> reference_differences(const Skeleton& model, const FrameSource& motion,
+                                          int jobs);
 
 // Warns of a reference pose that is not the pose of the mesh (code skin-reference-pose): joints
 // then turn vertices about places outside of the body, and skinning distorts it. Such are bones,

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -26,10 +27,12 @@
 #include "nodes/animation_choice.h"
 #include "nodes/evaluate.h"
 #include "scene/camera_track.h"
+#include "scene/frame_source.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/camera_choice.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::cam {
 
@@ -224,36 +227,51 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
     return Error("usage", "no camera mode given", "use --follow hips, --orbit 20s or --still")
         .in_file(file.path());
   }
-  const auto clip = io::open_motion(file, context);
-  if (!clip) return clip.error();
   const auto find_roles = io::open_role_map(options.map, context);
   if (!find_roles) return find_roles.error();
-  const auto roles = (*find_roles)(clip->skeleton);
-  if (!roles) return roles.error();
-  if (clip->skeleton.empty()) {
-    return Error("camera-empty", "the motion has no joints").in_file(file.path());
-  }
   ActorCamera camera = filming->camera;
-  if (filming->moving_centre) {
-    const auto joint = filming->follow.empty()
-                           ? Result<int>(carrying_joint(*roles))
-                           : followed_joint(filming->follow, clip->skeleton, *roles);
-    if (!joint) return Error(joint.error()).in_file(file.path());
-    camera.joint = *joint;
-  }
-  const double duration = clip->duration();
-  if (filming->turns != 0 && duration > 0) {
-    camera.turning = filming->turns * 2 * kPi / duration;
-  }
-  auto filmed = film(*clip, *roles, camera);
-  if (!filmed) return std::move(filmed).error().in_file(file.path());
-  report_faults(*filmed, file.path(), context);
+  std::optional<ActorShot> filmed;
+  int carrier = -1;
   Shot shot;
-  shot.conversions = clip->provenance.conversions;
-  shot.facts["framed"] = part_name(camera.framing);
-  shot.facts["follows"] = camera.joint < 0
-                              ? Json()
-                              : Json(clip->skeleton.names[static_cast<std::size_t>(camera.joint)]);
+  std::function<Provenance()> provenance;
+  const auto use = [&](const FrameSource& frames) -> Status {
+    // Those of a short take are read once.
+    std::optional<Clip> clip;
+    if (file.bytes().size() < kLongTake) {
+      auto loaded = load(frames, context.jobs);
+      if (!loaded) return loaded.error();
+      clip = *std::move(loaded);
+    }
+    const FrameSource source = clip ? frames_of(*clip) : frames;
+    const auto roles = (*find_roles)(source.skeleton);
+    if (!roles) return roles.error();
+    if (source.skeleton.empty()) {
+      return Error("camera-empty", "the motion has no joints").in_file(file.path());
+    }
+    carrier = carrying_joint(*roles);
+    if (filming->moving_centre) {
+      const auto joint = filming->follow.empty()
+                             ? Result<int>(carrier)
+                             : followed_joint(filming->follow, source.skeleton, *roles);
+      if (!joint) return Error(joint.error()).in_file(file.path());
+      camera.joint = *joint;
+    }
+    if (filming->turns != 0 && source.duration() > 0) {
+      camera.turning = filming->turns * 2 * kPi / source.duration();
+    }
+    auto made = film(source, *roles, camera, context.jobs);
+    if (!made) return std::move(made).error().in_file(file.path());
+    filmed = *std::move(made);
+    shot.conversions = provenance().conversions;
+    shot.facts["framed"] = part_name(camera.framing);
+    shot.facts["follows"] =
+        camera.joint < 0 ? Json()
+                         : Json(source.skeleton.names[static_cast<std::size_t>(camera.joint)]);
+    return {};
+  };
+  const auto motion = io::stream_motion(file, context, use, {.provenance = &provenance});
+  if (!motion) return motion.error();
+  report_faults(*filmed, file.path(), context);
   shot.facts["distance"] = filmed->distance;
   shot.facts["frames_shown"] = filmed->frames_shown;
   shot.facts["frames_inside"] = filmed->frames_inside;
@@ -265,11 +283,12 @@ Result<Shot> from_motion(const Options& options, const InputFile& file, ToolCont
                       : fmt::format("{} of {}", filmed->frames_shown, counted(frames, "frame")),
                   readable(filmed->distance, 3));
   if (options.orbit) {
-    shot.words += fmt::format("; orbits by {} degrees",
-                              readable(std::abs(camera.turning) * duration / kRadiansPerDegree, 3));
+    shot.words +=
+        fmt::format("; orbits by {} degrees",
+                    readable(std::abs(camera.turning) * motion->duration / kRadiansPerDegree, 3));
   }
   if (!filming->follow.empty() && !options.given("--frame") && !options.given("--distance") &&
-      camera.joint != carrying_joint(*roles)) {
+      camera.joint != carrier) {
     shot.words += " (--frame joint: a close-up)";
   }
   shot.track = std::move(filmed->track);

@@ -18,6 +18,7 @@
 #include "formats/csv/csv_writer.h"
 #include "formats/gltf/gltf_writer.h"
 #include "formats/gltf/joint_tracks.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_motion.h"
 #include "formats/npy/npz_motion.h"
 #include "formats/opensim/storage_writer.h"
@@ -246,39 +247,58 @@ Result<gltf::JointTracks> stretched_tracks(const FrameSource& frames, const Stre
   return tracks;
 }
 
-// Reads the motion, writes it, and returns its summary.
+// Reads the motion, writes it, and returns its summary. The keys of a long take are computed as
+// they are written, before warnings of reading it are known.
 Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolContext& context,
                                       std::optional<Reduction>& reduction) {
-  std::optional<gltf::JointTracks> tracks;
+  const auto input = context.open_input(options.input());
+  if (!input) return input.error();
+  std::optional<OutputSet> outputs;
+  const bool streamed = input->bytes().size() >= kLongTake && !options.reduce;
+  const auto write = [&](const Skeleton& skeleton, const gltf::JointTracks& tracks,
+                         std::vector<std::string> conversions) {
+    gltf::WriteOptions writing;
+    writing.binary = binary;
+    writing.provenance = context.provenance();
+    writing.provenance.conversions = std::move(conversions);
+    const bool bones = options.bones;
+    writing.name = bones ? "bones" : "skeleton";
+    writing.clip_name = clip_name_of(options.input());
+    outputs.emplace(context);
+    return outputs->add(context.output, [&](OutputFile& file) {
+      return bones ? gltf::write_rig(bone_mesh(skeleton), tracks, writing, file)
+                   : gltf::write_skeleton(skeleton, tracks, writing, file);
+    });
+  };
+  Result<gltf::JointTracks> tracks = gltf::JointTracks();
   Stretches stretches;
-  const auto facts = io::stream_motion(
-      options.input(), context,
-      [&](const FrameSource& frames) -> Status {
-        if (frames.skeleton.empty()) return empty_error(options.input());
-        auto made = stretches.empty() ? gltf::joint_tracks(frames.skeleton, frames, context.jobs)
-                                      : stretched_tracks(frames, stretches, context);
-        if (!made) return made.error();
-        tracks = *std::move(made);
-        return {};
-      },
-      {.stretches = &stretches});
-  if (!facts) return facts.error();
-  tracks->removed_root_motion = facts->removed_root_motion;
-  auto reduced = reduce(options, facts->skeleton, context.jobs, *tracks);
-  if (!reduced) return reduced.error();
-  reduction = *std::move(reduced);
-  gltf::WriteOptions writing;
-  writing.binary = binary;
-  writing.provenance = context.provenance();
-  writing.provenance.conversions = facts->conversions;
-  const bool bones = options.bones;
-  writing.name = bones ? "bones" : "skeleton";
-  writing.clip_name = clip_name_of(options.input());
-  const Status status = write_output(context, context.output, [&](OutputFile& file) {
-    return bones ? gltf::write_rig(bone_mesh(facts->skeleton), *tracks, writing, file)
-                 : gltf::write_skeleton(facts->skeleton, *tracks, writing, file);
-  });
-  if (!status) return status.error();
+  std::function<Provenance()> provenance;
+  const auto use = [&](const FrameSource& frames) -> Status {
+    if (frames.skeleton.empty()) return empty_error(options.input());
+    Provenance before = provenance();
+    tracks = !stretches.empty() ? stretched_tracks(frames, stretches, context)
+             : streamed         ? gltf::streamed_tracks(frames.skeleton, frames, context.jobs)
+                                : gltf::joint_tracks(frames.skeleton, frames, context.jobs);
+    if (!tracks) return tracks.error();
+    if (!tracks->read) return {};
+    tracks->removed_root_motion = before.removed_root_motion;
+    // Those of an .anim file are of how it was made.
+    if (io::format_of(*input).open_capture == nullptr) before.conversions.clear();
+    return write(frames.skeleton, *tracks, std::move(before.conversions));
+  };
+  auto facts =
+      io::stream_motion(*input, context, use, {.stretches = &stretches, .provenance = &provenance});
+  if (!facts) return facts;
+  if (!tracks->read) {
+    tracks->removed_root_motion = facts->removed_root_motion;
+    auto reduced = reduce(options, facts->skeleton, context.jobs, *tracks);
+    if (!reduced) return reduced.error();
+    reduction = *std::move(reduced);
+    if (Status status = write(facts->skeleton, *tracks, facts->conversions); !status) {
+      return status.error();
+    }
+  }
+  if (Status status = outputs->finish(); !status) return status.error();
   return facts;
 }
 

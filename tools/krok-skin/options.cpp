@@ -15,15 +15,15 @@ namespace krok::cli::skin {
 namespace {
 
 // The frame nearest to a time given on the command line.
-Result<int> frame_at(const char* option, const std::optional<ClipTime>& time, const Clip& clip,
-                     int fallback) {
+Result<int> frame_at(const char* option, const std::optional<ClipTime>& time, double rate,
+                     int frames, int fallback) {
   if (!time) return fallback;
-  const double frame = std::round(time->in_frames ? time->value : time->value * clip.rate);
-  if (!(frame >= 0 && frame < clip.frame_count())) {
+  const double frame = std::round(time->in_frames ? time->value : time->value * rate);
+  if (!(frame >= 0 && frame < frames)) {
     return Error("skin-time",
                  fmt::format("{} {} is outside the motion, which has frames 0 to {} ({} s)", option,
-                             written(*time), clip.frame_count() - 1, readable(clip.duration(), 4)),
-                 frame_hint(*time, clip.frame_count()));
+                             written(*time), frames - 1, readable((frames - 1) / rate, 4)),
+                 frame_hint(*time, frames));
   }
   return static_cast<int>(frame);
 }
@@ -196,15 +196,14 @@ Status check_for(As as, const Options& options) {
   return {};
 }
 
-Result<std::optional<Range>> chosen_range(const Options& options, const Clip& clip) {
-  const int frames = clip.frame_count();
+Result<std::optional<Range>> chosen_range(const Options& options, double rate, int frames) {
   if (!options.from && !options.to && options.every == 1) return std::optional<Range>();
   if (frames == 0) {
     return Error("skin-no-frames", "the motion has no frames for --from, --to, --every");
   }
-  const auto first = frame_at("--from", options.from, clip, 0);
+  const auto first = frame_at("--from", options.from, rate, frames, 0);
   if (!first) return first.error();
-  const auto last = frame_at("--to", options.to, clip, frames - 1);
+  const auto last = frame_at("--to", options.to, rate, frames, frames - 1);
   if (!last) return last.error();
   if (*last < *first) return Error("skin-time", "--from is after --to");
   return std::optional<Range>(Range{*first, *last, options.every});

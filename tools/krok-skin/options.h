@@ -57,7 +57,7 @@ Status check_for(As as, const Options& options);
 struct Range {
   int first = 0, last = 0, every = 1;
 };
-Result<std::optional<Range>> chosen_range(const Options& options, const Clip& clip);
+Result<std::optional<Range>> chosen_range(const Options& options, double rate, int frames);
 
 // The time of --as pose in seconds; code skin-time.
 Result<double> pose_time(const Options& options, const Clip& clip);

@@ -3,13 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <system_error>
 
 #include "core/file.h"
 #include "core/numbers.h"
+#include "formats/io/open_motion.h"
+#include "formats/io/open_scene.h"
+#include "formats/registry/registry.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-skin/outputs.h"
 #include "tools/krok-skin/subject.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::skin {
 
@@ -20,12 +27,12 @@ const std::string& motion_of(const Options& options) {
   return options.motions.empty() ? options.subject : options.motions.front();
 }
 
-Json clip_json(const std::string& name, const Clip& clip) {
+Json clip_json(const std::string& name, double rate, int frames, double duration) {
   Json json;
   json["name"] = name;
-  json["frames"] = clip.frame_count();
-  json["rate"] = clip.rate;
-  json["duration"] = clip.duration();
+  json["frames"] = frames;
+  json["rate"] = rate;
+  json["duration"] = duration;
   return json;
 }
 
@@ -38,10 +45,13 @@ Json result_of(const Subject& subject, int frames) {
   result["rate"] = subject.clip.rate;
   result["clips"] = Json::array();
   if (!subject.clip_name.empty()) {
-    result["clips"].push_back(clip_json(subject.clip_name, subject.clip));
+    result["clips"].push_back(
+        clip_json(subject.clip_name, subject.clip.rate, subject.frame_count(), subject.duration()));
   }
   for (const Subject::Motion& other : subject.others) {
-    result["clips"].push_back(clip_json(other.name, other.clip));
+    const Clip& clip = other.clip;
+    result["clips"].push_back(
+        clip_json(other.name, clip.rate, clip.frame_count(), clip.duration()));
   }
   for (const Subject::Thing& thing : subject.things) {
     result["attached"].push_back(
@@ -75,7 +85,7 @@ struct Written {
 
 Result<Written> write(As as, const Options& options, const Subject& subject, ToolContext& context) {
   if (as == As::rig || as == As::motion) {
-    if (subject.clip.frame_count() == 0) {
+    if (subject.frame_count() == 0) {
       context.warn("skin-no-frames", "the motion has no frames; the rig is not animated");
     }
     if (as == As::motion) {
@@ -104,6 +114,38 @@ Result<Written> write(As as, const Options& options, const Subject& subject, Too
   return Written{context.output};
 }
 
+// Whether frames are written as they are read: --as rig and motion of one motion, with all keys.
+bool is_streamed(As as, const Options& options) {
+  return (as == As::rig || as == As::motion) && options.motions.size() == 1 && !options.retarget &&
+         options.correctives.empty() && options.twist.bones.empty() &&
+         options.influences == Influences::all && options.every == 1 && !options.reduce &&
+         !options.quantize && !options.compress && !options.minify;
+}
+
+Result<int> run(As as, Options options, ToolContext& context, const LongTake* take) {
+  auto subject = load(options, context, take);
+  if (!subject) return subject.error();
+  const bool every_frame = as == As::baked || as == As::frames;
+  if (subject->frame_count() == 0 && every_frame) {
+    return Error("skin-no-frames", "the motion has no frames",
+                 "use --as pose for the reference pose")
+        .in_file(motion_of(options));
+  }
+  const int frames = as == As::pose ? 1 : subject->frame_count();
+  context.report.result = result_of(*subject, frames);
+  apply_influence_limit(options, *subject, context);
+  const auto written = write(as, options, *subject, context);
+  if (!written) return written.error();
+  context.log(as == As::frames
+                  ? fmt::format("{}: {}", written->names, counted(frames, "file"))
+                  : fmt::format("{}: {}, {}{}", written->names,
+                                as == As::motion
+                                    ? counted(subject->model.skeleton.joint_count(), "joint")
+                                    : counted(subject->model.vertex_count(), "vertex", "vertices"),
+                                counted(frames, "frame"), clips_text(*subject)));
+  return written->exit_code;
+}
+
 }  // namespace
 
 Result<int> run(const Options& given, ToolContext& context) {
@@ -119,27 +161,29 @@ Result<int> run(const Options& given, ToolContext& context) {
     return usage("--up z is for a point cache", "OBJ and glTF have y up; write OUT.pc2");
   }
   if (Status status = check_output(as, context.output); !status) return status.error();
-  auto subject = load(options, context);
+  std::error_code unknown;
+  const bool streamed =
+      is_streamed(as, options) && !io::is_scene(registry::kind_of_name(options.motions[0])) &&
+      std::filesystem::file_size(options.motions[0], unknown) >= kLongTake && !unknown;
+  if (!streamed) return run(as, options, context, nullptr);
+  const auto subject = context.open_input(options.subject);
   if (!subject) return subject.error();
-  const bool every_frame = as == As::baked || as == As::frames;
-  if (subject->clip.frame_count() == 0 && every_frame) {
-    return Error("skin-no-frames", "the motion has no frames",
-                 "use --as pose for the reference pose")
-        .in_file(motion_of(options));
-  }
-  const int frames = as == As::pose ? 1 : subject->clip.frame_count();
-  context.report.result = result_of(*subject, frames);
-  apply_influence_limit(options, *subject, context);
-  const auto written = write(as, options, *subject, context);
-  if (!written) return written.error();
-  context.log(as == As::frames
-                  ? fmt::format("{}: {}", written->names, counted(frames, "file"))
-                  : fmt::format("{}: {}, {}{}", written->names,
-                                as == As::motion
-                                    ? counted(subject->model.skeleton.joint_count(), "joint")
-                                    : counted(subject->model.vertex_count(), "vertex", "vertices"),
-                                counted(frames, "frame"), clips_text(*subject)));
-  return written->exit_code;
+  const auto input = context.open_input(options.motions[0]);
+  if (!input) return input.error();
+  Result<int> result = kExitDone;
+  Stretches stretches;
+  std::function<Provenance()> provenance;
+  const auto use = [&](const FrameSource& frames) -> Status {
+    LongTake take{*subject, {}, frames};
+    take.clip.skeleton = frames.skeleton;
+    take.clip.rate = frames.rate;
+    take.clip.provenance = provenance();
+    result = run(as, options, context, stretches.empty() ? &take : nullptr);
+    return result ? Status() : result.error();
+  };
+  const auto read =
+      io::stream_motion(*input, context, use, {.stretches = &stretches, .provenance = &provenance});
+  return read ? result : read.error();
 }
 
 }  // namespace krok::cli::skin

@@ -117,8 +117,12 @@ Result<Clips> clips_of(const Subject& subject, const std::string& still_name,
   double largest_error = 0;
   for (const Subject::NamedMotion& motion : subject.all_motions(still_name)) {
     double error = 0;
-    auto tracks = gltf::joint_tracks(subject.model.skeleton, motion.clip, motion.stretches, error);
+    const Skeleton& skeleton = subject.model.skeleton;
+    auto tracks = motion.frames != nullptr
+                      ? gltf::streamed_tracks(skeleton, *motion.frames, context.jobs)
+                      : gltf::joint_tracks(skeleton, motion.clip, motion.stretches, error);
     if (!tracks) return tracks.error();
+    tracks->removed_root_motion = motion.clip.provenance.removed_root_motion;
     largest_error = std::max(largest_error, error);
     clips.names.push_back(motion.name);
     clips.tracks.push_back(*std::move(tracks));

@@ -24,6 +24,7 @@
 #include "retarget/limb_ends.h"
 #include "retarget/retarget.h"
 #include "roles/roles.h"
+#include "scene/frame_blocks.h"
 #include "skin/bind.h"
 #include "skin/twist_joints.h"
 #include "tools/cli/file_name.h"
@@ -38,7 +39,8 @@ constexpr double kStillRate = 30.0;  // frames per second, if neither motion nor
 
 class Loader {
  public:
-  Loader(Options& options, ToolContext& context) : options_(options), context_(context) {}
+  Loader(Options& options, ToolContext& context, const LongTake* take)
+      : options_(options), context_(context), take_(take) {}
 
   Result<Subject> load() {
     for (const auto step : {&Loader::read_subject, &Loader::read_morphs, &Loader::read_weights,
@@ -56,17 +58,22 @@ class Loader {
       return usage(fmt::format("{} is a folder, not a mesh", shown(options_.subject)),
                    "a mesh comes first, then motions: krok-skin hero.character FOLDER -o hero.glb");
     }
-    const auto file = context_.open_input(options_.subject);
-    if (!file) return file.error();
-    const io::Format& format = io::format_of(*file);
+    std::optional<InputFile> opened;
+    if (take_ == nullptr) {
+      auto input = context_.open_input(options_.subject);
+      if (!input) return input.error();
+      opened = *std::move(input);
+    }
+    const InputFile& file = opened ? *opened : take_->subject;
+    const io::Format& format = io::format_of(file);
     if (format.read_actor == nullptr && format.read_scene == nullptr) {
-      Error error = model::read(file->bytes()).error();
+      Error error = model::read(file.bytes()).error();
       if (!options_.motions.empty() && format.reads_motion()) {
         error.hint = "the mesh comes first, then motions; krok-body makes a mesh for a motion";
       }
       return std::move(error).in_file(options_.subject);
     }
-    auto actor = io::open_actor(*file, context_,
+    auto actor = io::open_actor(file, context_,
                                 {.with_morphs = true,
                                  .with_motions = false,
                                  .stays_still = options_.motions.empty(),
@@ -171,9 +178,10 @@ class Loader {
   Status read_first() {
     Clip& clip = subject_.clip;
     const std::string& path = options_.motions.front();
-    auto read = open(path, subject_.stretches);
+    auto read = take_ != nullptr ? take_->clip : open(path, subject_.stretches);
     if (!read) return read.error();
     clip = std::move(*read);
+    if (take_ != nullptr) subject_.frames = take_->frames;
     carry_twist_joints(subject_.model.skeleton, clip, subject_.stretches);
     auto bound =
         bind_to(context_.keep_going ? subject_.model : std::move(subject_.model), clip.skeleton);
@@ -185,7 +193,14 @@ class Loader {
     };
     std::erase_if(subject_.eyes, is_removed);
     std::erase_if(subject_.sockets, is_removed);
-    report_differences(clip, path);
+    if (!subject_.frames) {
+      report_differences(clip, path);
+      return {};
+    }
+    const auto found =
+        reference_differences(subject_.model.skeleton, *subject_.frames, context_.jobs);
+    if (!found) return found.error();
+    context_.diagnose_in(path, *found);
     return {};
   }
 
@@ -505,7 +520,7 @@ class Loader {
       for (int frame = 1; frame < *needed; ++frame) {
         subject_.stretches.insert(subject_.stretches.end(), still.begin(), still.end());
       }
-    } else if (const double over = weights_->curves.duration() - clip.duration();
+    } else if (const double over = weights_->curves.duration() - subject_.duration();
                over > 1 / clip.rate) {
       context_.diagnose(
           warning("skin-weights-longer",
@@ -514,7 +529,7 @@ class Loader {
     }
     // Those of several motions do not change, unless each has its own.
     const bool still = options_.motions.size() > 1 && !options_.has_weights_by_clip();
-    const int frames = still ? 1 : std::max(1, clip.frame_count());
+    const int frames = still ? 1 : std::max(1, subject_.frame_count());
     auto weights = sample(weights_->curves, clip.rate, frames);
     if (!weights) return Error(weights.error()).in_file(options_.weights);
     subject_.weights = std::move(*weights);
@@ -522,15 +537,19 @@ class Loader {
   }
 
   Status take_part() {
-    const auto range = chosen_range(options_, subject_.clip);
+    const auto range = chosen_range(options_, subject_.clip.rate, subject_.frame_count());
     if (!range) {
       return Error(range.error())
           .in_file(options_.motions.empty() ? options_.subject : options_.motions.front());
     }
     if (!*range) return {};
     const auto [first, last, every] = **range;
+    if (subject_.frames) {
+      subject_.frames = part_of(*subject_.frames, first, last - first + 1);
+    } else {
+      subject_.clip = cut(subject_.clip, first, last, every);
+    }
     subject_.stretches = cut(subject_.stretches, subject_.clip.joint_count(), first, last, every);
-    subject_.clip = cut(subject_.clip, first, last, every);
     subject_.first_frame = first;
     subject_.every = every;
     if (!subject_.changes_shape() || subject_.weights.frame_count() == 1) return {};
@@ -562,6 +581,7 @@ class Loader {
 
   Options& options_;
   ToolContext& context_;
+  const LongTake* take_;
   Subject subject_;
   std::vector<float> rest_weights_;  // [targets], for characters
   std::optional<weights::WeightFile> weights_;
@@ -577,17 +597,19 @@ class Loader {
 std::vector<Subject::NamedMotion> Subject::all_motions(const std::string& still_name) const {
   std::vector<NamedMotion> motions;
   if (!clip_name.empty() || weights.frame_count() > 1) {
-    motions.push_back({clip_name.empty() ? still_name : clip_name, clip, stretches, weights});
+    motions.push_back({clip_name.empty() ? still_name : clip_name, clip,
+                       frames ? &*frames : nullptr, stretches, weights});
   }
   for (const Motion& other : others) {
     const bool own = !other.weights.values.empty();
-    motions.push_back({other.name, other.clip, other.stretches, own ? other.weights : weights});
+    motions.push_back(
+        {other.name, other.clip, nullptr, other.stretches, own ? other.weights : weights});
   }
   return motions;
 }
 
-Result<Subject> load(Options& options, ToolContext& context) {
-  return Loader(options, context).load();
+Result<Subject> load(Options& options, ToolContext& context, const LongTake* take) {
+  return Loader(options, context, take).load();
 }
 
 }  // namespace krok::cli::skin

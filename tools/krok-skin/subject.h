@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/result.h"
 #include "scene/character.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/material.h"
 #include "scene/model.h"
 #include "scene/morph_set.h"
@@ -17,8 +19,10 @@ namespace krok::cli::skin {
 
 // The input of skinning: a mesh and a motion on one skeleton, with morph targets.
 struct Subject {
-  Model model;                     // on the motion's skeleton, with triangles
-  Clip clip;                       // the selected range
+  Model model;  // on the motion's skeleton, with triangles
+  Clip clip;    // the selected range
+  // Of a long take: its frames, of which `clip` then has none; for --as rig and motion.
+  std::optional<FrameSource> frames;
   Stretches stretches;             // of the joints in `clip`; none if they are rigid
   std::string clip_name;           // of its file; empty without a motion
   int first_frame = 0, every = 1;  // of the motion as read, for file names
@@ -53,17 +57,26 @@ struct Subject {
   struct NamedMotion {
     std::string name;
     const Clip& clip;
+    const FrameSource* frames;  // of a long take
     const Stretches& stretches;
     const MorphWeights& weights;
   };
   std::vector<NamedMotion> all_motions(const std::string& still_name) const;
 
+  int frame_count() const { return frames ? frames->frame_count : clip.frame_count(); }
+  double duration() const { return frames ? frames->duration() : clip.duration(); }
   bool changes_shape() const { return !weights.values.empty(); }
 };
 
 // Reads the input files. Codes: those of their readers, of bind_to() and chosen_range(),
 // skin-empty-model, skin-morphs, skin-attach; with --retarget of transfer(). Motions that
-// --keep-going leaves out are removed from the options.
-Result<Subject> load(Options& options, ToolContext& context);
+// --keep-going leaves out are removed from the options. `take`: the only motion, without frames,
+// and its frames, if they are not to be held in memory.
+struct LongTake {
+  const InputFile& subject;
+  Clip clip;
+  const FrameSource& frames;
+};
+Result<Subject> load(Options& options, ToolContext& context, const LongTake* take = nullptr);
 
 }  // namespace krok::cli::skin

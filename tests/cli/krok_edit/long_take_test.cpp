@@ -60,6 +60,7 @@ TEST_F(LongTake, MemoryDoesNotGrowWithTheFrames) {
       {"krok-export", {"--what", "local", "--layout", "wide", "-o", "out.csv"}},
       {"krok-export", {"--what", "quaternions", "-o", "out.sto"}},
       {"krok-body", {"--detail", "low", "-o", "out.model"}, 0},
+      {"krok-export", {"-o", "out.glb"}},
       {"krok-edit", {"--filter", "auto", "-o", "out.anim"}},
       {"krok-ik", {"--reach", "Head=0.5m,1.5m,0m@10s..20s", "-o", "out.anim"}},
       {"krok-retarget", {"--onto", "short.bvh", "--scale", "2", "-o", "out.anim"}, 0}};
@@ -151,6 +152,27 @@ TEST_F(LongTake, LargeFilesAreReadInParts) {
   data_ = 72 << 20;
   peak("krok-export", "long.anim", {"-o", "out.npz"});
   peak("krok-lint", "long.anim", {"--only", "frozen"});
+}
+
+// Would fail if the keys of a rig, or what a camera looks at, were held in memory.
+TEST_F(LongTake, RigsAndCamerasAreMadeInParts) {
+  if (sanitized()) GTEST_SKIP() << "skipped: sanitizers keep memory for themselves";
+  samples::WalkOptions how;
+  how.steps = 900;
+  how.rate = 240;
+  const Clip walk = samples::make_walk(how)->clip;
+  write("walk.anim", walk);
+  ASSERT_EQ(run_here("krok-body", {"walk.anim", "--detail", "low", "-o", "b.model"}).exit_code, 0);
+  data_ = 96 << 20;
+  peak("krok-skin", "b.model", {"walk.anim", "-o", "out.glb"});
+  EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], walk.frame_count());
+  peak("krok-skin", "b.model", {"walk.anim", "--from", "100f", "--to", "400f", "-o", "part.glb"});
+  ASSERT_EQ(run_here("krok-edit", {"walk.anim", "--from", "100f", "--to", "400f", "-o", "p.anim"})
+                .exit_code,
+            0);
+  EXPECT_EQ(run_here("krok-diff", {"part.glb", "p.anim"}).exit_code, 0);
+  peak("krok-cam", "walk.anim", {"--follow", "hips", "-o", "out.cam"});
+  EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], walk.frame_count());
 }
 
 // Would fail if feet were planted in all frames at once, or nothing of it were reported.
