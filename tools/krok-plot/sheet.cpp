@@ -315,8 +315,14 @@ Status make_sheets(const std::vector<std::string>& inputs, const SheetOptions& o
                    ToolContext& context, OutputSet& outputs, std::vector<std::string>& done) {
   Results results{context, outputs, done};
   const std::vector<ImageSide> sides = sides_seen(options.image);
-  const auto actors =
-      read_actors(inputs, {options.body, options.method, options.clip, true}, context);
+  const auto actors = read_actors(inputs,
+                                  {.body = options.body,
+                                   .method = options.method,
+                                   .clip = options.clip,
+                                   .every_clip = true,
+                                   .from = options.from,
+                                   .to = options.to},
+                                  context);
   if (!actors) return actors.error();
   const auto ground = open_sheet_ground(options.ground, options.prints, context);
   if (!ground) return ground.error();

@@ -102,6 +102,8 @@ Result<std::vector<MovingActor>> read_all(const Options& options, ToolContext& c
   std::vector<std::string> paths = options.inputs;
   ActorOptions how = options.actors;
   how.first_is_model = !options.model.empty();
+  how.from = options.from;
+  how.to = options.to;
   if (how.first_is_model) paths.insert(paths.begin(), options.model);
   auto actors = read_actors(paths, how, context);
   if (!actors) return actors;

@@ -10,24 +10,28 @@
 #include <numeric>
 #include <optional>
 
-#include "body/body.h"
+#include "body/long_take.h"
 #include "core/in_order.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/quantity.h"
 #include "core/text.h"
+#include "formats/io/formats.h"
 #include "formats/io/open_character.h"
+#include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
 #include "motion/ground_frame.h"
 #include "nodes/animation_choice.h"
 #include "nodes/scene_of.h"
 #include "roles/body_frame.h"
+#include "scene/frame_blocks.h"
 #include "skin/scene_of.h"
 #include "tools/cli/file_name.h"
 #include "tools/cli/usage.h"
 #include "tools/shared/bone_actor.h"
 #include "tools/shared/drawn_scene.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli {
 
@@ -43,6 +47,7 @@ struct Drawn {
   int carrier = 0;        // joint
   double frame_rate = 0;  // of an actor's motion: drawn at its frames, not in between
   int frame_count = 0;
+  int first_frame = 0;  // of the scene's; those before are not there
   // Where its body faces in the reference pose; of a file's scene that without animation, any.
   double front = 0;
   bool in_floats = false;  // what is followed is in the floats that are drawn
@@ -50,7 +55,7 @@ struct Drawn {
   SceneState state_at(double time, bool joints_alone) const {
     if (frame_count > 0) {
       const double last = frame_count - 1;
-      time = std::clamp(std::round(time * frame_rate), 0.0, last) / frame_rate;
+      time = (std::clamp(std::round(time * frame_rate), 0.0, last) - first_frame) / frame_rate;
     }
     SceneState state;
     state.joints_alone = joints_alone;
@@ -117,7 +122,8 @@ struct Read {
   struct One {
     Actor actor;
     std::vector<Place> places;
-    bool one_grey_is_none = false;  // of its materials, as of glTF files
+    bool one_grey_is_none = false;         // of its materials, as of glTF files
+    int first_frame = 0, frame_count = 0;  // of a take whose clip is a part of it
   };
   std::vector<One> motions, models;
   std::multimap<std::size_t, MovingActor> actors;  // keyed by input index
@@ -148,10 +154,11 @@ void Read::draw(One one, SkinMethod method, bool bones) {
       const Clip& clip = actor->motions[i].clip;
       drawn.skeleton = clip.skeleton;
       drawn.animation = clip.frame_count() > 0 ? static_cast<int>(i) : -1;
-      drawn.frame_count = clip.frame_count();
+      drawn.frame_count = one.frame_count > 0 ? one.frame_count : clip.frame_count();
+      drawn.first_frame = one.first_frame;
       drawn.frame_rate = clip.rate;
-      if (clip.frame_count() > 0) {
-        facts += fmt::format(", {}, {} fps", counted(clip.frame_count(), "frame"),
+      if (drawn.frame_count > 0) {
+        facts += fmt::format(", {}, {} fps", counted(drawn.frame_count, "frame"),
                              readable(clip.rate, 4));
       }
     }
@@ -160,6 +167,7 @@ void Read::draw(One one, SkinMethod method, bool bones) {
     drawn.front = front_of(drawn.skeleton, roles);
     MovingActor made = moving(one.places[i].path, std::move(drawn));
     made.facts = std::move(facts);
+    if (one.frame_count > 0) made.duration = (one.frame_count - 1) / made.rate;
     actors.emplace(one.places[i].index, std::move(made));
   }
 }
@@ -232,6 +240,40 @@ Status read_gltf(const InputFile& input, std::size_t place, const ActorOptions& 
   return {};
 }
 
+// The frames of a long take from options.from to options.to, and its body.
+Status add_part(const InputFile& input, const ActorOptions& options, ToolContext& context,
+                Read& read) {
+  Read::One one;
+  one.places = {{0, input.path()}};
+  const auto use = [&](const FrameSource& frames) -> Status {
+    const int last = frames.frame_count - 1;
+    const auto frame_of = [&](const std::optional<ClipTime>& time, int otherwise) {
+      if (!time) return otherwise;
+      const double frame = std::round(time->seconds(frames.rate) * frames.rate);
+      return static_cast<int>(std::clamp(frame, 0.0, static_cast<double>(last)));
+    };
+    one.frame_count = frames.frame_count;
+    one.first_frame = frame_of(options.from, 0);
+    const int end = std::max(one.first_frame, frame_of(options.to, last)) + 1;
+    auto clip = load(part_of(frames, one.first_frame, end - one.first_frame), context.jobs);
+    if (!clip) return clip.error();
+    one.actor.motions.clear();
+    one.actor.motions.emplace_back().clip = *std::move(clip);
+    if (options.body == BodyChoice::none) return {};
+    const bool medium = options.body == BodyChoice::automatic;
+    BodyOptions how = body_options(medium ? BodyChoice::medium : options.body, context);
+    how.progress = nullptr;
+    auto body = make_body(frames, how);
+    if (!body) return std::move(body).error().in_file(input.path());
+    one.actor.model = std::move(body->model);
+    return {};
+  };
+  const auto motion = io::stream_motion(input, context, use);
+  if (!motion) return motion.error();
+  read.motions.push_back(std::move(one));
+  return {};
+}
+
 Status add_file(const std::string& path, std::size_t place, const ActorOptions& options,
                 ToolContext& context, Read& read) {
   const bool bones = options.body == BodyChoice::none;
@@ -241,6 +283,11 @@ Status add_file(const std::string& path, std::size_t place, const ActorOptions& 
   const bool as_model = options.first_is_model && place == 0;
   if ((kind == Kind::glb || kind == Kind::gltf) && !as_model) {
     return read_gltf(*input, place, options, context, read);
+  }
+  const io::Format& format = io::format_of(*input);
+  if ((options.from || options.to) && input->bytes().size() >= kLongTake &&
+      (kind == Kind::anim || format.open_capture != nullptr)) {
+    return add_part(*input, options, context, read);
   }
   auto actor = io::open_actor(
       *input, context,
@@ -443,7 +490,9 @@ Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& giv
   const bool bones = options.body == BodyChoice::none;
   const SkinMethod method = options.method;
   const std::vector<std::string> paths = each_clip(given, options, context);
-  if (Status status = add_files(paths, options, context, read); !status) return status.error();
+  ActorOptions how = options;
+  if (paths.size() > 1) how.from = how.to = {};  // they may share a body
+  if (Status status = add_files(paths, how, context, read); !status) return status.error();
   if (!paths.empty() && context.left_out.size() == paths.size()) return none_can_be_used();
   share_models(bones, read);
   if (Status status = make_bodies(options.body, context, read); !status) return status.error();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct ActorOptions {
       clip;  // of glTF files with animations: a name or an index; empty: see best_animation()
   bool every_clip = false;      // without `clip`: an actor for each animation of a glTF file
   bool first_is_model = false;  // of a glTF or other scene, too, for the motions after it
+  // If set, an actor needs to be shown between these times alone: of a long take, no other frames
+  // are held in memory.
+  std::optional<ClipTime> from = {}, to = {};
 };
 
 // The part of an actor's motion between the times of --from and --to, or its ends. Code usage.
