@@ -35,11 +35,13 @@ using krok::lint::Finding;
 // Files that are open at once.
 constexpr std::size_t kOpenFiles = 64;
 
-// By the animation's name in a file of several.
+// By the animation's name in a file of several. Laboratories call trials of several steps cycles.
 bool is_named_loop(const LintedFile& file) {
+  constexpr double kLongestCycle = 2.5;  // seconds
   const std::string name =
       ascii_lower(file.animation.empty() ? name_of_input(file.path) : file.animation);
-  return name.find("loop") != std::string::npos || name.find("cycle") != std::string::npos;
+  return name.find("loop") != std::string::npos ||
+         (name.find("cycle") != std::string::npos && file.seconds(file.frames) < kLongestCycle);
 }
 
 // The height of the ground below a point, or of what is just above it.

@@ -56,8 +56,9 @@ void declare(CommandOptions& command, Options& o) {
                     "stairs:rise=17cm,run=29cm, slope:12deg. Default: level, where they stand");
   command.add_flag("--treadmill", o.treadmill,
                    "The ground moves: foot-slide and drift do not apply");
-  command.add_flag("--loops", o.loops,
-                   "All motions repeat; otherwise those with loop or cycle in their name do");
+  command.add_flag(
+      "--loops", o.loops,
+      "All motions repeat; otherwise those with loop in their name do, and short ones with cycle");
   command.add_flag("--self-intersection", o.self_intersection,
                    "Also use the rule self-intersection, which is slow");
   command.group("Output");

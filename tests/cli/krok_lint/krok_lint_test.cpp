@@ -7,6 +7,7 @@
 #include "cli/motion_fixture.h"
 #include "core/index.h"
 #include "math/quaternion.h"
+#include "motion/cut.h"
 #include "motion/local_motion.h"
 #include "support/glb_builder.h"
 
@@ -177,6 +178,17 @@ TEST_F(KrokLint, ReportsAreWhatOtherProgramsRead) {
   // A rule that did not run would be green.
   EXPECT_THAT(junit, HasSubstr("name=\"duplicate\"><skipped"));
   EXPECT_THAT(text_of("out.csv"), HasSubstr("spi ked.anim,,pop,spike,error,2,120,LeftForeArm,1,"));
+}
+
+// Trials of several steps have "Cycle" in their names, and were blamed for a seam that they lack.
+TEST_F(KrokLint, LongTakesCalledCyclesAreNoLoops) {
+  const Clip trial = cut(write_walk(8), 60, 225);
+  ASSERT_GT(trial.duration(), 2.5);
+  write("A1_Cycle1.anim", trial);
+  EXPECT_THAT(run_here("krok-lint", {"A1_Cycle1.anim", "--only", "loop-seam"}).out,
+              Not(HasSubstr("loop-seam")));
+  EXPECT_THAT(run_here("krok-lint", {"A1_Cycle1.anim", "--only", "loop-seam", "--loops"}).out,
+              HasSubstr("loop-seam"));
 }
 
 // Would fail if repairs were kept that mend nothing: here a small spike, which is no fault, beside
