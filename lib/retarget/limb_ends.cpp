@@ -62,6 +62,31 @@ std::optional<Vec3> end_of(const Model& model, int joint) {
   return place + reach(along) * along;
 }
 
+// The hand or foot by name of a forearm or shin that is none's child on the way to it; -1 if there
+// is none.
+int loose_end(const Skeleton& skeleton, const std::vector<JointName>& names, int limb) {
+  const JointName& of_limb = names[at(limb)];
+  const Part wanted = of_limb.part == Part::lower_arm ? Part::hand : Part::foot;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    if (names[at(j)].part == wanted && names[at(j)].side == of_limb.side) return j;
+  }
+  return -1;
+}
+
+// A joint that hangs elsewhere and goes with one of those that were added.
+struct LooseEnd {
+  int end = 0, joint = 0;
+};
+std::vector<LooseEnd> loose_ends(const Skeleton& skeleton, int count) {
+  const std::vector<JointName> names = read_joint_names(skeleton);
+  std::vector<LooseEnd> loose;
+  for (int end = skeleton.joint_count() - count; end < skeleton.joint_count(); ++end) {
+    const int joint = loose_end(skeleton, names, skeleton.parents[at(end)]);
+    if (joint >= 0 && joint < skeleton.joint_count() - count) loose.push_back({end, joint});
+  }
+  return loose;
+}
+
 Skeleton without_last(Skeleton skeleton, int count) {
   const std::size_t kept = skeleton.names.size() - at(count);
   skeleton.names.resize(kept);
@@ -82,10 +107,15 @@ Skeleton with_limb_ends(const Model& model) {
     const JointName& name = names[at(j)];
     if (name.side == Side::middle || !children[at(j)].empty()) continue;
     if (name.part != Part::lower_arm && name.part != Part::lower_leg) continue;
+    const std::string end_name = model.skeleton.names[at(j)] + "_end";
+    if (const int loose = loose_end(model.skeleton, names, j); loose >= 0) {
+      with_ends.add(end_name, j, model.skeleton.reference[at(loose)]);
+      continue;
+    }
     const auto end = end_of(model, j);
     if (!end) continue;
     const Quat& turn = model.skeleton.reference[at(j)].orientation;
-    with_ends.add(model.skeleton.names[at(j)] + "_end", j, {*end, turn});
+    with_ends.add(end_name, j, {*end, turn});
   }
   return find_roles(with_ends).humanoid ? with_ends : model.skeleton;
 }
@@ -95,13 +125,37 @@ FrameSource without_last_joints(FrameSource frames, int count) {
   FrameSource kept = frames;
   kept.skeleton = without_last(frames.skeleton, count);
   const std::size_t from = frames.skeleton.names.size(), to = kept.skeleton.names.size();
-  kept.read = [read = std::move(frames.read), from, to](int first, int frame_count,
-                                                        std::span<Vec3f> positions,
-                                                        std::span<Quatf> orientations) -> Status {
+  // Joints with the end that carries them, and their places in its frame.
+  struct Carried {
+    std::size_t joint, end;
+    Transform in_end;
+  };
+  std::vector<Carried> carried;
+  const Skeleton& skeleton = frames.skeleton;
+  for (const LooseEnd& loose : loose_ends(skeleton, count)) {
+    std::vector<char> below(from, 0);
+    for (std::size_t j = at(loose.joint); j < to; ++j) {
+      const int parent = skeleton.parents[j];
+      below[j] = j == at(loose.joint) || (parent >= 0 && below[at(parent)] != 0) ? 1 : 0;
+      if (below[j] == 0) continue;
+      const Transform in_end = skeleton.reference[at(loose.end)].inverse() * skeleton.reference[j];
+      carried.push_back({j, at(loose.end), in_end});
+    }
+  }
+  kept.read = [read = std::move(frames.read), carried = std::move(carried), from, to](
+                  int first, int frame_count, std::span<Vec3f> positions,
+                  std::span<Quatf> orientations) -> Status {
     std::vector<Vec3f> places(at(frame_count) * from);
     std::vector<Quatf> turns(places.size());
     if (Status status = read(first, frame_count, places, turns); !status) return status;
     for (std::size_t f = 0; f < at(frame_count); ++f) {
+      for (const Carried& one : carried) {
+        const Transform end{places[f * from + one.end].cast<double>(),
+                            turns[f * from + one.end].cast<double>()};
+        const Transform moved = end * one.in_end;
+        places[f * from + one.joint] = moved.position.cast<float>();
+        turns[f * from + one.joint] = moved.orientation.cast<float>();
+      }
       std::copy_n(places.begin() + static_cast<std::ptrdiff_t>(f * from), to,
                   positions.begin() + static_cast<std::ptrdiff_t>(f * to));
       std::copy_n(turns.begin() + static_cast<std::ptrdiff_t>(f * from), to,
@@ -120,10 +174,11 @@ Clip without_last_joints(Clip clip, int count) {
 }
 
 void give_to_parents(const Skeleton& skeleton, int count, std::vector<Contact>& contacts) {
+  const std::vector<LooseEnd> loose = loose_ends(skeleton, count);
   for (Contact& contact : contacts) {
-    if (contact.joint >= skeleton.joint_count() - count) {
-      contact.joint = skeleton.parents[at(contact.joint)];
-    }
+    if (contact.joint < skeleton.joint_count() - count) continue;
+    const auto found = std::ranges::find(loose, contact.joint, &LooseEnd::end);
+    contact.joint = found != loose.end() ? found->joint : skeleton.parents[at(contact.joint)];
   }
 }
 

@@ -1,6 +1,7 @@
 #include "roles/role_finder_internal.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 
@@ -84,15 +85,18 @@ int unnamed_head(const NamedJoints& joints, const LimbTips& tips) {
   };
   const int chest = joints.common_ancestor(tips.hands[0], tips.hands[1]);
   if (joints.descends(tips.feet[0], chest)) return -1;  // all limbs on one joint: up is unknown
-  int head = -1;
+  // A vertebra rather than a bow or a scarf.
+  std::array<int, 2> found = {0, 0}, heads = {-1, -1};
   for (const int child : joints.children(chest)) {
     if (joints.is_end(child) || joints.descends(tips.hands[0], child) ||
         joints.descends(tips.hands[1], child)) {
       continue;
     }
-    if (head >= 0 || !may_lead_on(child)) return -1;
-    head = child;
+    const std::size_t kind = may_lead_on(child) && joints.part(child) == Part::spine ? 0 : 1;
+    found[kind] += may_lead_on(child) ? 1 : 2;
+    heads[kind] = child;
   }
+  int head = found[0] == 1 ? heads[0] : found[0] == 0 && found[1] == 1 ? heads[1] : -1;
   while (head >= 0 && joints.children(head).size() == 1 && may_lead_on(joints.children(head)[0])) {
     head = joints.children(head)[0];
   }

@@ -225,10 +225,11 @@ class RoleFinder {
       }
       const Role from = above >= 0 ? role(above) : Role::none;
       const Role inherited = beyond(from);
-      // Beside or above the toes: a metatarsal, a heel, the joint of a mesh.
+      // Beside or above the toes: a metatarsal, a heel, the joint of a mesh, another foot.
+      const bool beside = above >= 0 && leads_to_toes(above);
       const bool of_foot = (from == Role::left_foot || from == Role::right_foot) &&
-                           joints_.part(j) == Part::unknown &&
-                           (leads_to_toes(j) || leads_to_toes(above));
+                           ((joints_.part(j) == Part::unknown && (leads_to_toes(j) || beside)) ||
+                            (joints_.part(j) == Part::foot && beside && !leads_to_toes(j)));
       if (joints_.is_helper(j) || joints_.part(j) == Part::hips || of_foot) {
         role(j) = Role::helper;
       } else if (inherited != Role::none) {

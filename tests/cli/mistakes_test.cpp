@@ -237,7 +237,7 @@ TEST_F(Mistakes, WhatOtherToolsOrOptionsTakeLeadsThere) {
               HasSubstr("check the path; --onto IN.model"));
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "--filter", "butterworth,6", "-o", "a.anim"}),
               HasSubstr("write --filter butterworth --cutoff 6"));
-  EXPECT_THAT(refused("krok-info", {"in.bvh", "--csv"}), HasSubstr("krok-keys has --table"));
+  EXPECT_THAT(refused("krok-info", {"in.bvh", "--csv"}), HasSubstr("use --json"));
   EXPECT_THAT(refused("krok-retarget", {"in.bvh", "--onto", "in.bvh", "-o", "a.glb"}),
               HasSubstr("krok-skin MESH MOTION --retarget"));
   EXPECT_THAT(refused("krok-walk", {"--path", "way.svg", "-o", "a.anim"}),

@@ -136,12 +136,12 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     }
     std::vector<std::string> hints;
     if (is_long && spec_.tools_with) {
-      std::vector<std::string> tools = spec_.tools_with(dashed);
-      const bool many = tools.size() > 3;
-      if (many) tools.resize(3);
-      if (!tools.empty()) {
-        hints.push_back(fmt::format("{}{} {} it", fmt::join(tools, ", "), many ? " and others" : "",
-                                    tools.size() == 1 ? "has" : "have"));
+      auto tools = spec_.tools_with(dashed);
+      // Of a word with many uses it says nothing.
+      if (tools.size() > 2) tools.clear();
+      for (const auto& [tool, does] : tools) {
+        const std::string first = does.substr(0, does.find_first_of(".;:"));
+        hints.push_back(fmt::format("{} has it: {}", tool, first));
       }
     }
     if (is_long && hints.empty()) {

@@ -205,8 +205,10 @@ struct ToolSpec {
   // (FILE#ANIMATION), for this output. Called after the options are parsed. None: no.
   std::function<bool(const std::string& output)> each_animation;
 
-  // Tools that have an option, for whoever gives it to another; may be empty.
-  std::function<std::vector<std::string>(const std::string& option)> tools_with;
+  // Tools that have an option, and what it does there, for whoever gives it to another; may be
+  // empty.
+  using ToolWithOption = std::pair<std::string, std::string>;
+  std::function<std::vector<ToolWithOption>(const std::string& option)> tools_with;
 
   // Adds the tool's own options and positionals.
   std::function<void(CommandOptions&)> declare;

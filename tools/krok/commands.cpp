@@ -57,12 +57,13 @@ const Command* find_command(std::string_view verb) {
 
 namespace {
 
-std::vector<std::string> tools_with(const std::string& option) {
-  std::vector<std::string> tools;
+std::vector<ToolSpec::ToolWithOption> tools_with(const std::string& option) {
+  std::vector<ToolSpec::ToolWithOption> tools;
   for (const Command& command : commands()) {
     const ToolSpec spec = command.make_spec();
     for (const OptionFacts& facts : CommandLine(spec, CommandLine::Form::single).options()) {
-      if (std::ranges::find(facts.names, option) != facts.names.end()) tools.push_back(spec.name);
+      if (std::ranges::find(facts.names, option) == facts.names.end()) continue;
+      tools.emplace_back(spec.name, facts.description);
     }
   }
   return tools;

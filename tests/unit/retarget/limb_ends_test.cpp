@@ -54,6 +54,38 @@ class Blocks {
   }
 };
 
+// Rigs whose feet hang on the root, as goals of inverse kinematics: shoes stayed behind, 19.5 cm
+// apart in each frame of any motion.
+TEST(LimbEnds, FeetThatHangElsewhereGoWithTheLegs) {
+  Model model = Blocks().model;
+  for (const double side : {1.0, -1.0}) {
+    const std::string letter = side > 0 ? ".L" : ".R";
+    const int foot =
+        model.skeleton.add("foot" + letter, 0, {{side * 0.12, 0.08, 0}, Quat::Identity()});
+    model.skeleton.add("sole" + letter, foot, {{side * 0.12, 0, 0.1}, Quat::Identity()});
+  }
+  const Skeleton with_ends = with_limb_ends(model);
+  ASSERT_EQ(with_ends.joint_count(), model.skeleton.joint_count() + 4);
+  const auto walk = samples::make_walk({});
+  ASSERT_TRUE(walk.ok());
+  const auto made = test::transfer(walk->clip, with_ends, {});
+  ASSERT_TRUE(made.ok());
+  const Clip clip = without_last_joints(made->clip, 4);
+  ASSERT_EQ(clip.skeleton.names, model.skeleton.names);
+  const auto apart = [&](int frame, const char* a, const char* b) {
+    const auto places = clip.frame_positions(frame);
+    return (places[at(clip.skeleton.find(a))] - places[at(clip.skeleton.find(b))]).norm();
+  };
+  float nearest = 1e9F, farthest = 0;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    EXPECT_NEAR(apart(f, "leg_lower.L", "foot.L"), 0.32, 1e-4);
+    EXPECT_NEAR(apart(f, "foot.R", "sole.R"), std::hypot(0.08, 0.1), 1e-4);
+    nearest = std::min(nearest, apart(f, "foot.L", "foot.R"));
+    farthest = std::max(farthest, apart(f, "foot.L", "foot.R"));
+  }
+  EXPECT_GT(farthest - nearest, 0.2F);
+}
+
 TEST(LimbEnds, AreWhereTheMeshEnds) {
   Model model = Blocks().model;
   ASSERT_FALSE(find_roles(model.skeleton).humanoid);

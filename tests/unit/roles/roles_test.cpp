@@ -74,11 +74,27 @@ TEST(Roles, AHeadWithoutANameIsWhatLeadsOnBetweenTheArms) {
   EXPECT_TRUE(map.humanoid) << table(vertebrae, map);
   EXPECT_EQ(joint_name(vertebrae, map, Role::head), "Atlas");
   EXPECT_EQ(joint_name(vertebrae, map, Role::chest), "T9");
+  // A vertebra leads on, a bow and a scarf do not: Rigify names no head.
+  const Skeleton dressed = skeleton_from_text(
+      limbs + " ..Bow ...Bow_L ...Bow_R ..Spine4 ...Spine5 ....Hair1 ....Hair2 ..Scarf");
+  EXPECT_EQ(joint_name(dressed, find_roles(dressed), Role::head), "Spine5");
   // Two ways lead on, or what does is no part of a body, or of one side.
   for (const char* more : {" ..C7 ..Mast", " ..Tail", " ..LeftWing", ""}) {
     const Skeleton headless = skeleton_from_text(limbs + more);
     EXPECT_EQ(joint_name(headless, find_roles(headless), Role::head), "-") << more;
   }
+}
+
+// A second foot beside the toes was taken for toes, and turned both feet by 56 degrees.
+TEST(Roles, AFootBesideTheToesIsAHelper) {
+  const Skeleton skeleton = skeleton_from_text(
+      "Hips .Spine ..Neck ...Head ..LeftArm ...LeftForeArm ....LeftHand ..RightArm "
+      "...RightForeArm ....RightHand .LeftUpLeg ..LeftLeg ...LeftFoot ....L_Foot ....LeftToeBase "
+      ".RightUpLeg ..RightLeg ...RightFoot ....R_Foot ....RightToeBase");
+  const RoleMap map = find_roles(skeleton);
+  EXPECT_EQ(map.roles[static_cast<std::size_t>(skeleton.find("R_Foot"))], Role::helper)
+      << table(skeleton, map);
+  EXPECT_EQ(joint_name(skeleton, map, Role::right_toes), "RightToeBase");
 }
 
 TEST(Roles, AHandThatHangsUnderNoArmIsNotTheHand) {
