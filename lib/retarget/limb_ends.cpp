@@ -62,13 +62,17 @@ std::optional<Vec3> end_of(const Model& model, int joint) {
   return place + reach(along) * along;
 }
 
-// The hand or foot by name of a forearm or shin that is none's child on the way to it; -1 if there
-// is none.
+// The hand or foot by name that belongs to a forearm or shin without children, and hangs elsewhere;
+// -1 if there is none. What is farther off than a limb is long is something else.
 int loose_end(const Skeleton& skeleton, const std::vector<JointName>& names, int limb) {
   const JointName& of_limb = names[at(limb)];
   const Part wanted = of_limb.part == Part::lower_arm ? Part::hand : Part::foot;
+  const auto place = [&](int joint) { return skeleton.reference[at(joint)].position; };
+  const double longest = 1.5 * (place(limb) - place(skeleton.parents[at(limb)])).norm();
   for (int j = 0; j < skeleton.joint_count(); ++j) {
-    if (names[at(j)].part == wanted && names[at(j)].side == of_limb.side) return j;
+    if (names[at(j)].part != wanted || names[at(j)].side != of_limb.side) continue;
+    const double length = (place(j) - place(limb)).norm();
+    if (length > 0.2 * longest && length < longest) return j;
   }
   return -1;
 }

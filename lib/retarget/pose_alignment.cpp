@@ -14,7 +14,7 @@ namespace krok::retarget {
 namespace {
 
 // Of what a leg is more to the side, how far the sole may be tilted.
-constexpr double kMostTilt = 1.3;
+constexpr double kMaxTilt = 1.3;
 
 double degrees(double angle) {
   return angle * kRadiansPerDegree;
@@ -278,8 +278,8 @@ class Aligner {
     const Vec3 heading = (front - front.dot(kUp) * kUp).stableNormalized();
     const double wider = spread_of(source_, leg) - spread_of(target_, leg);
     const double tilt =
-        std::clamp(std::asin(std::clamp(left.y(), -1.0, 1.0)), std::min(0.0, kMostTilt * wider),
-                   std::max(0.0, kMostTilt * wider));
+        std::clamp(std::asin(std::clamp(left.y(), -1.0, 1.0)), std::min(0.0, kMaxTilt * wider),
+                   std::max(0.0, kMaxTilt * wider));
     const double size = std::abs(tilt);
     const double share = smooth_step(degrees(5), degrees(10), size) *
                          (1 - smooth_step(degrees(40), degrees(50), size));

@@ -84,6 +84,15 @@ TEST(LimbEnds, FeetThatHangElsewhereGoWithTheLegs) {
     farthest = std::max(farthest, apart(f, "foot.L", "foot.R"));
   }
   EXPECT_GT(farthest - nearest, 0.2F);
+  // A foot that is elsewhere, as a spare part beside the body, is none of the leg's.
+  for (const char* foot : {"foot.L", "foot.R"}) {
+    model.skeleton.reference[at(model.skeleton.find(foot))].position = Vec3(3, 0, 0);
+  }
+  const Skeleton apart_from_it = with_limb_ends(model);
+  EXPECT_LT((apart_from_it.reference[at(apart_from_it.find("leg_lower.L_end"))].position -
+             Vec3(0.12, 0, 0))
+                .norm(),
+            1e-6);
 }
 
 TEST(LimbEnds, AreWhereTheMeshEnds) {
