@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <string>
 #include <utility>
 
 #include "core/quantity.h"
+#include "core/text.h"
 
 namespace krok {
 
@@ -30,7 +32,8 @@ std::string_view direction_name(Direction direction) {
 }
 
 Result<Direction> parse_direction(std::string_view text) {
-  std::string_view plain = text;
+  const std::string small = ascii_lower(text);  // "Z", as other programs write it
+  std::string_view plain = small;
   if (plain.starts_with('+')) plain.remove_prefix(1);
   for (std::size_t i = 0; i < kDirectionNames.size(); ++i) {
     if (plain == kDirectionNames[i] && !(text.starts_with('+') && plain.starts_with('-'))) {

@@ -288,6 +288,35 @@ TEST_F(Mistakes, MissingAndSwappedArgumentsLeadOn) {
   EXPECT_TRUE(std::filesystem::exists(path("in.gltf"))) << "beside the input";
 }
 
+// Would fail if a run that does what was asked, but hardly what was meant, said nothing of it.
+TEST_F(Mistakes, WhatWasHardlyMeantIsSaid) {
+  ASSERT_EQ(run_here("krok-body", {"in.bvh", "-o", "a.model"}).exit_code, 0);
+  std::string other = capture(5);
+  for (std::size_t at; (at = other.find("Spine")) != std::string::npos;)
+    other.replace(at, 5, "Rib");
+  put("other.bvh", other);
+  put("face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  put("smile.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+  const struct {
+    std::string tool;
+    std::vector<std::string> arguments;
+    const char* text;
+  } runs[] = {
+      {"krok-render", {"a.model", "other.bvh", "--from", "1f", "-o", "a.png"}, "krok-skin a.model"},
+      {"krok-body", {"a.model", "-o", "b.model"}, "made around its joints instead"},
+      {"krok-ik", {"in.bvh", "--reach", "Head=0,1m,0@20", "-o", "a.anim"}, "20f is frame 20"},
+      {"krok-morph", {"pack", "face.obj", "smile.obj", "-o", "f.exr"}, "as moved from face.obj"}};
+  for (const auto& run : runs) {
+    const ToolRun made = run_here(run.tool, run.arguments);
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    EXPECT_THAT(made.err, HasSubstr(run.text)) << run.tool;
+  }
+  EXPECT_EQ(run_here("krok-import", {"in.bvh", "--up", "Y", "-o", "y.anim"}).exit_code, 0)
+      << "as other programs write axes";
+  EXPECT_THAT(refused("krok-skin", {"a.model", "in.bvh", "--touches", "free", "-o", "a.glb"}),
+              HasSubstr("krok-retarget IN --onto CHARACTER"));
+}
+
 // Would fail if a file of the wrong kind, or a word of another program, led to a wrong guess.
 TEST_F(Mistakes, WrongFilesAndForeignWordsLeadOn) {
   put("face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

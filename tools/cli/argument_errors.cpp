@@ -140,7 +140,16 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
       // Of a word with many uses it says nothing.
       if (tools.size() > 2) tools.clear();
       for (const auto& [tool, does] : tools) {
-        const std::string first = does.substr(0, does.find_first_of(".;:"));
+        if (tool == "krok-retarget" && has("--retarget")) {
+          hints.push_back(
+              fmt::format("krok-retarget IN --onto CHARACTER -o OUT.anim has it; its "
+                          "motion needs no --retarget here"));
+          continue;
+        }
+        // "keep: hands touch the ground; free: ..." says nothing without its second word.
+        const std::size_t end = does.find_first_of(".;:");
+        const std::string first =
+            does.substr(0, end < 20 ? does.find_first_of(".;", end + 1) : end);
         hints.push_back(fmt::format("{} has it: {}", tool, first));
       }
     }

@@ -327,7 +327,8 @@ std::string maker_of(Kind kind, Kind from) {
       return "krok-import --save-model writes one of a GLB or FBX file, krok-body makes one for a "
              "motion";
     case Kind::anim:
-      return "krok-import converts captures to .anim files";
+      return "krok-import converts captures to .anim files, krok-retarget IN --onto TARGET puts a "
+             "motion on another skeleton";
     default:
       return !registry::is_read_through_assimp(kind) ? ""
              : from == Kind::cam

@@ -255,6 +255,7 @@ inline constexpr RenamedOption kRenamedOptions[] = {
     {"krok-retarget", "--src", "the motion without an option: krok-retarget IN --onto TARGET"},
     {"krok-retarget", "--to", "--onto"},
     {"krok-retarget", "--fps", "krok-edit --rate after it"},
+    {"krok-skin", "--keep-animations", "'MESH.glb#CLIP' as a motion, beside the others"},
     {"krok-skin", "--map", "krok-retarget IN --onto TARGET --map MAP -o IN.anim first"},
     {"krok-skin", "--onto-map", "krok-retarget IN --onto TARGET --onto-map MAP -o IN.anim first"},
     {"krok-skin", "--onto", "--retarget: the mesh's skeleton is the target"},

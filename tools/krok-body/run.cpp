@@ -38,9 +38,17 @@ Result<Body> make_body_for(const InputFile& input, const BodyOptions& how, ToolC
     return *std::move(body);
   }
   auto actor = io::open_actor(
-      input, context,
-      {.every_clip = true, .with_mesh = false, .with_materials = false, .with_stretches = true});
+      input, context, {.every_clip = true, .with_materials = false, .with_stretches = true});
   if (!actor) return actor.error();
+  if (actor->has_mesh()) {
+    context.warn("body-mesh",
+                 fmt::format("{} has a mesh, and the body is made around its joints instead",
+                             shown(input.path())),
+                 format.kind == registry::Kind::model || format.kind == registry::Kind::character
+                     ? "krok-skin takes the file as it is"
+                     : "krok-import --save-model OUT.model keeps its mesh, krok-skin takes it as "
+                       "it is");
+  }
   if (!actor->motions.empty()) return make_body(actor->motions[0].clip, how);
   return make_body(actor->skeleton(), how);
 }

@@ -9,6 +9,7 @@
 #include "core/text.h"
 #include "ik/whole_body.h"
 #include "scene/frame_blocks.h"
+#include "tools/cli/option_kinds.h"
 
 namespace krok::cli::ik {
 
@@ -143,6 +144,10 @@ Diagnostics missed_goals(const Outcome& outcome) {
       warning.message = fmt::format("goal '{}' is active in no frame of the motion",
                                     shown(outcome.goals[g].name));
       warning.hint = fmt::format("the motion lasts {} s", readable(outcome.input.duration(), 4));
+      const auto& goal = outcome.goals[g];
+      const double from = goal.from.value_or(goal.keys.empty() ? 0 : goal.keys.front().time);
+      const std::string frame = frame_hint(ClipTime{.value = from}, outcome.input.frame_count);
+      if (from > outcome.input.duration() && !frame.empty()) warning.hint += "; " + frame;
       list.push_back(std::move(warning));
       continue;
     }

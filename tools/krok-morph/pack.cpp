@@ -98,8 +98,9 @@ Result<int> pack(const Options& options, ToolContext& context) {
   const Status status = write_output(
       context, context.output, [&](OutputFile& file) { return morph_exr::write(morphs, file); });
   if (!status) return status.error();
-  context.log(fmt::format("{}: {} of {}", context.output, counted(morphs.target_count(), "target"),
-                          counted(morphs.vertex_count, "vertex", "vertices")));
+  context.log(fmt::format("{}: {} of {}, as moved from {}", context.output,
+                          counted(morphs.target_count(), "target"),
+                          counted(morphs.vertex_count, "vertex", "vertices"), shown(base->path)));
   Json result;
   result["vertices"] = morphs.vertex_count;
   result["triangles"] = base->model.triangles.size();

@@ -100,6 +100,7 @@ MovingActor moving(const std::string& path, Drawn drawn) {
   actor.name = name_of_input(path);
   actor.has_body = !drawn.scene->as_bones();
   actor.frame_count = drawn.frame_count;
+  actor.joint_count = drawn.skeleton.joint_count();
   actor.rate = drawn.frame_rate;
   if (drawn.animation >= 0) {
     const auto& times = drawn.scene->scene().animations[at(drawn.animation)].key_times;
@@ -431,6 +432,18 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
   return status;
 }
 
+// A character beside a motion of another skeleton was probably meant to make that motion.
+void warn_of_still_characters(const std::vector<MovingActor>& actors, ToolContext& context) {
+  const auto moves = [](const MovingActor& actor) { return actor.duration > 0; };
+  if (std::ranges::none_of(actors, moves)) return;
+  for (const MovingActor& actor : actors) {
+    if (moves(actor) || !actor.has_body || actor.joint_count < 2 || actor.frame_count > 0) continue;
+    context.warn("view-still", fmt::format("{} is shown without motion: it has none", actor.name),
+                 fmt::format("krok-skin {} IN.anim --retarget -o OUT.glb makes one of a motion",
+                             shown(actor.path)));
+  }
+}
+
 // With the addresses of all animations for files that are not read as glTF, which shows them all.
 std::vector<std::string> each_clip(const std::vector<std::string>& given,
                                    const ActorOptions& options, ToolContext& context) {
@@ -501,6 +514,7 @@ Result<std::vector<MovingActor>> read_actors(const std::vector<std::string>& giv
   }
   std::vector<MovingActor> actors;
   for (auto& [place, actor] : read.actors) actors.push_back(std::move(actor));
+  warn_of_still_characters(actors, context);
   return actors;
 }
 

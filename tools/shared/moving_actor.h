@@ -24,6 +24,7 @@ struct MovingActor {
   double rate = 0;         // frames per second, if it has frames
   double duration = 0;     // seconds; 0 if static
   bool has_body = false;   // drawn as a surface, not as bones
+  int joint_count = 0;     // of its skeleton; 0 for a scene that is no body
 
   // The actor at a time; with frames, at the nearest frame. Thread-safe.
   std::function<render::Actor(double time)> at;
