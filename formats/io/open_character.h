@@ -31,16 +31,16 @@ Result<LoadedCharacter> open_character(const InputFile& file, Inputs& inputs);
 void apply_rest_weights(Actor& actor);
 
 struct ActorOptions {
-  std::string clip = {};             // animation of a scene, a name or number; empty: the best
-  bool every_clip = false;           // of scenes, without `clip`: all that move or pose joints
-  bool with_mesh = true;             // of scenes, not the skeleton alone
-  bool with_materials = true;        // of scenes with a mesh
-  bool with_morphs = false;          // keep morph targets; otherwise faces are at rest
-  bool with_motions = true;          // of scenes: the animation
-  bool with_camera = false;          // take a file with a camera alone, which is refused otherwise
-  bool with_stretches = false;       // otherwise joints that change scale are a warning
-  bool rest_frame_is_note = false;   // as in MotionOptions
-  bool moving_faces_matter = false;  // as in MotionOptions
+  std::string clip = {};            // animation of a scene, a name or number; empty: the best
+  bool every_clip = false;          // of scenes, without `clip`: all that move or pose joints
+  bool with_mesh = true;            // of scenes, not the skeleton alone
+  bool with_materials = true;       // of scenes with a mesh
+  bool with_morphs = false;         // keep morph targets; otherwise faces are at rest
+  bool with_motions = true;         // of scenes: the animation
+  bool with_camera = false;         // take a file with a camera alone, which is refused otherwise
+  bool with_stretches = false;      // otherwise joints that change scale are a warning
+  bool rest_frame_is_note = false;  // as in MotionOptions
+  bool with_weights = false;        // of scenes: the morph weights of animations
   bool stays_still = false;  // of scenes: warn of animations, and of a pose, that will not be shown
   // Of scenes: warn of cameras, lights and other nodes without a mesh, and of variants.
   bool keeps_mesh_alone = false;

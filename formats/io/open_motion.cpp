@@ -54,11 +54,12 @@ Result<Clip> read_scene_motion(const Format& format, const InputFile& file, Inpu
   how.with_mesh = false;
   how.with_stretches = options.stretches != nullptr;
   how.rest_frame_is_note = options.rest_frame_is_note;
-  how.moving_faces_matter = options.moving_faces_matter;
+  how.with_weights = options.weights != nullptr;
   auto motions = read_scene_motions(format, file, inputs, how);
   if (!motions) return motions.error();
   Actor::Motion& motion = motions->front();
   if (options.stretches != nullptr) *options.stretches = std::move(motion.stretches);
+  if (options.weights != nullptr) *options.weights = std::move(motion.weights);
   return std::move(motion.clip);
 }
 

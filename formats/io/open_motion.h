@@ -9,6 +9,7 @@
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
+#include "scene/morph_set.h"
 #include "scene/skeleton.h"
 #include "scene/stretch.h"
 
@@ -27,9 +28,8 @@ struct MotionOptions {
   // use only a part of the motion, which it is not in.
   bool rest_frame_is_note = false;
 
-  // Warns of an animation of a scene that moves morph targets, as a motion has joints alone (code
-  // motion-weights).
-  bool moving_faces_matter = false;
+  // Gets the morph weights of an animation of a scene that moves any, at the frames of the motion.
+  MorphWeights* weights = nullptr;
 
   // Gets the stretches of the joints, none for rigid ones. Without it they are dropped with a
   // warning (code anim-stretch): the one place where an operation on rigid joints says so.

@@ -173,6 +173,18 @@ void warn_of_left_out(const nodes::Scene& scene, const nodes::Evaluator& evaluat
   }
 }
 
+// The morph weights of an animation, named as those of the mesh. Its warnings are those of the mesh
+// that they are for.
+Result<MorphWeights> face_weights(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
+                                  const character::Rig& rig, int animation,
+                                  const character::Sampling& sampling) {
+  Diagnostics of_mesh;
+  const auto face =
+      character::make_actor(scene, evaluator, rig, {}, {.with_morphs = true}, of_mesh);
+  if (!face) return face.error();
+  return character::make_weights(*face, evaluator, animation, sampling);
+}
+
 // The parts of a scene that are asked for; adds to `found` what is to be reported.
 Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Inputs& inputs,
                        const ActorOptions& options, Diagnostics& found) {
@@ -232,16 +244,6 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
   for (const int one : animations) {
     const auto sampling = character::choose_sampling(scene.animations[at(one)], {}, found);
     if (!sampling) return sampling.error();
-    const int targets = animated_targets(scene.animations[at(one)]);
-    if (options.moving_faces_matter && targets > 0) {
-      found.push_back(make_warning(
-          "motion-weights",
-          fmt::format("{} moves {}: not in the result", shown(animation_name(scene, at(one))),
-                      counted(targets, "morph target")),
-          "krok-import FILE --clip NAME --morph-weights W.csv -o OUT.anim writes their weights, "
-          "krok-skin --weights W.csv takes them",
-          path));
-    }
     Actor::Motion& motion = actor.motions.emplace_back();
     auto clip = character::make_motion(*evaluator, *rig, *roles, *place, one, *sampling,
                                        inputs.jobs, inputs.progress, found,
@@ -256,6 +258,11 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
     }
     motion.name = animation_name(scene, at(one));
     motion.clip = *std::move(clip);
+    if (options.with_weights && animated_targets(scene.animations[at(one)]) > 0) {
+      auto weights = face_weights(scene, *evaluator, *rig, one, sampling->sampling);
+      if (!weights) return weights.error();
+      motion.weights = *std::move(weights);
+    }
   }
   if (lost.largest > kLost) {
     found.push_back(make_warning(

@@ -25,9 +25,10 @@ struct Actor {
   std::vector<float> rest_weights;  // [targets] where no motion of the face is given
 
   struct Motion {
-    std::string name;     // of the file or the animation; may be empty
-    Clip clip;            // of the model's skeleton
-    Stretches stretches;  // of its joints; none if they are rigid
+    std::string name;      // of the file or the animation; may be empty
+    Clip clip;             // of the model's skeleton
+    Stretches stretches;   // of its joints; none if they are rigid
+    MorphWeights weights;  // of its face, at the frames of `clip`; none if it is still
   };
   std::vector<Motion> motions;
 

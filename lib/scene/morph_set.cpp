@@ -77,4 +77,35 @@ void weights_at(const MorphWeights& weights, double seconds, std::vector<float>&
   }
 }
 
+MorphWeights cut(const MorphWeights& weights, int first, int last, int step) {
+  MorphWeights part{weights.rate / step, weights.names, {}};
+  if (weights.frame_count() == 0) return part;
+  const std::size_t targets = weights.names.size();
+  for (int frame = first; frame <= last; frame += step) {
+    const auto row = std::span(weights.values).subspan(at(frame) * targets, targets);
+    part.values.insert(part.values.end(), row.begin(), row.end());
+  }
+  return part;
+}
+
+MorphWeights weights_of_targets(const MorphWeights& weights, std::span<const std::string> names,
+                                std::span<const float> rest) {
+  std::vector<std::size_t> columns;  // of the targets, past the last one for those without
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(weights.names, name);
+    columns.push_back(static_cast<std::size_t>(found - weights.names.begin()));
+  }
+  const std::size_t stride = weights.names.size();
+  const auto is_given = [stride](std::size_t column) { return column < stride; };
+  if (std::ranges::none_of(columns, is_given)) return {};
+  MorphWeights own{weights.rate, {names.begin(), names.end()}, {}};
+  for (std::size_t row = 0; row < weights.values.size(); row += stride) {
+    for (std::size_t t = 0; t < columns.size(); ++t) {
+      const float at_rest = t < rest.size() ? rest[t] : 0.0f;
+      own.values.push_back(is_given(columns[t]) ? weights.values[row + columns[t]] : at_rest);
+    }
+  }
+  return own;
+}
+
 }  // namespace krok

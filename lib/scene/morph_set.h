@@ -48,4 +48,12 @@ struct MorphWeights {
 // frame; all 0 if there are no frames. NaN gives the first frame.
 void weights_at(const MorphWeights& weights, double seconds, std::vector<float>& at);
 
+// Every `step`-th frame of [first, last], as cut() of motions; none of no frames.
+MorphWeights cut(const MorphWeights& weights, int first, int last, int step = 1);
+
+// The same for the targets of another mesh, by name: those without weights have those of `rest`, or
+// 0. Empty if no name is the same.
+MorphWeights weights_of_targets(const MorphWeights& weights, std::span<const std::string> names,
+                                std::span<const float> rest);
+
 }  // namespace krok

@@ -172,7 +172,8 @@ class ActorPlayer {
 
   void pose_at(std::size_t motion, double time, std::vector<Transform>& joints,
                std::vector<Stretch>& stretches) const {
-    const auto& [name, clip, all_stretches] = actor_->motions[motion];
+    const Clip& clip = actor_->motions[motion].clip;
+    const Stretches& all_stretches = actor_->motions[motion].stretches;
     if (times_[motion].empty()) return;
     const FramePlace place = place_of(time, times_[motion]);
     clip.get_pose(place.frame, joints);

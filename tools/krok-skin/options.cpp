@@ -70,7 +70,7 @@ void declare_mesh(CommandOptions& command, Options& o) {
       .add_option("--weights IN", o.weights,
                   "Morph target weights over time: a table (CSV) or keys (JSON); from the start of "
                   "the motion. {clip} in the name is the motion's path without its ending, for "
-                  "motions with a file each: '{clip}.csv'")
+                  "motions with a file each: '{clip}.csv'. Default: those of the motion's own file")
       .not_with("--as motion");
   command
       .add_option("--correctives IN.correctives", o.correctives,

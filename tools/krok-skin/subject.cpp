@@ -178,7 +178,7 @@ class Loader {
   Status read_first() {
     Clip& clip = subject_.clip;
     const std::string& path = options_.motions.front();
-    auto read = take_ != nullptr ? take_->clip : open(path, subject_.stretches);
+    auto read = take_ != nullptr ? take_->clip : open(path, subject_.stretches, face_);
     if (!read) return read.error();
     clip = std::move(*read);
     if (take_ != nullptr) subject_.frames = take_->frames;
@@ -204,15 +204,16 @@ class Loader {
     return {};
   }
 
-  // Opens a motion; with --retarget, of the mesh's skeleton as it was read.
-  Result<Clip> open(const std::string& path, Stretches& stretches) {
+  // Opens a motion; with --retarget, of the mesh's skeleton as it was read. Gets the weights of the
+  // mesh's targets, none if the motion moves none of them.
+  Result<Clip> open(const std::string& path, Stretches& stretches, MorphWeights& face) {
+    const bool wants_face = !subject_.morphs.names.empty() && options_.weights.empty();
     auto clip = [&] {
       const HiddenProgress hidden(context_);
-      return io::open_motion(
-          path, context_,
-          {.moving_faces_matter = !subject_.morphs.names.empty() && options_.weights.empty(),
-           .stretches = &stretches});
+      return io::open_motion(path, context_,
+                             {.weights = wants_face ? &face : nullptr, .stretches = &stretches});
     }();
+    face = weights_of_targets(face, subject_.morphs.names, rest_weights_);
     context_.progress->advance(1);
     if (!clip || !options_.retarget) return clip;
     const RoleMap roles = find_roles(clip->skeleton);
@@ -273,7 +274,8 @@ class Loader {
   Status read_other(std::size_t i) {
     const std::string& path = options_.motions[i];
     Stretches stretches;
-    auto clip = open(path, stretches);
+    MorphWeights face;
+    auto clip = open(path, stretches, face);
     if (!clip) return clip.error();
     carry_twist_joints(subject_.model.skeleton, *clip, stretches);
     const std::string difference = difference_in_structure(subject_.model.skeleton, clip->skeleton);
@@ -289,8 +291,14 @@ class Loader {
       const int last = clip->frame_count() - 1;
       stretches = cut(stretches, clip->joint_count(), 0, last, options_.every);
       *clip = cut(*clip, 0, last, options_.every);
+      face = cut(face, 0, last, options_.every);
     }
-    Subject::Motion other{names_.make(clip_name(i)), std::move(*clip), std::move(stretches), {}};
+    if (face.values.empty() && !face_.values.empty()) {
+      face = {clip->rate, face_.names, rest_weights_};
+      face.values.resize(face.names.size());
+    }
+    Subject::Motion other{names_.make(clip_name(i)), std::move(*clip), std::move(stretches),
+                          std::move(face)};
     if (!options_.clip_names[i].empty() && other.name != options_.clip_names[i]) {
       context_.warn("skin-name", fmt::format("another clip is named {}; that of {} is {}",
                                              shown(options_.clip_names[i]),
@@ -510,7 +518,8 @@ class Loader {
 
   // Samples the weights at the frames of the motion; a static pose is held for their duration.
   Status take_weights() {
-    if (!weights_) return {};
+    subject_.weights = face_;
+    if (!weights_ || !face_.values.empty()) return {};
     Clip& clip = subject_.clip;
     const auto needed = frames_of(weights_->curves, clip.rate);
     if (!needed) return Error(needed.error()).in_file(options_.weights);
@@ -553,13 +562,7 @@ class Loader {
     subject_.first_frame = first;
     subject_.every = every;
     if (!subject_.changes_shape() || subject_.weights.frame_count() == 1) return {};
-    MorphWeights part{subject_.clip.rate, subject_.weights.names, {}};
-    const auto targets = static_cast<std::ptrdiff_t>(part.names.size());
-    for (int frame = first; frame <= last; frame += every) {
-      const auto row = subject_.weights.values.begin() + frame * targets;
-      part.values.insert(part.values.end(), row, row + targets);
-    }
-    subject_.weights = std::move(part);
+    subject_.weights = cut(subject_.weights, first, last, every);
     return {};
   }
 
@@ -584,6 +587,7 @@ class Loader {
   const LongTake* take_;
   Subject subject_;
   std::vector<float> rest_weights_;  // [targets], for characters
+  MorphWeights face_;                // of the first motion, where it moves targets
   std::optional<weights::WeightFile> weights_;
   UniqueNames names_;  // of the motions
   Clip target_;        // of --retarget: the mesh's skeleton, without frames
