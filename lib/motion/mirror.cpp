@@ -196,13 +196,14 @@ class AxesFinder {
   // Of `turns` the one that turns the joint least in its parent, where that is clearly less than
   // what `usual` does, and what `usual` would do to the mirrored motion: it is decided alike when
   // that is mirrored again.
-  Quat least_changed(int joint, int other, const Quat& usual, std::vector<Quat> turns) const {
+  Quat least_changed(int joint, int other, const Quat& usual, std::vector<Quat> turns,
+                     double clearly_less = kClearlyLess) const {
     if (pose_.empty()) return usual;
     const auto changed = [&](const Quat& turn) { return change(joint, other, turn); };
     std::ranges::stable_sort(turns, {}, changed);
     for (const Quat& turn : turns) {
       const double before = std::min(changed(usual), changed(turn * usual.conjugate() * turn));
-      if (before - changed(turn) > kClearlyLess) return turn;
+      if (before - changed(turn) > clearly_less) return turn;
     }
     return usual;
   }
@@ -243,8 +244,11 @@ class AxesFinder {
       if (correlation.angle_after(turn) < kBent) turns.push_back(turn);
     };
     consider(found_[at(skeleton_.parents[at(joint)])]);
-    if (const auto found = below(joint)) consider(*found);
-    const Quat chosen = least_changed(joint, joint, usual, std::move(turns));
+    const auto found = below(joint);
+    if (found) consider(*found);
+    // Mirroring turns a head that looks aside by twice as much.
+    const double clearly_less = found ? kClearlyLess : 2 * kLooksAside;
+    const Quat chosen = least_changed(joint, joint, usual, std::move(turns), clearly_less);
     const bool of_body = pairs_.in_body.empty() || pairs_.in_body[at(joint)] != 0;
     if (chosen.coeffs() != usual.coeffs() || !of_body) return chosen;
     // The bone alone says nothing of the twist about it: half round, or else whatever it is.
@@ -255,7 +259,7 @@ class AxesFinder {
     const Quat left = change_by(joint, joint, fitted);
     const double twist = 2 * std::atan2(left.vec().dot(correlation.own()), left.w());
     for (const double angle : {kPi, twist}) {
-      const Quat turn = least_changed(joint, joint, fitted, {twisted(angle)});
+      const Quat turn = least_changed(joint, joint, fitted, {twisted(angle)}, clearly_less);
       if (turn.coeffs() != fitted.coeffs()) return turn;
     }
     return usual;
@@ -274,6 +278,7 @@ class AxesFinder {
   static constexpr double kBent = 0.3;     // radians, between joints of a spine
   static constexpr double kHalfTurnWithin = 40 * kRadiansPerDegree;
   static constexpr double kClearlyLess = 60 * kRadiansPerDegree;
+  static constexpr double kLooksAside = 55 * kRadiansPerDegree;  // all the time
 
   const Skeleton& skeleton_;
   const MirrorPairs& pairs_;
@@ -418,11 +423,36 @@ std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pa
   return AxesFinder(skeleton, pairs, posture).find();
 }
 
-std::vector<Transform> middle_pose(const Clip& clip) {
-  std::vector<Transform> pose;
-  if (clip.frame_count() > 0) {
-    pose.resize(clip.skeleton.names.size());
-    clip.get_pose(clip.frame_count() / 2, pose);
+std::vector<Transform> usual_pose(const Clip& clip) {
+  return *usual_pose(frames_of(clip));  // frames of a clip are always there
+}
+
+Result<std::vector<Transform>> usual_pose(const FrameSource& source) {
+  const std::vector<int>& parents = source.skeleton.parents;
+  const auto parent_of = [&](const std::vector<Transform>& pose, std::size_t joint) {
+    return joint == 0 ? Transform() : pose[at(parents[joint])];
+  };
+  const int count = std::min(source.frame_count, 32);
+  std::vector<Vec3f> positions(parents.size());
+  std::vector<Quatf> orientations(parents.size());
+  std::vector<Vec3> places(parents.size(), Vec3::Zero());
+  std::vector<Vec4> turns(parents.size(), Vec4::Zero());
+  std::vector<Transform> pose(parents.size());
+  for (int k = 0; k < count; ++k) {
+    const auto frame = static_cast<int>((2LL * k + 1) * source.frame_count / (2 * count));
+    if (Status status = source.read(frame, 1, positions, orientations); !status)
+      return status.error();
+    for (std::size_t j = 0; j < pose.size(); ++j) {
+      pose[j] = {positions[j].cast<double>(), orientations[j].cast<double>().normalized()};
+      const Transform local = parent_of(pose, j).inverse() * pose[j];
+      const Vec4 turn = local.orientation.coeffs();
+      places[j] += local.position / count;
+      turns[j] += turns[j].dot(turn) < 0 ? -turn : turn;
+    }
+  }
+  if (count == 0) return std::vector<Transform>();
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    pose[j] = parent_of(pose, j) * Transform{places[j], normalized_or_identity(Quat(turns[j]))};
   }
   return pose;
 }
@@ -439,18 +469,18 @@ Result<FrameSource> mirror(const FrameSource& source, const MirrorPairs& pairs, 
   const auto frame = [&](int number) {
     return load(part_of(source, number, std::min(source.frame_count, 1)), 1);
   };
-  const auto first = frame(0), middle = frame(source.frame_count / 2);
-  const auto last = frame(std::max(source.frame_count - 1, 0));
-  for (const auto* read : {&first, &middle, &last}) {
-    if (!*read) return read->error();
-  }
+  const auto first = frame(0), last = frame(std::max(source.frame_count - 1, 0));
+  const auto usual = usual_pose(source);
+  if (!first) return first.error();
+  if (!last) return last.error();
+  if (!usual) return usual.error();
   const auto mirror_pose = std::make_shared<PoseMirror>(
-      source.skeleton, pairs, posture.empty() ? middle_pose(*middle) : posture);
+      source.skeleton, pairs, posture.empty() ? std::span<const Transform>(*usual) : posture);
   if (source.frame_count > 0) {
     const auto rests = rests_in(source, pairs, jobs);
     if (!rests) return rests.error();
     mirror_pose->find_axes_above(*first, rests->fixed);
-    mirror_pose->keep_twisted(middle_pose(*last), rests->still);
+    mirror_pose->keep_twisted(usual_pose(*last), rests->still);
   }
   FrameSource result = changed(source, [mirror_pose](Clip& frames) {
     std::vector<Transform> pose(frames.skeleton.names.size()), mirrored(pose.size());

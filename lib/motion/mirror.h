@@ -47,7 +47,7 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // twisted, and what stays that far off is no posture. Joints above the hips that stand, or keep to
 // the hips' ground frame, are not turned.
 //
-// `posture` is that of axes_to_images(), by default the clip's middle_pose(). Clips of one actor
+// `posture` is that of axes_to_images(), by default the clip's usual_pose(). Clips of one actor
 // that are blended need the same.
 Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture = {});
 
@@ -56,17 +56,20 @@ Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transfor
 Result<FrameSource> mirror(const FrameSource& source, const MirrorPairs& pairs, int jobs,
                            std::span<const Transform> posture = {});
 
-// joint_to_world of the frame in the middle; empty without frames.
-std::vector<Transform> middle_pose(const Clip& clip);
+// joint_to_world with each joint as it is in its parent on average, of at most 32 frames spread
+// evenly; empty without frames. Errors are those of the source.
+std::vector<Transform> usual_pose(const Clip& clip);
+Result<std::vector<Transform>> usual_pose(const FrameSource& source);
 
 // For each joint the turn from the image of its partner's axes to its own, [joints]; the identity
 // without a partner. The bones that hang on both tell it: a vector v in the partner's axes has the
 // image turn.conjugate() * (-v.x, v.y, v.z) in the joint's. Only what they leave open, the twist
 // about a single bone or about bones that lie within a hundredth of one line, is taken from the
-// reference pose. `posture` (joint_to_world, of any frame; may be empty) corrects the reference
+// reference pose. `posture` (joint_to_world, the usual one; may be empty) corrects the reference
 // pose: bones that it has in another direction count as they are there; joints of the middle take
 // the axes of a joint next to them, and joints next to the trunk those a quarter or half round
-// about their bone, rather than be turned by far in their parents.
+// about their bone, rather than be turned by far in their parents. Necks and heads may look aside
+// all the time, by up to half a right angle and a little more.
 std::vector<Quat> axes_to_images(const Skeleton& skeleton, const MirrorPairs& pairs,
                                  std::span<const Transform> posture = {});
 

@@ -116,7 +116,7 @@ class Cutter {
       library.parameters.push_back(*parameter);
     }
     pairs_ = find_mirror_pairs(library.skeleton, roles_);
-    posture_ = middle_pose(*walks.front().clip);
+    posture_ = usual_pose(*walks.front().clip);
     return check(library);
   }
 

@@ -309,7 +309,7 @@ Result<Library> mirrored(const Library& library) {
   const MirrorPairs pairs = find_mirror_pairs(library.skeleton, roles_of(library));
   const auto partner = [&](int joint) { return pairs.partners[static_cast<std::size_t>(joint)]; };
   std::vector<Transform> posture;
-  if (!library.examples.empty()) posture = middle_pose(library.examples.front().motion);
+  if (!library.examples.empty()) posture = usual_pose(library.examples.front().motion);
   const std::vector<Quat> axes = axes_to_images(library.skeleton, pairs, posture);
   Library result = library;
   result.swing = library.stance();

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "math/quaternion.h"
 #include "motion/local_motion.h"
@@ -305,6 +306,28 @@ TEST(Mirror, ATrunkAnyWayRoundIsNotWrung) {
                 110 * kRadiansPerDegree)
           << name << degrees;
     }
+  }
+}
+
+// A boxer looks aside all the time, another glances far aside in the frame in the middle alone.
+// Would fail if the head kept the side that it looks to, as one of a twisted reference pose does.
+TEST(Mirror, AHeadThatLooksAsideLooksToTheOtherSide) {
+  const Skeleton skeleton = test::human_skeleton();
+  const MirrorPairs pairs = pairs_of(skeleton);
+  const auto head = static_cast<std::size_t>(skeleton.find("Head"));
+  for (const auto& [degrees, first, last] : {std::tuple(48, 0, 12), std::tuple(80, 5, 7)}) {
+    Clip clip;
+    clip.skeleton = skeleton;
+    clip.resize(12);
+    const Quat about = from_rotation_vector(Vec3(0, degrees * kRadiansPerDegree, 0));
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      clip.set_pose(f, skeleton.reference);
+      if (f >= first && f < last) clip.frame_orientations(f)[head] = about.cast<float>();
+    }
+    const Clip mirrored = mirror(clip, pairs);
+    EXPECT_LT(angle_between(mirrored.frame_orientations(6)[head].cast<double>(), about.conjugate()),
+              0.01)
+        << degrees;
   }
 }
 
