@@ -252,6 +252,32 @@ Result<std::vector<Transform>> pose_of(const FrameSource& source, int frame) {
   return pose;
 }
 
+// Of reference poses that have joints half round about their bones against every frame of the
+// motion, the bones' directions say nothing, and skins around them would be wrung all the time:
+// turns such joints back about their bones, where a single bone hangs on them.
+Status untwist(const FrameSource& source, std::vector<Transform>& pose) {
+  constexpr double kNoPosture = 120 * kDegree;
+  const auto usual = usual_pose(source);
+  if (!usual) return usual.error();
+  if (usual->empty()) return {};
+  const auto children = source.skeleton.children();
+  for (std::size_t j = 1; j < pose.size(); ++j) {
+    if (children[j].size() != 1) continue;
+    const Transform& parent = pose[static_cast<std::size_t>(source.skeleton.parents[j])];
+    const Transform& usual_parent = (*usual)[static_cast<std::size_t>(source.skeleton.parents[j])];
+    const Transform& child = pose[static_cast<std::size_t>(children[j].front())];
+    const Vec3 bone = (pose[j].inverse() * child.position).normalized();
+    const Quat in_motion = usual_parent.orientation.conjugate() * (*usual)[j].orientation;
+    const Quat turn =
+        (parent.orientation.conjugate() * pose[j].orientation).conjugate() * in_motion;
+    const double along = turn.vec().dot(bone);
+    const double twist = 2 * std::atan2(turn.w() < 0 ? -along : along, std::abs(turn.w()));
+    if (!(std::abs(twist) > kNoPosture)) continue;
+    pose[j].orientation = pose[j].orientation * Quat(Eigen::AngleAxisd(twist, bone));
+  }
+  return {};
+}
+
 Result<BuildPose> human_build_pose(const FrameSource& source, const RoleMap& roles,
                                    const HumanActor& actor) {
   const Skeleton& skeleton = source.skeleton;
@@ -269,6 +295,7 @@ Result<BuildPose> human_build_pose(const FrameSource& source, const RoleMap& rol
       name = "T-pose built from the skeleton";
     }
   }
+  if (Status status = untwist(source, best.joint_to_world); !status) return status.error();
   return BuildPose{std::move(best.joint_to_world), std::move(name)};
 }
 

@@ -12,6 +12,7 @@ namespace krok {
 namespace {
 
 constexpr double kLongestStep = 3;  // seconds, from a place to the next
+constexpr double kNoWay = 0.01;     // metres; a shorter stride has no direction
 constexpr double kAlike = 0.5;      // of the longer of two strides, and of the hips' way
 
 struct FootPlace {
@@ -85,8 +86,11 @@ std::optional<double> median_if_any(const std::vector<double>& values) {
   return values.empty() ? std::nullopt : std::optional(upper_median(values));
 }
 
+// Whose steps there are.
+using Sides = std::array<bool, 2>;
+
 StepMeasures measures_of(const Clip& clip, const RoleMap& roles,
-                         const std::vector<Keytime>& keytimes, bool with_cut) {
+                         const std::vector<Keytime>& keytimes, bool with_cut, Sides& sides) {
   StepMeasures measures;
   const std::array<int, 2> ankles = {roles.joint(Role::left_foot), roles.joint(Role::right_foot)};
   if (ankles[0] < 0 || ankles[1] < 0 || clip.frame_count() == 0) return measures;
@@ -109,6 +113,7 @@ StepMeasures measures_of(const Clip& clip, const RoleMap& roles,
     const Vec3 stride(next.place.x() - first.place.x(), 0, next.place.z() - first.place.z());
     const double length = stride.norm();
     ++measures.steps;
+    sides[between.side] = true;
     if (follows) {
       ++pairs;
       const double longer = std::max(stride.squaredNorm(), before.squaredNorm());
@@ -122,7 +127,7 @@ StepMeasures measures_of(const Clip& clip, const RoleMap& roles,
     follows = true;
     strides.push_back(length);
     speeds.push_back(length / (next.time - first.time));
-    if (!(length > 0)) continue;
+    if (length < kNoWay) continue;
     const Vec3 ahead = stride / length, across = Vec3::UnitY().cross(ahead);  // to the left
     const Vec3 step = between.place - first.place;
     lengths[between.side].push_back(step.dot(ahead));
@@ -147,9 +152,9 @@ StepMeasures measures_of(const Clip& clip, const RoleMap& roles,
 
 StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
                            const std::vector<Keytime>& keytimes) {
-  const StepMeasures whole = measures_of(clip, roles, keytimes, false);
-  if (whole.step_length[0] && whole.step_length[1]) return whole;
-  return measures_of(clip, roles, keytimes, true);
+  Sides sides = {};
+  const StepMeasures whole = measures_of(clip, roles, keytimes, false, sides);
+  return sides[0] && sides[1] ? whole : measures_of(clip, roles, keytimes, true, sides);
 }
 
 }  // namespace krok

@@ -47,7 +47,7 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // twisted, and what stays that far off is no posture. Joints above the hips that stand, or keep to
 // the hips' ground frame, are not turned.
 //
-// `posture` is that of axes_to_images(), by default the clip's usual_pose(). Clips of one actor
+// `posture` is that of axes_to_images(), by default the clip's usual_pose() (scene/frame_blocks.h). Clips of one actor
 // that are blended need the same.
 Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture = {});
 
@@ -55,11 +55,6 @@ Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transfor
 // joints have to be watched over the whole motion. Errors are those of the source.
 Result<FrameSource> mirror(const FrameSource& source, const MirrorPairs& pairs, int jobs,
                            std::span<const Transform> posture = {});
-
-// joint_to_world with each joint as it is in its parent on average, of at most 32 frames spread
-// evenly; empty without frames. Errors are those of the source.
-std::vector<Transform> usual_pose(const Clip& clip);
-Result<std::vector<Transform>> usual_pose(const FrameSource& source);
 
 // For each joint the turn from the image of its partner's axes to its own, [joints]; the identity
 // without a partner. The bones that hang on both tell it: a vector v in the partner's axes has the

@@ -15,6 +15,7 @@
 #include "motion/hips_root.h"
 #include "motion/mirror.h"
 #include "parametric/find_steps_internal.h"
+#include "scene/frame_blocks.h"
 
 namespace krok::parametric {
 

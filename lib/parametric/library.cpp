@@ -14,6 +14,7 @@
 #include "motion/place.h"
 #include "parametric/measure.h"
 #include "pose/packed_pose.h"
+#include "scene/frame_blocks.h"
 #include "scene/frame_moment.h"
 
 namespace krok::parametric {

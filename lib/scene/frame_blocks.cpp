@@ -4,6 +4,10 @@
 #include <array>
 #include <memory>
 #include <mutex>
+#include <vector>
+
+#include "core/index.h"
+#include "math/quaternion.h"
 
 namespace krok {
 
@@ -131,6 +135,40 @@ FrameSource changed_in_blocks(const FrameSource& source, BlockSize size, int job
   result.release = {};
   result.read = [blocks](auto... block) { return blocks->read(block...); };
   return result;
+}
+
+std::vector<Transform> usual_pose(const Clip& clip) {
+  return *usual_pose(frames_of(clip));  // frames of a clip are always there
+}
+
+Result<std::vector<Transform>> usual_pose(const FrameSource& source) {
+  const std::vector<int>& parents = source.skeleton.parents;
+  const auto parent_of = [&](const std::vector<Transform>& pose, std::size_t joint) {
+    return joint == 0 ? Transform() : pose[at(parents[joint])];
+  };
+  const int count = std::min(source.frame_count, 32);
+  std::vector<Vec3f> positions(parents.size());
+  std::vector<Quatf> orientations(parents.size());
+  std::vector<Vec3> places(parents.size(), Vec3::Zero());
+  std::vector<Vec4> turns(parents.size(), Vec4::Zero());
+  std::vector<Transform> pose(parents.size());
+  for (int k = 0; k < count; ++k) {
+    const auto frame = static_cast<int>((2LL * k + 1) * source.frame_count / (2 * count));
+    if (Status status = source.read(frame, 1, positions, orientations); !status)
+      return status.error();
+    for (std::size_t j = 0; j < pose.size(); ++j) {
+      pose[j] = {positions[j].cast<double>(), orientations[j].cast<double>().normalized()};
+      const Transform local = parent_of(pose, j).inverse() * pose[j];
+      const Vec4 turn = local.orientation.coeffs();
+      places[j] += local.position / count;
+      turns[j] += turns[j].dot(turn) < 0 ? -turn : turn;
+    }
+  }
+  if (count == 0) return std::vector<Transform>();
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    pose[j] = parent_of(pose, j) * Transform{places[j], normalized_or_identity(Quat(turns[j]))};
+  }
+  return pose;
 }
 
 }  // namespace krok

@@ -18,6 +18,11 @@ FrameSource part_of(const FrameSource& source, int first, int count);
 // that of `source`.
 FrameSource changed(const FrameSource& source, std::function<Status(Clip& frames)> change);
 
+// joint_to_world with each joint as it is in its parent on average, of at most 32 frames spread
+// evenly; empty without frames. Errors are those of the source.
+std::vector<Transform> usual_pose(const Clip& clip);
+Result<std::vector<Transform>> usual_pose(const FrameSource& source);
+
 // Some frames of a take, with those before and after that an operation looks at.
 struct FrameRun {
   Clip clip;

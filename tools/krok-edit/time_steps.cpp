@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contacts/loop_steps.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "motion/cut.h"
@@ -270,13 +271,17 @@ Status change_timing(const Options& options, ToolContext& context, Edit& edit) {
   const double rate = options.resample.value_or(edit.clip.rate);
   if (!options.resample && edit.speed == 1) return {};
   const FrameSource before = edit.source();
+  const double duration = before.duration();
   const Interpolation& how = options.interpolation;
+  // The pose that a loop ends with is the first one: without it, it has a gap.
+  const bool closes = !edit.frames && !how.hermite && loop_displacement(edit.clip, edit.carrier);
   if (how.hermite) {
     auto retimed = retime_on_curves(edit.clip, rate, edit.speed, how.tension, edit.loop);
     if (!retimed) return retimed.error();
     edit.clip = std::move(*retimed);
   } else {
-    const LastFrame last = edit.loop || edit.kept_loop ? LastFrame::kept : LastFrame::within;
+    const LastFrame last =
+        closes || edit.loop || edit.kept_loop ? LastFrame::kept : LastFrame::within;
     Status status = edit.take(retime(before, rate, edit.speed, last));
     if (!status) return status;
   }
@@ -303,6 +308,11 @@ Status change_timing(const Options& options, ToolContext& context, Edit& edit) {
   if (options.resample) {
     line += fmt::format("{}resampled from {} to {} fps", line.empty() ? "" : ", ",
                         readable(before.rate), readable(rate));
+    const double made = edit.source().duration() * edit.speed;
+    if (closes && std::abs(made - duration) > 1e-6) {
+      line += fmt::format(", {} become {} so that the loop stays closed", seconds(duration),
+                          seconds(made));
+    }
   }
   if (how.hermite) {
     metrics["tension"] = how.tension;

@@ -307,6 +307,26 @@ TEST_F(GameLoop, ALoopInPlaceIsKept) {
   EXPECT_EQ(read("out.anim").provenance.removed_root_motion->velocity, Vec3(0, 0, 0));
 }
 
+// Would fail if a loop that ends between two new frames lost its last pose: it would jump at the
+// seam, and its steps would not be found.
+TEST_F(GameLoop, ALoopStaysClosedAtAnotherRate) {
+  walk("walk.anim", 0);
+  loop("walk.anim");
+  Clip pack = read("out.anim");
+  pack.provenance = {};
+  write("pack.anim", pack);
+  const double rate = 24.5 / pack.duration();
+  const ToolRun run =
+      run_here("krok-edit", {"pack.anim", "--rate", std::to_string(rate), "-o", "out.anim"});
+  EXPECT_THAT(run.err, HasSubstr("so that the loop stays closed"));
+  const Clip out = read("out.anim");
+  const auto first = out.frame_positions(0), last = out.frame_positions(out.frame_count() - 1);
+  for (std::size_t j = 0; j < first.size(); ++j) {
+    EXPECT_LT((first[j] - last[j]).norm(), 1e-5f) << j;
+  }
+  EXPECT_EQ(report_here("krok-keys", {"out.anim"})["result"]["gait"]["steps"], 2);
+}
+
 // A fencer's pelvis faces sideways while head and chest look where the walk goes. Would fail if the
 // pelvis alone decided which way is forward.
 TEST_F(GameLoop, APelvisThatIsTurnedDoesNotTurnTheWalk) {

@@ -278,6 +278,23 @@ TEST(HumanBody, AReferencePoseThatIsNoneGivesWayToATPose) {
   }
 }
 
+// An exporter's reference pose that has the collar bones half round about themselves against every
+// frame. Would fail if the skin around them were wrung all the time: shoulders came out as holes.
+TEST(HumanBody, CollarBonesHalfRoundInEveryFrameDoNotWringTheSkin) {
+  Clip clip;
+  clip.skeleton = human_skeleton();
+  const auto collar = static_cast<std::size_t>(clip.skeleton.find("LeftShoulder"));
+  clip.resize(3);
+  const Quat half_round = from_rotation_vector(Vec3(kPi - 0.1, 0, 0));  // along the bone
+  for (int f = 0; f < 3; ++f) {
+    clip.set_pose(f, clip.skeleton.reference);
+    clip.frame_orientations(f)[collar] = half_round.cast<float>();
+  }
+  const Body body = make_body(clip, {.detail = BodyDetail::low}).value();
+  EXPECT_LT(angle_between(body.model.skeleton.reference[collar].orientation, half_round), 0.2);
+  expect_valid_body(body);
+}
+
 TEST(HumanBody, AFootThatHangsOnAJointUnderTheAnkleStaysLevel) {
   // From the ankle straight down to the sole, from there to the tip: no ball of the foot.
   Skeleton skeleton = human_skeleton();

@@ -14,6 +14,7 @@
 #include "contacts/step_measures.h"
 #include "events.h"
 #include "motion/cut.h"
+#include "motion/travel.h"
 
 namespace krok {
 namespace {
@@ -138,6 +139,12 @@ TEST(Cycloid, MeasuresOfTheSteps) {
   EXPECT_NEAR(steps.step_length[0].value(), 0.6, 0.005);
   EXPECT_NEAR(steps.step_length[1].value(), 0.6, 0.005);
   EXPECT_NEAR(steps.step_width.value(), 0.2, 0.001);
+  // In place the way has no direction that lengths could be measured along.
+  const Clip still = carried_along(clip, clip.skeleton.find("Hips"), {Vec3(0, 0, -1.2), 0});
+  const StepMeasures in_place =
+      step_measures(still, find_roles(clip.skeleton), test::keytimes_of(clip));
+  EXPECT_LT(in_place.stride_length.value(), 0.01);
+  EXPECT_FALSE(in_place.step_length[0] || in_place.step_width);
   const StepMeasures none = step_measures(clip, find_roles(clip.skeleton), {});
   EXPECT_FALSE(none.speed || none.step_width || none.step_length[0]);
 }
