@@ -87,6 +87,10 @@ std::string hint_for(registry::Kind kind, std::string_view what, const std::stri
     return "krok-plot draws tables; arrays of positions are read as .npz and .npy, which "
            "krok-export writes, too";
   }
+  if (ascii_lower(file_name).ends_with(".mot") || ascii_lower(file_name).ends_with(".sto")) {
+    return "tables of OpenSim have no skeleton and are only written; keep the .bvh or .anim they "
+           "are from";
+  }
   if (what.find("OBJ") != std::string_view::npos) return "krok-morph takes shapes of a mesh";
   if (what.find("binary file") != std::string_view::npos) {
     return registry::advice(registry::Kind::unknown, registry::Kind::anim);

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <span>
 
 #include "core/fed_program.h"
+#include "formats/csv/field.h"
 
 namespace krok::chart {
 
@@ -37,6 +39,37 @@ Status write(const std::string& path, const std::string& svg, OutputFile& file) 
   const auto bytes = program->finish();
   if (!bytes) return bytes.error();
   return file.write(*bytes);
+}
+
+std::string csv_of(const draw::Chart& chart) {
+  std::string text = "panel,line,x,y,deviation,x_axis,y_axis\n";
+  const auto axis = [](const draw::Axis& one) {
+    return csv::field(one.unit.empty() ? one.label : one.label + " [" + one.unit + "]");
+  };
+  const auto number = [](double value) {
+    return std::isfinite(value) ? fmt::format("{}", value) : std::string();
+  };
+  for (const draw::Panel& panel : chart.panels) {
+    const draw::Series* band = nullptr;
+    for (const draw::Series& line : panel.series) {
+      const std::size_t count = line.x.size();
+      if (line.name.empty()) {
+        band = line.filled ? &line : nullptr;
+        continue;
+      }
+      // It goes along the upper edge and back along the lower one.
+      const bool has_band = band != nullptr && band->y.size() == 2 * count;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double around =
+            has_band ? 0.5 * (band->y[i] - band->y[2 * count - 1 - i]) : std::nan("");
+        text += fmt::format("{},{},{},{},{},{},{}\n", csv::field(panel.title),
+                            csv::field(line.name), number(line.x[i]), number(line.y[i]),
+                            number(around), axis(panel.x), axis(panel.y));
+      }
+      band = nullptr;
+    }
+  }
+  return text;
 }
 
 }  // namespace krok::chart

@@ -101,6 +101,12 @@ Result<SideFile> open_beside(const std::string& uri, const std::string& what,
     return result;
   }
   auto file = InputFile::open(*path, most_bytes);
+  if (!file && file.error().code == "file-missing") {
+    Error error = std::move(file).error();
+    error.hint =
+        fmt::format("the glTF file names it as its {}: copy it there, too, or export a .glb", what);
+    return error;
+  }
   if (!file) return file.error();
   result.file = *std::move(file);
   return result;

@@ -50,7 +50,7 @@ ALLOWED = {
     "formats/registry": {"lib/core"},
     "formats/io": BASE | {"lib/capture", "lib/character", "lib/roles", "lib/nodes", "lib/skin", "lib/terrain"},
     "formats/json": BASE | {"formats/registry"},
-    "formats/chart": {"lib/core"},
+    "formats/chart": {"lib/core", "lib/draw", "formats/csv"},
     "formats/role_map": BASE | {"lib/roles", "formats/json"},
     "formats/timeline": BASE | {"lib/motion", "lib/blend", "lib/timeline", "lib/face", "formats/json"},
     "formats/textgrid": BASE | {"formats/csv"},

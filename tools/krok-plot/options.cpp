@@ -250,7 +250,8 @@ ToolSpec make_spec() {
   ToolSpec spec = spec_of<Options>("krok-plot", options, declare, nullptr, run);
   spec.keeps_going = true;
   spec.summary = "Plots motions and numeric tables as charts: SVG, PDF, PNG";
-  spec.details = "Contact sheets and strips of a motion are PNG.";
+  spec.details =
+      "Contact sheets and strips of a motion are PNG. As .csv a chart is the points of its lines.";
   spec.inputs = "IN...";
   spec.examples = {
       {"krok-plot walk.bvh -o walk.svg",
@@ -267,6 +268,8 @@ ToolSpec make_spec() {
        "a walk on its ground from above, with its footprints, and how high the soles are over it"},
       {"krok-plot walks --show cycles -o cycles.pdf",
        "joint angles over the gait cycle: mean and deviation of all walks of a folder"},
+      {"krok-plot walks --show cycles -o cycles.csv",
+       "the same as numbers: mean and deviation of each angle at each percent of the cycle"},
       {"krok-plot walk.bvh --sheet walk.png", "images of the character at eight times"},
       {"krok-plot hero.character walk.anim --strip hero.png",
        "an animated character with the colours and textures of its materials; without "
@@ -278,6 +281,7 @@ ToolSpec make_spec() {
     return std::ranges::find(charts, ChartKind::cycles) != charts.end();
   };
   spec.output_endings = chart::endings();
+  spec.output_endings.emplace_back(".csv");
   spec.default_output = [options] {
     return options->sheet.wanted() ? "" : beside(options->inputs.front(), ".svg");
   };

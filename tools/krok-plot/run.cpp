@@ -102,8 +102,10 @@ Status add_charts(const Options& options, ToolContext& context, OutputSet& outpu
   lay_out(options, *chart);
   const auto svg = draw::to_svg(*chart);
   if (!svg) return svg.error();
-  const Status status = outputs.add(
-      context.output, [&](OutputFile& file) { return chart::write(context.output, *svg, file); });
+  const Status status = outputs.add(context.output, [&](OutputFile& file) {
+    return extension(context.output) == ".csv" ? file.write(chart::csv_of(*chart))
+                                               : chart::write(context.output, *svg, file);
+  });
   if (!status) return status;
   context.report.result["panels"] = summary_of(*chart);
   done.push_back(fmt::format("{}: {}", context.output == "-" ? "standard output" : context.output,

@@ -414,7 +414,7 @@ Status write_all(const Options& options, const gait::Walk& walk,
   return outputs.finish();
 }
 
-void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prints,
+void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prints, double speed,
                  ToolContext& context) {
   Json& result = context.report.result;
   result["prints"] = prints.size();
@@ -422,10 +422,11 @@ void report_walk(const FrameSource& frames, const std::vector<gait::Print>& prin
   result["duration"] = frames.duration();
   const double missed = 1000 * result["largest_miss"].get<double>();
   context.log(fmt::format(
-      "{}: {}, {} s, at up to {} m/s; feet miss their prints by {} mm, swing {} cm over "
+      "{}: {}, {} s, at up to {} m/s{}; feet miss their prints by {} mm, swing {} cm over "
       "the ground or more",
       context.output, counted(prints.size() - 2, "step"), readable(frames.duration(), 4),
       readable(result["largest_speed"].get<double>(), 2),
+      speed == 1 ? std::string() : fmt::format(" ({} times the library's speed)", readable(speed)),
       missed < 0.001 ? "less than 0.001" : readable(missed, 2),
       readable(100 * result["min_clearance"].get<double>(), 3)));
 }
@@ -453,7 +454,7 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (Status status = write_all(options, *walk, *prints, **ground, *libraries, context); !status) {
     return status.error();
   }
-  report_walk(walk->frames(), *prints, context);
+  report_walk(walk->frames(), *prints, options.speed, context);
   const bool as_asked =
       walk->details().warnings.empty() && context.report.result["missed_paces"] == 0;
   return options.strict && !as_asked ? kExitNo : kExitDone;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
@@ -57,6 +58,22 @@ TEST_F(KrokPlot, CyclesAreOfAllTakesAndKeysNeedNotBeThere) {
   EXPECT_LT(alone["cycles"]["left"], both);
   EXPECT_THAT(get(path("out.svg")), HasSubstr(alone["cycles"]["left"].dump() + " left and"));
   EXPECT_GE(alone["cycles"]["left"], 1);
+  // As numbers: each percent of each angle of both sides, with the deviation of several cycles.
+  ASSERT_EQ(
+      run_tool("krok-plot", {kWalk, kTurn, "--show", "cycles", "-o", path("cycles.csv")}).exit_code,
+      0);
+  std::istringstream table(get(path("cycles.csv")));
+  std::string row;
+  std::getline(table, row);
+  EXPECT_EQ(row, "panel,line,x,y,deviation,x_axis,y_axis");
+  int rows = 0;
+  while (std::getline(table, row)) {
+    ++rows;
+    EXPECT_THAT(row, HasSubstr("gait cycle"));
+    EXPECT_THAT(row, Not(HasSubstr(",,"))) << "no deviation";
+  }
+  EXPECT_EQ(rows % (2 * 101), 0) << rows;
+  EXPECT_GT(rows, 0);
   EXPECT_THAT(titles(), ElementsAre("Hip flexion", "Knee flexion", "Ankle dorsiflexion",
                                     "Shoulder elevation", "Elbow flexion"));
   EXPECT_EQ(alone["panels"][1]["x"]["unit"], "%");
@@ -298,7 +315,7 @@ TEST_F(KrokPlot, SaysWhatIsWrongWithATable) {
 }
 
 TEST_F(KrokPlot, RefusesNamesOfOtherKindsOfFiles) {
-  const ToolRun run = run_tool("krok-plot", {kWalk, "-o", path("out.csv")});
+  const ToolRun run = run_tool("krok-plot", {kWalk, "-o", path("out.xlsx")});
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, HasSubstr(".svg"));
   EXPECT_THAT(listing(), IsEmpty());
