@@ -9,6 +9,7 @@
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
+#include "retarget/limb_ends.h"
 #include "retarget/moved_limb.h"
 #include "retarget/pose_alignment.h"
 
@@ -26,9 +27,9 @@ int joint_of_vertex(const Model& model, std::size_t vertex) {
 }
 
 // Towards the left of a foot in the reference pose.
-Vec3 left_of_foot(const Model& model, const RoleMap& roles, Role foot) {
-  const auto place = [&](int joint) { return model.skeleton.reference[at(joint)].position; };
-  const int front = foot_front(model.skeleton, roles, foot);
+Vec3 left_of_foot(const Skeleton& skeleton, const RoleMap& roles, Role foot) {
+  const auto place = [&](int joint) { return skeleton.reference[at(joint)].position; };
+  const int front = foot_front(skeleton, roles, foot);
   const Vec3 ahead =
       front < 0 ? Vec3::UnitZ() : flat(place(front) - place(roles.joint(foot))).stableNormalized();
   return kUp.cross(ahead);
@@ -36,20 +37,25 @@ Vec3 left_of_foot(const Model& model, const RoleMap& roles, Role foot) {
 
 }  // namespace
 
-std::vector<BodyPoint> points_of_feet(const Model& model, const RoleMap& roles) {
+std::vector<BodyPoint> points_of_feet(const Model& model, const Skeleton& skeleton,
+                                      const RoleMap& roles) {
+  const std::vector<int> ends =
+      carrying_ends(skeleton, skeleton.joint_count() - model.skeleton.joint_count());
   std::map<int, std::vector<Vec3>> places;  // of vertices, reference pose
   for (const Role role : {Role::left_foot, Role::right_foot}) {
     if (roles.joint(role) < 0) return {};
-    for (const int joint : joints_below(model.skeleton, roles.joint(role))) places[joint];
+    for (const int joint : joints_below(skeleton, roles.joint(role))) places[joint];
   }
   for (std::size_t v = 0; v < model.positions.size(); ++v) {
-    const auto found = places.find(joint_of_vertex(model, v));
+    int joint = joint_of_vertex(model, v);
+    if (joint >= 0 && ends[at(joint)] >= 0) joint = ends[at(joint)];
+    const auto found = places.find(joint);
     if (found != places.end()) found->second.push_back(model.positions[v].cast<double>());
   }
   std::vector<BodyPoint> points;
   for (const Role role : {Role::left_foot, Role::right_foot}) {
-    const Vec3 left = left_of_foot(model, roles, role);
-    for (const int joint : joints_below(model.skeleton, roles.joint(role))) {
+    const Vec3 left = left_of_foot(skeleton, roles, role);
+    for (const int joint : joints_below(skeleton, roles.joint(role))) {
       const std::vector<Vec3>& vertices = places[joint];
       if (vertices.empty()) continue;
       const Vec3 middle = std::accumulate(vertices.begin(), vertices.end(), Vec3(Vec3::Zero())) /
@@ -61,7 +67,7 @@ std::vector<BodyPoint> points_of_feet(const Model& model, const RoleMap& roles) 
         lowest.insert(static_cast<std::size_t>(std::ranges::min_element(vertices, {}, height) -
                                                vertices.begin()));
       }
-      const Transform to_joint = model.skeleton.reference[at(joint)].inverse();
+      const Transform to_joint = skeleton.reference[at(joint)].inverse();
       for (const std::size_t vertex : lowest) {
         const Vec3 aside = left * left.dot(vertices[vertex] - middle);
         points.push_back({joint, to_joint * Vec3(vertices[vertex] - aside)});

@@ -124,6 +124,16 @@ Skeleton with_limb_ends(const Model& model) {
   return find_roles(with_ends).humanoid ? with_ends : model.skeleton;
 }
 
+std::vector<int> carrying_ends(const Skeleton& skeleton, int count) {
+  std::vector<int> ends(skeleton.names.size(), -1);
+  for (const LooseEnd& loose : loose_ends(skeleton, count)) ends[at(loose.joint)] = loose.end;
+  for (std::size_t j = 1; j + at(count) < ends.size(); ++j) {
+    const int parent = skeleton.parents[j];
+    if (ends[j] < 0 && parent >= 0) ends[j] = ends[at(parent)];
+  }
+  return ends;
+}
+
 FrameSource without_last_joints(FrameSource frames, int count) {
   if (count == 0) return frames;
   FrameSource kept = frames;
@@ -135,16 +145,11 @@ FrameSource without_last_joints(FrameSource frames, int count) {
     Transform in_end;
   };
   std::vector<Carried> carried;
-  const Skeleton& skeleton = frames.skeleton;
-  for (const LooseEnd& loose : loose_ends(skeleton, count)) {
-    std::vector<char> below(from, 0);
-    for (std::size_t j = at(loose.joint); j < to; ++j) {
-      const int parent = skeleton.parents[j];
-      below[j] = j == at(loose.joint) || (parent >= 0 && below[at(parent)] != 0) ? 1 : 0;
-      if (below[j] == 0) continue;
-      const Transform in_end = skeleton.reference[at(loose.end)].inverse() * skeleton.reference[j];
-      carried.push_back({j, at(loose.end), in_end});
-    }
+  const std::vector<Transform>& reference = frames.skeleton.reference;
+  const std::vector<int> ends = carrying_ends(frames.skeleton, count);
+  for (std::size_t j = 0; j < to; ++j) {
+    if (ends[j] < 0) continue;
+    carried.push_back({j, at(ends[j]), reference[at(ends[j])].inverse() * reference[j]});
   }
   kept.read = [read = std::move(frames.read), carried = std::move(carried), from, to](
                   int first, int frame_count, std::span<Vec3f> positions,

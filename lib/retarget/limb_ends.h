@@ -17,6 +17,10 @@ namespace krok::retarget {
 // is humanoid with them and not without.
 Skeleton with_limb_ends(const Model& model);
 
+// Of each joint, that one of the last `count` with which it goes, as a hand or foot that hangs
+// elsewhere and all below it; -1 of others.
+std::vector<int> carrying_ends(const Skeleton& skeleton, int count);
+
 // Frames without the last `count` joints, which have no children but each other. Hands and feet
 // that hang elsewhere are where these were, with all below them. Contacts become those of such a
 // joint, or of the parent.

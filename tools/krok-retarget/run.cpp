@@ -306,7 +306,8 @@ Status retarget(const Options& options, const FrameSource& source, const Clip* w
   if (!options.ground.empty()) how.feet = krok::retarget::Feet::free;
   how.target_floor = floor_below(target->mesh.positions, target->clip.skeleton, *target_roles);
   if (how.target_floor) {
-    how.target_feet = krok::retarget::points_of_feet(target->mesh, *target_roles);
+    how.target_feet =
+        krok::retarget::points_of_feet(target->mesh, target->clip.skeleton, *target_roles);
   }
   Status posed = take_pose("--reference-pose", options.reference_pose, source.skeleton,
                            how.source_pose, context);

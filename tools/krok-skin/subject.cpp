@@ -240,7 +240,8 @@ class Loader {
     target_roles_ = find_roles(target_.skeleton);
     how_.target_floor = floor_below(subject_.model.positions, target_.skeleton, target_roles_);
     if (how_.target_floor) {
-      how_.target_feet = krok::retarget::points_of_feet(subject_.model, target_roles_);
+      how_.target_feet =
+          krok::retarget::points_of_feet(subject_.model, target_.skeleton, target_roles_);
     }
     how_.jobs = context_.jobs;
   }

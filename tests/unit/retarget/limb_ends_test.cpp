@@ -35,7 +35,6 @@ class Blocks {
 
   Model model;
 
- private:
   int add(const std::string& name, int parent, const Vec3& from, const Vec3& to) {
     const int joint = model.skeleton.add(name, parent, {from, Quat::Identity()});
     const Vec3 along = (to - from).normalized(), across = along.unitOrthogonal(),
@@ -93,6 +92,47 @@ TEST(LimbEnds, FeetThatHangElsewhereGoWithTheLegs) {
              Vec3(0.12, 0, 0))
                 .norm(),
             1e-6);
+}
+
+// Tips of such shoes went 8 cm into the ground at toe-off, and the report had them at 0.
+TEST(LimbEnds, ShoesThatHangElsewhereStayAboveTheGround) {
+  Blocks blocks;
+  Model& model = blocks.model;
+  std::vector<int> shoes;
+  for (const double side : {1.0, -1.0}) {
+    const std::string letter = side > 0 ? ".L" : ".R";
+    const Vec3 heel(side * 0.12, 0.05, -0.05);
+    shoes.push_back(blocks.add("foot" + letter, 0, heel, heel + Vec3(0, 0, 0.3)));
+    model.skeleton.reference[at(shoes.back())].position = {side * 0.12, 0.08, 0};
+  }
+  double floor = 0;
+  for (const Vec3f& vertex : model.positions) floor = std::min<double>(floor, vertex.y());
+  const Skeleton with_ends = with_limb_ends(model);
+  const auto walk = samples::make_walk({});
+  ASSERT_TRUE(walk.ok());
+  const auto points = points_of_feet(model, with_ends, find_roles(with_ends));
+  const auto deepest = [&](const Retargeted& made) {
+    const Clip clip = without_last_joints(made.clip, 4);
+    double lowest = 0;
+    for (std::size_t v = 0; v < model.positions.size(); ++v) {
+      const int joint = model.influence_joints[4 * v];
+      if (std::ranges::find(shoes, joint) == shoes.end()) continue;
+      const Vec3 place =
+          model.skeleton.reference[at(joint)].inverse() * model.positions[v].cast<double>();
+      for (int f = 0; f < clip.frame_count(); ++f) {
+        const Vec3 moved = clip.frame_positions(f)[at(joint)].cast<double>() +
+                           clip.frame_orientations(f)[at(joint)].cast<double>() * place;
+        lowest = std::min(lowest, moved.y() - made.report.floor);
+      }
+    }
+    return lowest;
+  };
+  const auto sunk = test::transfer(walk->clip, with_ends, {.target_floor = floor});
+  const auto made =
+      test::transfer(walk->clip, with_ends, {.target_floor = floor, .target_feet = points});
+  ASSERT_TRUE(sunk.ok() && made.ok());
+  EXPECT_LT(deepest(*sunk), -0.05);
+  EXPECT_GT(deepest(*made), -0.02);
 }
 
 TEST(LimbEnds, AreWhereTheMeshEnds) {

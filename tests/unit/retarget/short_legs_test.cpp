@@ -194,7 +194,7 @@ double lowest_of(const Model& boots, const Clip& clip) {
 
 TEST(ShortLegs, PointsOfBootsAreTheirOutline) {
   const Skeleton skeleton = with_other_axes(chibi_skeleton(), 4);
-  const auto points = retarget::points_of_feet(boots_on(skeleton), find_roles(skeleton));
+  const auto points = retarget::points_of_feet(boots_on(skeleton), skeleton, find_roles(skeleton));
   Eigen::AlignedBox3d left;
   for (const retarget::BodyPoint& point : points) {
     const Vec3 place = point.in(skeleton.reference);
@@ -205,7 +205,7 @@ TEST(ShortLegs, PointsOfBootsAreTheirOutline) {
   EXPECT_NEAR(left.max().z(), 0.29, 1e-6);
   Model bare = boots_on(skeleton);
   bare.positions.clear();
-  EXPECT_TRUE(retarget::points_of_feet(bare, find_roles(skeleton)).empty());
+  EXPECT_TRUE(retarget::points_of_feet(bare, skeleton, find_roles(skeleton)).empty());
 }
 
 // Tips of boots went 0.1 m and more into the ground as the foot pushed off.
@@ -214,9 +214,10 @@ TEST(ShortLegs, TipsOfBootsStayAboveTheGround) {
   const Skeleton target = with_other_axes(chibi_skeleton(), 4);
   const Model boots = boots_on(target);
   const auto sunk = transfer(source, target, {.target_floor = 0.0});
-  const auto made = transfer(
-      source, target,
-      {.target_floor = 0.0, .target_feet = retarget::points_of_feet(boots, find_roles(target))});
+  const auto made =
+      transfer(source, target,
+               {.target_floor = 0.0,
+                .target_feet = retarget::points_of_feet(boots, target, find_roles(target))});
   ASSERT_TRUE(sunk.ok() && made.ok());
   EXPECT_LT(lowest_of(boots, sunk->clip), -0.04);
   EXPECT_GT(lowest_of(boots, made->clip), -0.015);
