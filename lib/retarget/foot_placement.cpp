@@ -324,14 +324,16 @@ LegPlacement::Stances LegPlacement::find_stances(Track track, double rate) {
     }
   });
   const std::vector<double> stands = softened(std::exchange(track.near, {}), reach);
+  // Shanks swing up from lying in a few frames, as after a handstand.
+  const std::vector<double> upright = mean_within(track.upright, reach + 1);
   std::vector<char> still(at(frames));
   for (std::size_t f = 0; f < at(frames); ++f) still[f] = heel[f] | front[f];
   const std::vector<double> touching(still.begin(), still.end());
   Stances result{std::vector<KeptStance>(at(frames)), softened(touching, reach),
                  softened(touching, reach / 4)};
   for (std::size_t f = 0; f < at(frames); ++f) {
-    result.feet[f] = {track.upright[f] * stands[f], rolls[f]};
-    result.bearing[f] *= track.upright[f];
+    result.feet[f] = {upright[f] * stands[f], rolls[f]};
+    result.bearing[f] *= upright[f];
   }
   track.across = held_in_stances(std::move(track.across), std::move(still), reach);
   for (std::size_t f = 0; f < track.across.size(); ++f) {

@@ -25,8 +25,8 @@ struct BodyPoint {
 // The outline of a mesh's feet seen from the side, on their middle lines: of the vertices that
 // follow a foot or a joint below it by more than half, those that are lowest as the foot pitches by
 // up to 90 degrees, at most 13 a joint. Empty without such vertices, or where the roles know no
-// feet. `skeleton` is with_limb_ends() of the model, or the model's own; a foot that hangs elsewhere
-// is the limb's.
+// feet. `skeleton` is with_limb_ends() of the model, or the model's own; a foot that hangs
+// elsewhere is the limb's.
 std::vector<BodyPoint> points_of_feet(const Model& model, const Skeleton& skeleton,
                                       const RoleMap& roles);
 

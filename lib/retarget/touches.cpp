@@ -30,7 +30,11 @@ std::optional<Vec3> palm_of(const ActorView& actor, const ArmRoles& arm) {
   if (count > 0 && sum.norm() > 1e-9) return Vec3(0.5 * sum / count);
   const int child = actor.only_child(wrist);
   if (child < 0 || actor.place(child) == actor.place(wrist)) return std::nullopt;
-  return Vec3(0.5 * (actor.place(child) - actor.place(wrist)));
+  const Vec3 palm = 0.5 * (actor.place(child) - actor.place(wrist));
+  // Files have ends of hands that are metres away.
+  const int elbow = actor.joint(arm.lower);
+  const bool is_far = elbow >= 0 && palm.norm() > (actor.place(wrist) - actor.place(elbow)).norm();
+  return is_far ? std::nullopt : std::optional(palm);
 }
 
 BodyPoint beside_joint(const Actor& actor, int joint, const Vec3& off) {

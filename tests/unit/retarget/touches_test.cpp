@@ -106,6 +106,21 @@ TEST(Touches, HandsThatTouchStayAsNear) {
   EXPECT_TRUE(free->report.contacts.empty());
 }
 
+// Files of a set have the end of a right hand 1.6 m away: taken for its palm, hands that clap were
+// 0.6 m apart, and those of a cartwheel slid by 0.2 m/s.
+TEST(Touches, EndsFarFromTheirHandsAreNoHands) {
+  const Clip source = clasping();
+  Skeleton target = long_armed();
+  Vec3& end = target.reference[at(target.find("rig:RightHand_end"))].position;
+  end = target.reference[at(target.find("rig:RightHand"))].position + Vec3(1.6, 0, 0);
+  const auto made = transfer(source, target);
+  ASSERT_TRUE(made.ok());
+  const auto apart = [](const Clip& clip, const std::string& rig) {
+    return (place(clip, 90, rig + "RightHand") - place(clip, 90, rig + "LeftHand")).norm();
+  };
+  EXPECT_NEAR(apart(made->clip, "rig:"), made->report.scale * apart(source, ""), 0.03);
+}
+
 // Upside down on straight arms, hands on the ground.
 Clip handstand() {
   return into_pose({{"LeftArm", Vec3(0, 0, 1.5)}, {"RightArm", Vec3(0, 0, -1.5)}}, Vec3(3.0, 0, 0));
