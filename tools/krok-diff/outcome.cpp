@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "core/numbers.h"
 
@@ -324,10 +325,15 @@ std::string worst_of(const Outcome& outcome) {
   const Row* const worst = worst_row(outcome);
   std::vector<std::string> parts;
   if (worst != nullptr) parts.push_back(to_text(*worst, outcome));
-  if (!outcome.structure.empty()) parts.push_back(outcome.structure.front());
-  if (outcome.structure.size() > 1) {
-    parts.push_back(fmt::format("{} more", outcome.structure.size() - 1));
+  constexpr std::size_t kShown = 2;
+  for (const std::string& line : outcome.structure | std::views::take(kShown)) {
+    parts.push_back(line);
   }
+  if (outcome.structure.size() > kShown) {
+    parts.push_back(fmt::format("{} more", outcome.structure.size() - kShown));
+  }
+  // Often the cause: another rate, or vertices in another order.
+  if (!outcome.notes.empty()) parts.push_back(outcome.notes.front());
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
