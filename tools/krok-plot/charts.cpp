@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 
+#include "contacts/loop_steps.h"
 #include "contacts/step_measures.h"
 #include "core/numbers.h"
 #include "core/text.h"
@@ -307,6 +308,24 @@ Result<MotionKeys> read_keys(const std::string& option, const Motions::Motion& f
   return found ? *std::move(found) : MotionKeys();
 }
 
+// The cycles of a loop go on over its seam: each foot's of one round, from its first strike on.
+void close_loop(Motions::Motion& file, draw::ChartedMotion& charted) {
+  auto rounds = rounds_of(file.clip, file.roles);
+  if (!rounds) return;
+  std::vector<Keytime> keytimes = in_rounds(charted.keys.keytimes, *rounds);
+  const double rate = file.clip.rate;
+  for (const std::string foot : {"left", "right"}) {
+    const auto first = std::ranges::find(keytimes, foot + "_strike", &Keytime::name);
+    if (first == keytimes.end()) continue;
+    const double end = first->time + (rounds->period + 0.5) / rate;
+    std::erase_if(keytimes,
+                  [&](const Keytime& key) { return key.name.starts_with(foot) && key.time > end; });
+  }
+  file.clip = std::move(rounds->clip);
+  charted.keys.keytimes = std::move(keytimes);
+  charted.frames = {0, file.clip.frame_count() - 1};
+}
+
 // The ground and the footprints of --ground and --prints.
 Result<draw::ChartedGround> read_ground(const MotionOptions& options, const Motions& motions,
                                         ToolContext& context) {
@@ -373,6 +392,9 @@ Result<Motions> read_motions(const std::vector<std::string>& inputs, const Motio
     auto keys = read_keys(options.keys, file, of_cycles, context);
     if (!keys) return keys.error();
     charted.keys = std::move(*keys);
+    if (of_cycles && charts.size() == 1 && !options.from && !options.to) {
+      close_loop(motions.files.back(), charted);
+    }
     motions.charted.push_back(std::move(charted));
   }
   if (motions.files.empty()) return none_can_be_used();

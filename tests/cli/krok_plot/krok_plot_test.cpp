@@ -84,6 +84,17 @@ TEST_F(KrokPlot, CyclesAreOfAllTakesAndKeysNeedNotBeThere) {
 }
 
 // Would fail if one broken file of a folder kept the chart, the sheet or the page from all others.
+// A loop has the cycles of its circle. Would fail if clips for engines, cut elsewhere than at a
+// strike, were said to have none.
+TEST_F(KrokPlot, CyclesOfALoopGoOnOverItsSeam) {
+  run_tool("krok-edit",
+           {kWalk, "--cycle", "auto", "--loop", "--in-place", "-o", path("loop.anim")});
+  ASSERT_EQ(plot({path("loop.anim"), "--show", "cycles"}).exit_code, 0);
+  const json cycles = json::parse(get(path("report.json")))["result"]["cycles"];
+  EXPECT_EQ(cycles["left"], 1);
+  EXPECT_EQ(cycles["right"], 1);
+}
+
 TEST_F(KrokPlot, WhatCannotBeReadIsLeftOutWhereThatIsAskedFor) {
   put("broken.bvh", "HIERARCHY nothing");
   const std::vector<std::string> inputs = {kWalk, path("broken.bvh"), kTurn};
