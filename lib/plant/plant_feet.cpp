@@ -370,9 +370,11 @@ class Planter {
   Error none() const {
     return Error(
         "plant-contacts", "no heel, ball or toe stands at any frame, so nothing can be planted",
-        contacts_ ? "no contact of a foot is given; remove the file to have them found"
-                  : "does the character walk in place, float, or jitter? krok-keys shows and edits "
-                    "contacts, krok-edit --filter smooths");
+        contacts_
+            ? "no contact of a foot is given; remove the file to have them found"
+            : "does the character walk in place (krok-edit --game-loop plants that), float, or "
+              "jitter? krok-keys shows and edits "
+              "contacts, krok-edit --filter smooths");
   }
 
   void move_legs(const std::vector<plant::Footing>& footings, PlantedFeet& planted) const {
