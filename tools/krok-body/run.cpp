@@ -6,6 +6,7 @@
 
 #include "body/long_take.h"
 #include "core/numbers.h"
+#include "core/text.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
