@@ -30,6 +30,7 @@ import tempfile
 import numpy as np
 
 from grounds import ground_of
+from measure_style import hands_of, hips_of
 from measure_walk import Foot, Library, Motion, knee_angles, measure_files, normal_at, read_prints
 
 GROUNDS = ["level"] + [f"slope:{a}deg" for a in (5, 8, 10, 15, -5, -8, -10, -15)] + [
@@ -54,9 +55,9 @@ def steps_of(motion, keys, prints, ground, library):
     last = first + ground.run * ground.count if hasattr(ground, "run") else np.inf
     feet = [Foot(motion, sole, ground) for sole in library.feet]
     knees = [np.degrees(knee_angles(motion, side)) for side in ("left", "right")]
-    hips, neck = motion.positions[:, 0], motion.positions[:, motion.find("neck", "neck1", "cc_base_necktwist01")]
-    trunk = neck - hips
-    hands = [motion.positions[:, motion.find(f"{side}hand", f"cc_base_{side[0]}_hand")] for side in ("left", "right")]
+    hips = motion.positions[:, hips_of(motion)]
+    trunk = motion.positions[:, motion.find("neck", "neck1", "cc_base_necktwist01")] - hips
+    hands = [motion.positions[:, hand] for hand in hands_of(motion)]
     times = {(k["name"].split("_")[0], k["name"].split("_")[1], i): k["time"]
              for i, k in enumerate(keys["keytimes"])}
     strikes = {side: sorted(t for (s, what, _), t in times.items() if s == side and what == "strike")

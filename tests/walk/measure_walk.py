@@ -194,11 +194,11 @@ class Foot:
         # With the heel up, the part of the sole at the ball belongs to the toes.
         parents = [one["parent"] for one in motion.skeleton]
         toes = [i for i, parent in enumerate(parents) if parent == joint]
-        # Helper bones without children are no toes.
-        toes = [i for i in toes if i in parents] or toes
         self.rest = self.ball
         if toes:
-            toes_at, toes_turns = motion.positions[:, toes[0]], motion.turns[:, toes[0]]
+            # Helper bones have no children, or fewer.
+            joint = max(toes, key=parents.count)
+            toes_at, toes_turns = motion.positions[:, joint], motion.turns[:, joint]
             own_ball = unrotated(toes_turns[0], self.ball[0] - toes_at[0])
             self.rest = toes_at + rotated(toes_turns, own_ball)
         left = np.cross(normal, forward)
