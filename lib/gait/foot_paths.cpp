@@ -111,8 +111,14 @@ FootPose Stance::at(double time, const FootPose& blend) const {
   const bool on_ball = is_leaving || turn.x() > 0;
   const Quat rotation = axes_ * from_rotation_vector(turn) * axes_.conjugate();
   foot.foot.orientation = rotation * flat_.orientation;
-  foot.foot.position = on_ball ? pivot_ - foot.foot.orientation * leg_->sole.pivot
-                               : heel_ - foot.foot.orientation * leg_->sole.heel;
+  if (on_ball) {
+    foot.foot.position = pivot_ - foot.foot.orientation * leg_->sole.pivot;
+  } else {
+    // The heel rolls without sliding.
+    const double radius = leg_->sole.heel_radius;
+    const Vec3 middle = heel_ + axes_ * Vec3(0, radius, radius * (1 + turn.x()));
+    foot.foot.position = middle - foot.foot.orientation * leg_->sole.heel_middle();
+  }
   if (!on_ball) foot.toes = rotation * foot.toes;
   return foot;
 }
@@ -270,11 +276,14 @@ double Swing::away(const FootPose& foot) const {
                   level_distance(foot.foot.position, to_));
 }
 
-double Swing::share_of_clearance(double part, const FootPose& foot) const {
+double Swing::between_prints(double part, const FootPose& foot) const {
   // A foot that turns or steps on the spot is lifted, too.
-  const double from_end = std::min(part, 1 - part);
-  const double middle = (from_end - kRaisedFrom) / (kRaisedInFull - kRaisedFrom);
-  return smoother_step(std::max(away(foot) / kAway, middle)) * smoother_step(from_end / kLanding);
+  const double middle = (std::min(part, 1 - part) - kRaisedFrom) / (kRaisedInFull - kRaisedFrom);
+  return smoother_step(std::max(away(foot) / kAway, middle));
+}
+
+double Swing::share_of_clearance(double part, const FootPose& foot) const {
+  return between_prints(part, foot) * smoother_step(std::min(part, 1 - part) / kLanding);
 }
 
 bool Swing::is_to_be_clear(double time, const FootPose& foot) const {
@@ -291,8 +300,12 @@ std::vector<Swing::Lack> Swing::lacks(const Terrain& ground, std::span<const dou
     const FootPose foot = at(times[i], blend[i]);
     const double wanted = (clearance + kBetweenFrames) * share_of_clearance(u, foot);
     // The tip of the toes rolls over the ground as the foot leaves, and as it lands on the ball.
-    const auto points = sole_points(*leg_, foot);
+    auto points = sole_points(*leg_, foot);
     const std::size_t count = u < kTipUp || u > kTipDown ? 2 : 3;
+    // Near its prints, the heel is as round as on them.
+    const double round = (foot.foot * leg_->sole.heel_middle()).y() - leg_->sole.heel_radius;
+    points[0].y() =
+        std::lerp(std::max(points[0].y(), round), points[0].y(), between_prints(u, foot));
     for (const Vec3& point : std::span(points).first(count)) {
       const auto found = ground_near(ground, point.x(), point.z(), from, leg_->length);
       if (!found || point.y() - found->height >= wanted) continue;
@@ -376,10 +389,10 @@ void Swing::clear(const Terrain& ground, std::span<const double> times,
 
 namespace {
 
-constexpr double kNearlyStraight = 0.985;  // of the leg: beyond this a knee turns far for little
+constexpr double kNearlyStraight = 0.9875;  // of the leg: beyond this a knee turns far for little
 // The most that a leg is stretched where the blend's is: nearer to straight, a footprint that is
 // off by two millimetres is a knee that turns by six degrees in a frame.
-constexpr double kMaxStraight = 0.994;
+constexpr double kMaxStraight = 0.996;
 constexpr double kStraight = 0.9995;
 
 }  // namespace

@@ -134,6 +134,8 @@ class Swing {
   // The turn of the foot by which ball and tip lack no more than the heel does, as far as it goes.
   static void raise_toes(std::span<const Lack> missing, Detour& detour);
   double away(const FootPose& foot) const;  // metres from the nearer print, level
+  // 0 to 1: how far a foot is from both prints, or in the middle of the swing.
+  double between_prints(double part, const FootPose& foot) const;
   // 0 to 1: the share of the clearance that is asked for at a part of the swing.
   double share_of_clearance(double part, const FootPose& foot) const;
   Vec3 detour_at(double time, const Detour& detour) const;

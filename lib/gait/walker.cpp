@@ -39,14 +39,10 @@ PoseVector mean_pose(const parametric::PackedExamples& packed, double generic) {
   return pose;
 }
 
-double middle_of_stance(const parametric::PackedExamples& packed,
-                        const parametric::Library& library) {
-  const auto off = [&](const char* name) { return index_of_time(library, name); };
-  const std::size_t runs = off("stance_off");
-  if (runs < packed.generic.size()) {
-    return std::lerp(packed.generic.front(), packed.generic[runs], kFlatInRun);
-  }
-  return std::lerp(packed.generic[off("swing_off")], packed.generic.back(), kFlatPart);
+double middle_of_stance(std::span<const double> times, const parametric::Library& library) {
+  const std::size_t runs = index_of_time(library, "stance_off");
+  if (runs < times.size()) return std::lerp(times.front(), times[runs], kFlatInRun);
+  return std::lerp(times[index_of_time(library, "swing_off")], times.back(), kFlatPart);
 }
 
 std::size_t index_of_time(const parametric::Library& library, const char* name) {
@@ -56,11 +52,13 @@ std::size_t index_of_time(const parametric::Library& library, const char* name) 
 
 namespace {
 
-constexpr int kMeanSamples = 32;        // of a step, for means over it
-constexpr double kRaised = 0.004;       // metres
-constexpr double kRaisedInRun = 0.012;  // the toes push on
-constexpr double kEarliestOff = 0.15;   // of the time to the off
-constexpr double kStandingLeg = 0.994;  // of the length: as straight as solve_legs() leaves it
+constexpr int kMeanSamples = 32;                       // of a step, for means over it
+constexpr double kRaised = 0.004;                      // metres
+constexpr double kRaisedInRun = 0.012;                 // the toes push on
+constexpr double kEarliestOff = 0.15;                  // of the time to the off
+constexpr double kLeastPitch = 2 * kRadiansPerDegree;  // of a foot that shows how round its heel is
+constexpr double kMaxHeelRadius = 0.55;                // of the length of the sole behind the ankle
+constexpr double kStandingLeg = 0.994;                 // of the length: nearly straight
 constexpr double kToeShare = 0.35;  // of the sole, from the ball to the tip, where no end site is
 
 FootGeometry geometry_of(const parametric::FootShape& shape, const Vec3& up) {
@@ -88,11 +86,34 @@ double toe_length(const Skeleton& skeleton, int foot, const FootGeometry& sole) 
   return farthest > 0.1 * sole.length ? farthest : kToeShare * sole.length;
 }
 
+// As a foot strikes with its toes up, the corner of its heel is lower than where it is flat: that
+// much lies outside of a round heel. The median of the examples.
+double heel_radius(const parametric::Library& library, const Leg& leg) {
+  std::vector<double> radii;
+  for (const parametric::Example& example : library.examples) {
+    const auto sole_at = [&](double time) {
+      const Clip& clip = example.motion;
+      const int frame =
+          std::min(static_cast<int>(std::lround(time * clip.rate)), clip.frame_count() - 1);
+      const Transform foot = joint_at(clip, frame, leg.foot);
+      return Transform{foot * leg.sole.heel, foot.orientation * leg.sole.sole};
+    };
+    const Transform flat = sole_at(middle_of_stance(example.keytimes, library));
+    const Transform strike = flat.inverse() * sole_at(example.keytimes.front());
+    const double pitch = std::asin(std::clamp((strike.orientation * Vec3::UnitZ()).y(), -1.0, 1.0));
+    if (pitch < kLeastPitch) continue;
+    radii.push_back(-strike.position.y() / (std::cos(pitch) + std::sin(pitch) - 1));
+  }
+  if (radii.empty()) return 0;
+  const double behind = -(leg.sole.sole.conjugate() * leg.sole.heel).z();
+  return std::clamp(median(std::move(radii)), 0.0, std::max(0.0, kMaxHeelRadius * behind));
+}
+
 // Takes the geometry of the flat foot from the middle of the stance in the mean step.
 void learn_flat_foot(const StepLibrary& steps, FootSide side, Walker& walker) {
   const parametric::Synthesiser& stance = steps.steps(other(side));
   const PoseVector pose =
-      mean_pose(stance.packed(), middle_of_stance(stance.packed(), stance.library()));
+      mean_pose(stance.packed(), middle_of_stance(stance.packed().generic, stance.library()));
   std::vector<Transform> world(walker.skeleton->names.size());
   walker.to_world(pose, world);
   Leg& leg = walker.legs[index_of(side)];
@@ -106,6 +127,7 @@ void learn_flat_foot(const StepLibrary& steps, FootSide side, Walker& walker) {
     leg.flat_toes =
         world[at(leg.toes)].orientation.conjugate() * (foot.orientation * leg.sole.sole);
   }
+  leg.sole.heel_radius = heel_radius(stance.library(), leg);
 }
 
 void learn_knee(const StepLibrary& steps, FootSide side, Walker& walker) {

@@ -45,9 +45,8 @@ PoseVector mean_pose(const parametric::PackedExamples& packed, double generic);
 // a run, of that from the stance foot's strike to its off.
 inline constexpr double kFlatPart = 0.4, kFlatInRun = 0.45;
 
-// The generic time at which the stance foot is flat.
-double middle_of_stance(const parametric::PackedExamples& packed,
-                        const parametric::Library& library);
+// The time at which the stance foot is flat, by those of the keytimes (generic, or of an example).
+double middle_of_stance(std::span<const double> times, const parametric::Library& library);
 
 // The number of the keytimes where there is none of that name.
 std::size_t index_of_time(const parametric::Library& library, const char* name);
@@ -69,6 +68,12 @@ struct FootGeometry {
   Quat sole = Quat::Identity();  // sole_to_foot: x to the left, y up, z from heel to ball
   double length = 0;             // metres, heel to ball; 0: the ball is not known
   double tip = 0;                // metres from the ball to the tip of the toes
+  // Heels are round, so that a foot with its toes up rolls over them: the radius, metres. `heel` is
+  // the corner that a sharp one would have.
+  double heel_radius = 0;
+
+  // In the frame of the foot: the middle of that circle.
+  Vec3 heel_middle() const { return heel + sole * Vec3(0, heel_radius, heel_radius); }
 };
 
 struct Leg : LegJoints {

@@ -227,5 +227,54 @@ TEST(Stance, AFootThatLeavesTurnsAsideSlowly) {
   EXPECT_LT(fastest, 5);
 }
 
+// Would fail if a foot that strikes with its toes up turned about the corner of a sharp heel: the
+// ankle is a centimetre too high, and the knee bent by 22 degrees where captures have 14.
+TEST(Stance, AFootRollsOverItsRoundHeel) {
+  Leg leg = plain_leg();
+  leg.sole.heel_radius = 0.03;
+  FootPose pitched;
+  pitched.foot.orientation = from_rotation_vector(Vec3(-20 * kRadiansPerDegree, 0, 0));
+  pitched.toes = pitched.foot.orientation;
+  Stance stance(leg, GroundedPrint(), FootPose());
+  stance.strike = 1;
+  stance.flat_to = stance.off = 2;
+  stance.be_flat(1.2, 1.3);
+  const auto middle = [&](double time) {
+    return Vec3(stance.at(time, pitched).foot * leg.sole.heel_middle());
+  };
+  const FootPose strikes = stance.at(1, pitched);
+  EXPECT_NEAR(
+      strikes.foot.position.y(),
+      0.03 + 0.06 * std::cos(20 * kRadiansPerDegree) + 0.03 * std::sin(20 * kRadiansPerDegree),
+      1e-9);
+  EXPECT_LT(sole_points(leg, strikes)[0].y(), -0.007);
+  // It rolls on the ground without sliding, and lies on the print in the end.
+  for (double time = 1; time < 1.25; time += 0.01) {
+    const Quat turned = stance.at(time, pitched).foot.orientation;
+    const double angle = turned.angularDistance(Quat::Identity());
+    EXPECT_NEAR(middle(time).y(), 0.03, 1e-9) << time;
+    EXPECT_NEAR(middle(time).z(), 0.03 * (1 - angle), 1e-9) << time;
+  }
+  EXPECT_LT(sole_points(leg, stance.at(1.25, pitched))[0].norm(), 1e-9);
+}
+
+// Would fail if the radius were not learned, or found where heels are sharp: those of generated
+// walks are, and 2 cm behind them a corner is where a round heel's would be.
+TEST(Stance, TheRoundnessOfHeelsIsLearned) {
+  const auto radius = [](std::span<const StepLibrary> libraries) {
+    auto walker = make_walker(libraries);
+    EXPECT_TRUE(walker.ok());
+    return walker->legs[0].sole.heel_radius;
+  };
+  EXPECT_LT(radius(test::walking()), 0.002);
+  parametric::Library library = test::walking().front().library();
+  for (parametric::FootShape& foot : library.feet) {
+    foot.heel -= 0.02 * foot.forward;
+    foot.length += 0.02;
+  }
+  const StepLibrary farther = test::walking_library(std::move(library));
+  EXPECT_NEAR(radius(std::span(&farther, 1)), 0.025, 0.004);
+}
+
 }  // namespace
 }  // namespace krok::gait
