@@ -153,7 +153,7 @@ Result<std::vector<Transform>> usual_pose(const FrameSource& source) {
   std::vector<Vec4> turns(parents.size(), Vec4::Zero());
   std::vector<Transform> pose(parents.size());
   for (int k = 0; k < count; ++k) {
-    const auto frame = static_cast<int>((2LL * k + 1) * source.frame_count / (2 * count));
+    const auto frame = static_cast<int>((2LL * k + 1) * source.frame_count / (2LL * count));
     if (Status status = source.read(frame, 1, positions, orientations); !status)
       return status.error();
     for (std::size_t j = 0; j < pose.size(); ++j) {
