@@ -50,6 +50,7 @@ Status FrameSolver::list_goals(double time) {
     }
     parts_[g] = std::exp(-1 / (kForgets * clip_.rate));
     if (fades_by_turns(g)) {
+      carry_along(g, time, goal);
       if (Status status = fade_by_turns(g, !(before > 0), goal); !status) return status;
     } else if (strength < before) {
       parts_[g] *= strength / before;
@@ -62,6 +63,17 @@ Status FrameSolver::list_goals(double time) {
 bool FrameSolver::fades_by_turns(std::size_t g) const {
   const Goal::Kind kind = goals_[g].goal.kind;
   return strengths_[g] < 1 && (kind == Goal::Kind::position || kind == Goal::Kind::pose);
+}
+
+// Who walks by a place is far from it before and after: of a goal that fades, more and more is
+// where it is from the body as it takes full hold, so that nobody leans towards what is out of
+// reach yet.
+void FrameSolver::carry_along(std::size_t g, double time, Goal& goal) const {
+  if (!carried_[g]) return;
+  const bool fades_in = time < full_strength(goals_[g], duration_, clip_.rate).from;
+  const Transform& then = (*carried_[g])[fades_in ? 0 : 1];
+  const Transform& now = given_[at(solver_.options().moving_joint)];
+  goal.target += (1 - strengths_[g]) * (now * (then.inverse() * goal.target) - goal.target);
 }
 
 // The target where the joint is once the turns that the goal alone brings about are made in part.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,16 +20,22 @@ struct TurnsBefore {
   std::vector<double> strengths;         // [goals]
 };
 
+// The joint that carries the body, Options::moving_joint, in world space, in the first and the last
+// frame of a goal's full strength; empty for goals that are not in the world.
+using CarriedFrom = std::optional<std::array<Transform, 2>>;
+
 // Solves one frame after the other; one for each thread. `run` is of a take that lasts `duration`
 // seconds; its frames are numbered as in the take.
 class FrameSolver {
  public:
   FrameSolver(const FrameRun& run, double duration, std::span<const KeyedGoal> goals,
-              const GoalMotionOptions& options, Solver solver, TurnsBefore before)
+              std::span<const CarriedFrom> carried, const GoalMotionOptions& options, Solver solver,
+              TurnsBefore before)
       : clip_(run.clip),
         first_(run.first),
         duration_(duration),
         goals_(goals),
+        carried_(carried),
         options_(options),
         solver_(std::move(solver)),
         turns_(std::move(before.turns)),
@@ -51,6 +59,7 @@ class FrameSolver {
   Transform anchor(const KeyedGoal& goal, double time);
   Status list_goals(double time);
   bool fades_by_turns(std::size_t g) const;
+  void carry_along(std::size_t g, double time, Goal& goal) const;
   Status fade_by_turns(std::size_t g, bool first, Goal& goal);
   void turn_given(const std::vector<Vec3>& turns, double part);
   void list_turns(std::vector<Vec3>& turns);
@@ -68,6 +77,7 @@ class FrameSolver {
   int first_;  // number of its first frame
   double duration_;
   std::span<const KeyedGoal> goals_;
+  std::span<const CarriedFrom> carried_;
   const GoalMotionOptions& options_;
   Solver solver_;
   std::vector<Transform> given_, solved_, other_, scratch_, local_, before_solving_;

@@ -1,6 +1,7 @@
 #include "ik/goal_motion.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -32,12 +33,14 @@ struct JointTurns {
 // Solves a take block by block.
 class BlockSolver {
  public:
-  BlockSolver(const FrameSource& source, std::span<const KeyedGoal> goals, Limits limits,
-              GoalMotionOptions options, int block_frames)
+  BlockSolver(const FrameSource& source, std::span<const KeyedGoal> goals,
+              std::vector<CarriedFrom> carried, Limits limits, GoalMotionOptions options,
+              int block_frames)
       : parents_(source.skeleton.parents),
         rate_(source.rate),
         duration_(source.duration()),
         goals_(goals),
+        carried_(std::move(carried)),
         limits_(std::move(limits)),
         options_(std::move(options)),
         block_frames_(block_frames),
@@ -63,7 +66,7 @@ class BlockSolver {
     parallel_for(stretches.size(), 1, options_.jobs, [&](std::size_t from, std::size_t to) {
       for (std::size_t s = from; s < to; ++s) {
         const Stretch& stretch = stretches[s];
-        FrameSolver solver(run, duration_, goals_, options_,
+        FrameSolver solver(run, duration_, goals_, carried_, options_,
                            *Solver::create(parents_, limits_, options_.solver),
                            stretch.first == first ? before_[number] : TurnsBefore());
         for (int f = stretch.first; f <= stretch.last && failed[s].ok(); ++f) {
@@ -157,6 +160,7 @@ class BlockSolver {
   const std::vector<int> parents_;
   double rate_, duration_;
   std::span<const KeyedGoal> goals_;
+  const std::vector<CarriedFrom> carried_;  // [goals]
   const Limits limits_;
   const GoalMotionOptions options_;
   int block_frames_;
@@ -165,6 +169,26 @@ class BlockSolver {
   int reported_ = 0;  // frames that motion_ is of
   std::shared_ptr<GoalMotion> motion_ = std::make_shared<GoalMotion>();
 };
+
+// Read now, as a frame that is solved may be blocks away from these.
+Result<CarriedFrom> carried_from(const FrameSource& source, const KeyedGoal& goal, int joint) {
+  const bool in_world = goal.relative_to < 0 || goal.motion != nullptr;
+  const bool has_place =
+      goal.goal.kind == Goal::Kind::position || goal.goal.kind == Goal::Kind::pose;
+  if (!in_world || !has_place || source.frame_count == 0) return CarriedFrom();
+  const FullStrength full = full_strength(goal, source.duration(), source.rate);
+  std::array<Transform, 2> places;
+  for (const bool last : {false, true}) {
+    const double frame = (last ? full.to : full.from) * source.rate;
+    const int nearest =
+        static_cast<int>(std::min(std::max(0.0, frame), source.frame_count - 1.0) + 0.5);
+    const auto clip = load(part_of(source, nearest, 1), 1);
+    if (!clip) return clip.error();
+    places[last ? 1 : 0] = {clip->frame_positions(0)[at(joint)].cast<double>(),
+                            clip->frame_orientations(0)[at(joint)].cast<double>().normalized()};
+  }
+  return CarriedFrom(places);
+}
 
 }  // namespace
 
@@ -179,7 +203,14 @@ Result<GoalFrames> apply_goals(const FrameSource& source, std::span<const KeyedG
   if (auto made = Solver::create(source.skeleton.parents, limits, options.solver); !made) {
     return made.error();
   }
-  const auto solver = std::make_shared<BlockSolver>(source, goals, limits, options, size.frames);
+  std::vector<CarriedFrom> carried;
+  for (const KeyedGoal& goal : goals) {
+    auto one = carried_from(source, goal, options.solver.moving_joint);
+    if (!one) return one.error();
+    carried.push_back(*std::move(one));
+  }
+  const auto solver = std::make_shared<BlockSolver>(source, goals, std::move(carried), limits,
+                                                    options, size.frames);
   return GoalFrames{changed_in_blocks(source, size, options.jobs,
                                       [solver](FrameRun& run) { return solver->change(run); }),
                     solver->motion()};

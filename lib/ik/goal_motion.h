@@ -27,7 +27,8 @@ struct GoalKey {
 // A goal that moves through keys and fades in and out, so that it takes hold and lets go without a
 // jump. While it fades, a position or pose is sought where the joint comes to lie once the turns
 // that the goal alone needs are made in part (an arm that straightens for a place out of reach does
-// so as evenly as the fade); of the other kinds the target lies between what the motion does by
+// so as evenly as the fade), for a place in the world that meanwhile goes along with the body in
+// part; of the other kinds the target lies between what the motion does by
 // itself and the keys.
 struct KeyedGoal {
   std::string name;  // for reports

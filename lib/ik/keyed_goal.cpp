@@ -152,9 +152,7 @@ std::vector<Vec2> outline(std::vector<Vec2> points) {
   return hull;
 }
 
-double strength_at(const KeyedGoal& goal, double time, double duration, double rate) {
-  // Some easings overshoot.
-  const auto eased = [&](double u) { return std::clamp(goal.fade.at(u), 0.0, 1.0); };
+FullStrength full_strength(const KeyedGoal& goal, double duration, double rate) {
   double from = goal.from.value_or(goal.keys.empty() ? 0 : goal.keys.front().time);
   double to =
       std::max(from, goal.to.value_or(goal.keys.empty() ? duration : goal.keys.back().time));
@@ -162,11 +160,18 @@ double strength_at(const KeyedGoal& goal, double time, double duration, double r
   if (between_frames && from <= duration) {
     from = to = std::min(std::round(std::midpoint(from, to) * rate) / rate, duration);
   }
-  if (time < from) {
-    return goal.fade_in > 0 ? eased((time - from + goal.fade_in) / goal.fade_in) : 0;
+  return {from, to};
+}
+
+double strength_at(const KeyedGoal& goal, double time, double duration, double rate) {
+  // Some easings overshoot.
+  const auto eased = [&](double u) { return std::clamp(goal.fade.at(u), 0.0, 1.0); };
+  const FullStrength full = full_strength(goal, duration, rate);
+  if (time < full.from) {
+    return goal.fade_in > 0 ? eased((time - full.from + goal.fade_in) / goal.fade_in) : 0;
   }
-  if (time > to) {
-    return goal.fade_out > 0 ? eased((to + goal.fade_out - time) / goal.fade_out) : 0;
+  if (time > full.to) {
+    return goal.fade_out > 0 ? eased((full.to + goal.fade_out - time) / goal.fade_out) : 0;
   }
   return 1;
 }

@@ -16,6 +16,12 @@ Status check_goal(const KeyedGoal& goal, const Skeleton& skeleton);
 Goal placed(const KeyedGoal& keyed, double time, const Transform& frame,
             std::span<const Transform> pose);
 
+// Seconds between which a goal has its full strength.
+struct FullStrength {
+  double from = 0, to = 0;
+};
+FullStrength full_strength(const KeyedGoal& goal, double duration, double rate);
+
 // Moves a goal's target towards what the pose does without it: strength 0 asks for the pose as it
 // is, 1 for the goal.
 void fade_goal(Goal& goal, double strength, const Skeleton& skeleton,

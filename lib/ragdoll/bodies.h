@@ -93,7 +93,8 @@ double extent(const Skeleton& skeleton);
 // middle of the joints below, or to the farthest one if they surround it; at a leaf on from the
 // bone above, half as long. Radii are 0.2 of the length, at least 0.012 and at most 0.08 of the
 // extent. Joints whose bones are under 0.03 of the extent have no body and follow the joint above.
-// All bodies are of `root` or below it. Masses are not set. Empty if the skeleton has no extent.
+// All bodies are of `root` or below it, or of what is above it and carries half of the bones'
+// length. Masses are not set. Empty if the skeleton has no extent.
 std::vector<Body> bone_bodies(const Skeleton& skeleton, int root);
 
 // Cones about the reference pose for joints with a body: they swing by 50 degrees and twist by 30

@@ -68,6 +68,20 @@ double BoneFinder::median_length(double least) const {
   return *middle;
 }
 
+// `joint`, or what is above it and carries half of the skeleton's bones or more by their length: in
+// some rigs hips hang on the trunk.
+int joint_with_half(const Skeleton& skeleton, int joint) {
+  std::vector<double> below(skeleton.names.size(), 0.0);  // metres of bones
+  for (std::size_t j = below.size(); j-- > 1;) {
+    const std::size_t parent = at(skeleton.parents[j]);
+    const double bone =
+        (skeleton.reference[j].position - skeleton.reference[parent].position).norm();
+    below[parent] += below[j] + bone;
+  }
+  while (joint > 0 && below[at(joint)] < 0.5 * below.front()) joint = skeleton.parents[at(joint)];
+  return std::max(joint, 0);
+}
+
 }  // namespace
 
 double extent(const Skeleton& skeleton) {
@@ -81,6 +95,7 @@ double extent(const Skeleton& skeleton) {
 }
 
 std::vector<Body> bone_bodies(const Skeleton& skeleton, int root) {
+  root = joint_with_half(skeleton, root);
   const double size = extent(skeleton);
   std::vector<Body> bodies;
   if (!(size > 0) || !std::isfinite(size)) return bodies;

@@ -306,6 +306,35 @@ TEST(GoalMotion, NothingFlipsAlongAMovingGoal) {
 // While a goal out of reach fades in, each joint turns as evenly as the fade runs: never in a frame
 // by more than the steepest part of it, 15/8 of the mean, and some room. On the straight way to
 // such a place the elbow would snap.
+// Who walked by a place that was near leaned towards it while it was still far.
+TEST(GoalMotion, WhoWalksByLeansTowardsNothingFar) {
+  Clip clip = calm_human(121);
+  for (int f = 0; f < 121; ++f) {
+    std::vector<Transform> pose(clip.skeleton.names.size());
+    clip.get_pose(f, pose);
+    for (Transform& joint : pose) joint.position.z() += 2.0 * f / 60;
+    clip.set_pose(f, pose);
+  }
+  const Vec3 shoulder = place(clip, 60, "LeftArm");
+  const double arm = (place(clip, 60, "LeftForeArm") - shoulder).norm() +
+                     (place(clip, 60, "LeftHand") - place(clip, 60, "LeftForeArm")).norm();
+  KeyedGoal goal = reach_of(clip, "LeftHand", 1.0, shoulder + 0.6 * arm * Vec3::UnitZ());
+  goal.fade_in = goal.fade_out = 0.5;
+  GoalMotionOptions options;
+  options.solver.stiffness = trunk_stiffness(clip.skeleton, find_roles(clip.skeleton), 0.5);
+  const auto made = apply_goals(clip, {&goal, 1}, {}, options);
+  ASSERT_TRUE(made.ok());
+  EXPECT_LT((place(made->clip, 60, "LeftHand") - goal.keys[0].target).norm(), 1e-4);
+  const auto chest = at(clip.skeleton.parents[at(clip.skeleton.find("LeftShoulder"))]);
+  double largest = 0;
+  for (int f = 0; f < 121; ++f) {
+    largest =
+        std::max(largest, angle_between(clip.frame_orientations(f)[chest].cast<double>(),
+                                        made->clip.frame_orientations(f)[chest].cast<double>()));
+  }
+  EXPECT_LT(largest, 5 * kRadiansPerDegree);  // 46 before
+}
+
 TEST(GoalMotion, AnArmStraightensAsEvenlyAsTheFadeRuns) {
   Clip clip = calm_human(90);
   std::vector<Transform> pose(clip.skeleton.names.size());

@@ -101,6 +101,23 @@ Clip standing(const Skeleton& skeleton) {
   return clip;
 }
 
+// Rigs whose hips hang on the trunk: legs fell and left the trunk in the air.
+TEST(BoneBodies, WhatCarriesTheHipsFallsWithThem) {
+  Skeleton skeleton;
+  const int torso = add_chain(skeleton, add_joint(skeleton, -1, Vec3(0, 0, 0)), 1, {0, 0.8, 0});
+  const int hips = add_joint(skeleton, torso, Vec3(0, -0.1, 0));
+  add_chain(skeleton, torso, 2, Vec3(0, 0.3, 0));
+  for (const double side : {-0.2, 0.2}) {
+    add_chain(skeleton, hips, 2, Vec3(0.2 * side, -0.3, 0));
+    add_chain(skeleton, torso, 3, Vec3(side, 0, 0));
+  }
+  const std::vector<Body> bodies = bone_bodies(skeleton, hips);
+  ASSERT_FALSE(bodies.empty());
+  EXPECT_EQ(bodies.front().joint, torso);
+  EXPECT_GT(bodies.size(), 8U);
+  EXPECT_EQ(std::ranges::count(bodies, -1, &Body::parent), 1);
+}
+
 TEST(BoneBodies, ACapsuleForEachBoneAtItsJoints) {
   for (const Creature& creature : creatures()) {
     SCOPED_TRACE(creature.name);
