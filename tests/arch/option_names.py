@@ -30,7 +30,9 @@ for name, found in sorted(kinds.items()):
         failed = True
         print(f"{name} takes values of several kinds: " +
               "; ".join(f"{kind} in {', '.join(sorted(tools))}" for kind, tools in sorted(found.items())))
-rows = re.findall(r'\{"(krok-\w+)", "(--[\w-]+)", "((--[\w-]+)[^"]*)"\}', renamed)
+rows = [(tool, before, now, name)
+        for tool, names, now, name in re.findall(r'\{"(krok-\w+)",\s+"([\w -]+)",\s+"((--[\w-]+)[^"]*)"\}', renamed)
+        for before in names.split() if before.startswith("--")]
 for tool, before, now, name in rows:
     run = subprocess.run([binaries / tool, before], capture_output=True, text=True, check=False)
     if run.returncode != 2 or now not in run.stderr or not any(tool in found for found in kinds[name].values()):

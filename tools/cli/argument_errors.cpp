@@ -155,7 +155,7 @@ std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>&
     }
     if (is_long && hints.empty()) {
       for (const RenamedOption& row : kRenamedOptions) {
-        if (row.before != dashed || row.tool.empty() || !row.now.starts_with("--")) continue;
+        if (!row.was(dashed) || row.tool.empty() || !row.now.starts_with("--")) continue;
         hints.push_back(fmt::format("{} has {}", row.tool, row.now));
         break;
       }

@@ -14,8 +14,6 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/registry/registry.h"
 #include "skin/scene_of.h"
-#include "tools/krok-diff/difference_plot.h"
-#include "tools/krok-diff/difference_sheet.h"
 
 namespace krok::cli::diff {
 

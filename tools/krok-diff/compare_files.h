@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "core/result.h"
 #include "tools/cli/tool.h"
-#include "tools/krok-diff/difference_plot.h"
+#include "tools/krok-diff/difference_sheet.h"
 #include "tools/krok-diff/options.h"
 #include "tools/krok-diff/outcome.h"
 

@@ -18,7 +18,6 @@
 #include "scene/scene.h"
 #include "skin/scene_of.h"
 #include "tools/krok-diff/compare_files.h"
-#include "tools/krok-diff/difference_plot.h"
 #include "tools/krok-diff/difference_sheet.h"
 
 namespace krok::cli::diff {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "compare/clip_difference.h"
 #include "compare/measure.h"
 #include "compare/scene_difference.h"
 #include "core/result.h"
@@ -83,5 +84,36 @@ Status write_heatmap(const Scene& first, const compare::SceneDifference& found,
 // The same for two scenes that were not compared as such.
 Status write_heatmap(const Scene& first, const Scene& second, const compare::SceneOptions& options,
                      const std::string& path, ToolContext& context);
+
+// Charts of the differences of two motions or scenes over time: max and RMS, the tolerance, and the
+// time of the max.
+
+struct PlottedClip {
+  std::string name;
+  const Clip* clip = nullptr;
+};
+
+struct Plot {
+  std::string svg;
+  std::size_t left_out = 0;  // animations that differ but are not drawn
+};
+
+// The differences of joint positions and orientations. Code diff-plot if the clips have no joint or
+// time in common.
+Result<Plot> plot_of(const PlottedClip& first, const PlottedClip& second,
+                     const compare::ClipDifference& found);
+
+struct PlottedScenes {
+  std::string first_name, second_name;
+  const Scene* first = nullptr;
+  const compare::SceneDifference* found = nullptr;
+};
+// The differences of vertex positions, normals and tangents and of joint positions and
+// orientations, at the times compared; for several animations, of those that differ, at most eight.
+// Code diff-plot if the scenes are static.
+Result<Plot> plot_of(const PlottedScenes& scenes);
+
+// Writes the SVG. If there is nothing to draw (diff-plot): a warning, and no file.
+Status write_plot(const Result<Plot>& plot, const std::string& path, ToolContext& context);
 
 }  // namespace krok::cli::diff

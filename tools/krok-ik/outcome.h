@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "draw/plot.h"
 #include "ik/goal_motion.h"
+#include "scene/clip.h"
 #include "tools/cli/report.h"
 
 namespace krok::cli::ik {
@@ -40,5 +42,11 @@ Json to_json(const Outcome& outcome, bool with_frames);
 
 std::string limits_summary(const krok::ik::Limits& limits);
 Json limits_json(const krok::ik::Limits& limits, const Skeleton& skeleton);
+
+// By how much each goal is missed over time, in lengths and in angles, as far as there are such
+// goals; the joints whose limits hold a goal back, where any does; and, with limits, by how much
+// the joint that is farthest beyond its limits is beyond them, in the input and in the result.
+// Lengths are millimetres, angles degrees.
+draw::Chart chart_of(const Outcome& outcome, const Clip& given, const std::string& title);
 
 }  // namespace krok::cli::ik

@@ -28,7 +28,6 @@
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
-#include "tools/krok-ik/goal_chart.h"
 #include "tools/krok-ik/outcome.h"
 #include "tools/shared/goal_input.h"
 #include "tools/shared/planting.h"

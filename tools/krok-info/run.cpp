@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "tools/krok-info/describe.h"
 #include "tools/krok-info/description.h"
 #include "tools/krok-info/options.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::info {
 
@@ -246,10 +248,6 @@ Result<Description> describe_path(const std::string& path, const SkeletonOptions
   return description;
 }
 
-}  // namespace
-
-namespace {
-
 // A line for what is no motion or cannot be read: git stops at a text conversion that fails.
 Result<int> print_for_git(const Options& options, ToolContext& context) {
   for (const std::string& path : options.files) {
@@ -295,6 +293,41 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!in_full && !context.quiet) context.print(folder_summary(files));
   context.report.result["files"] = std::move(files);
   return failed ? kExitTrouble : kExitDone;
+}
+
+namespace {
+
+void declare(CommandOptions& command, Options& options) {
+  command.add_option("FILE", options.files, "Files of these kinds; - is standard input")
+      .type_name("")
+      .required();
+  add_map_option(command, options.map);
+  command.add_flag("--textconv", options.textconv,
+                   "Print a motion as lines that git diff compares (krok git-setup): ranges and "
+                   "checksums for each second and joint, at most 2,000 lines; a file that cannot "
+                   "be read is one line and no error");
+}
+
+}  // namespace
+
+ToolSpec make_spec() {
+  const auto options = std::make_shared<Options>();
+  ToolSpec spec = spec_of<Options>("krok-info", options, declare, nullptr, run);
+  spec.summary = "Prints the contents of files";
+  spec.details =
+      "Motions (.anim), models (.model), cameras (.cam), step libraries (.steps), materials "
+      "(.material), characters (.character; glTF, FBX, COLLADA, SMD, MS3D, 3DS, ASE, MD5), "
+      "morph targets (.exr), labels over time (.TextGrid), captures (.bvh, .asf, .amc). More than "
+      "four files are shown as a table, with -v each in full.";
+  spec.inputs = "FILE...";
+  spec.folder_endings = io::endings([](const io::Format& format) { return !format.companion; });
+  spec.examples = {
+      {"krok-info walk.anim", "frames, rate, duration, size, provenance and joint roles"},
+      {"krok-info -v capture.bvh", "also each joint with its role, and the reader's notes"},
+      {"krok-info captures/", "a table of all files in a folder, their kinds, rates and duration"},
+      {"krok-info --json *.model > models.json", "the same as JSON for scripts"}};
+  spec.has_output = false;
+  return spec;
 }
 
 }  // namespace krok::cli::info

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "contacts/loop_steps.h"
 #include "contacts/slide_speed.h"
@@ -14,6 +15,7 @@
 #include "formats/csv/field.h"
 #include "formats/io/open_motion.h"
 #include "tools/cli/file_name.h"
+#include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
 #include "tools/shared/keys_sidecar.h"
 
@@ -142,6 +144,231 @@ Result<int> write_event_table(const Options& options, ToolContext& context) {
   return write_rows(options, "file,event,time [s],frame\n", event_rows, "finding steps",
                     "strikes and toe-offs", "; --table OUT.csv has speed, cadence and steps",
                     context.output, context);
+}
+
+namespace {
+
+struct MarkedKeytime {
+  Keytime key;
+  bool by_hand = false;
+};
+struct MarkedContact {
+  Contact contact;
+  bool by_hand = false;
+};
+
+bool marked(const std::vector<std::uint8_t>& marks, std::size_t i) {
+  return i < marks.size() && marks[i] != 0;
+}
+
+std::vector<MarkedKeytime> keytimes_of(const krok::keys::Sidecar& sidecar) {
+  std::vector<MarkedKeytime> list;
+  for (std::size_t i = 0; i < sidecar.keys.keytimes.size(); ++i) {
+    list.push_back({sidecar.keys.keytimes[i], marked(sidecar.keytimes_by_hand, i)});
+  }
+  return list;
+}
+std::vector<MarkedContact> contacts_of(const krok::keys::Sidecar& sidecar) {
+  std::vector<MarkedContact> list;
+  for (std::size_t i = 0; i < sidecar.keys.contacts.size(); ++i) {
+    list.push_back({sidecar.keys.contacts[i], marked(sidecar.contacts_by_hand, i)});
+  }
+  return list;
+}
+
+void put(std::vector<MarkedKeytime> list, krok::keys::Sidecar& sidecar) {
+  std::ranges::stable_sort(list, {}, [](const MarkedKeytime& k) { return k.key.time; });
+  sidecar.keys.keytimes.clear();
+  sidecar.keytimes_by_hand.clear();
+  for (MarkedKeytime& entry : list) {
+    sidecar.keys.keytimes.push_back(std::move(entry.key));
+    sidecar.keytimes_by_hand.push_back(entry.by_hand ? 1 : 0);
+  }
+}
+void put(std::vector<MarkedContact> list, krok::keys::Sidecar& sidecar) {
+  std::ranges::stable_sort(list, {}, [](const MarkedContact& c) {
+    return std::tuple(c.contact.start, c.contact.joint);
+  });
+  sidecar.keys.contacts.clear();
+  sidecar.contacts_by_hand.clear();
+  for (const MarkedContact& entry : list) {
+    sidecar.keys.contacts.push_back(entry.contact);
+    sidecar.contacts_by_hand.push_back(entry.by_hand ? 1 : 0);
+  }
+}
+
+bool overlap(const Contact& a, const Contact& b) {
+  return a.joint == b.joint && a.start <= b.end && b.start <= a.end;
+}
+
+// The keytime of that name nearest to `time`, within kSameKeytime.
+std::vector<MarkedKeytime>::iterator nearest(std::vector<MarkedKeytime>& list,
+                                             const std::string& name, double time) {
+  auto best = list.end();
+  for (auto it = list.begin(); it != list.end(); ++it) {
+    const double apart = std::abs(it->key.time - time);
+    if (it->key.name != name || apart > kSameKeytime) continue;
+    if (best == list.end() || apart < std::abs(best->key.time - time)) best = it;
+  }
+  return best;
+}
+
+Result<double> seconds_of(const ClipTime& time, const Clip& clip) {
+  const double seconds = time.seconds(clip.rate);
+  if (seconds >= 0 && seconds <= clip.duration() + 1e-9) return std::min(seconds, clip.duration());
+  return Error("keys-time",
+               fmt::format("{} s is outside the motion, 0 to {} s", readable(seconds),
+                           readable(clip.duration(), 4)),
+               frame_hint(time, clip.frame_count()));
+}
+
+Result<int> joint_of(const std::string& name, const Clip& clip) {
+  const int joint = clip.skeleton.find(name);
+  if (joint >= 0) return joint;
+  return Error("keys-joint", fmt::format("the motion has no joint '{}'", name),
+               "krok-info -v lists its joints");
+}
+
+Vec3 place_of(const Clip& clip, int joint, double from, double to) {
+  const int last = clip.frame_count() - 1;
+  const int first = std::clamp(static_cast<int>(std::lround(from * clip.rate)), 0, last);
+  const int end = std::clamp(static_cast<int>(std::lround(to * clip.rate)), first, last);
+  std::array<std::vector<double>, 3> values;
+  for (int f = first; f <= end; ++f) {
+    const Vec3f& at = clip.frame_positions(f)[static_cast<std::size_t>(joint)];
+    for (int i = 0; i < 3; ++i) values[static_cast<std::size_t>(i)].push_back(at[i]);
+  }
+  Vec3 place;
+  for (int i = 0; i < 3; ++i) {
+    auto& list = values[static_cast<std::size_t>(i)];
+    std::ranges::sort(list);
+    place[i] = list[list.size() / 2];
+  }
+  return place;
+}
+
+// Fails for a name that no keytime has, which may be misspelt, unless such names are wanted.
+Status check_name(const std::string& name, const std::vector<MarkedKeytime>& list, bool new_names) {
+  std::vector<std::string> known = {"left_strike", "left_off", "right_strike", "right_off"};
+  for (const MarkedKeytime& one : list) {
+    if (std::ranges::find(known, one.key.name) == known.end()) known.push_back(one.key.name);
+  }
+  if (new_names || std::ranges::find(known, name) != known.end()) return {};
+  const std::string near = nearest_name(name, known);
+  return Error("keys-name", fmt::format("there is no keytime '{}'", shown(name)),
+               near.empty()
+                   ? fmt::format("there are {}; --new adds one of a new name", either_of(known))
+                   : fmt::format("did you mean '{}'? --new adds one of a new name", near));
+}
+
+Status set_keytimes(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
+  std::vector<MarkedKeytime> list = keytimes_of(sidecar);
+  for (const KeytimeChange& change : changes.remove) {
+    std::size_t removed = 0;
+    if (change.time) {
+      const auto time = seconds_of(*change.time, clip);
+      if (!time) return time.error();
+      const auto found = nearest(list, change.name, *time);
+      if (found != list.end()) list.erase(found), removed = 1;
+    } else {
+      removed =
+          std::erase_if(list, [&](const MarkedKeytime& k) { return k.key.name == change.name; });
+    }
+    if (removed == 0) {
+      const bool known = std::ranges::any_of(
+          list, [&](const MarkedKeytime& one) { return one.key.name == change.name; });
+      return Error(
+          "keys-none",
+          fmt::format("no keytime '{}'{} to remove", change.name, known ? " near that time" : ""),
+          "run without --remove to list the keytimes");
+    }
+    sidecar.edited = true;
+  }
+  for (const KeytimeChange& change : changes.set) {
+    const auto time = seconds_of(*change.time, clip);
+    if (!time) return time.error();
+    if (Status status = check_name(change.name, list, changes.new_names); !status) return status;
+    const auto found = nearest(list, change.name, *time);
+    if (found != list.end()) list.erase(found);
+    list.push_back({{*time, change.name}, true});
+  }
+  put(std::move(list), sidecar);
+  for (std::size_t i = 1; i < sidecar.keys.keytimes.size(); ++i) {
+    const Keytime &a = sidecar.keys.keytimes[i - 1], &b = sidecar.keys.keytimes[i];
+    if (b.time - a.time >= 2e-6) continue;
+    return Error(
+        "keys-time",
+        fmt::format("'{}' and '{}' would both be at {} s", a.name, b.name, readable(b.time)),
+        "keytimes must be at least 2 microseconds apart");
+  }
+  return {};
+}
+
+Status set_contacts(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
+  std::vector<MarkedContact> list = contacts_of(sidecar);
+  for (const KeytimeChange& change : changes.remove_contact) {
+    const auto joint = joint_of(change.name, clip);
+    if (!joint) return joint.error();
+    const auto time = seconds_of(*change.time, clip);
+    if (!time) return time.error();
+    const std::size_t removed = std::erase_if(list, [&](const MarkedContact& c) {
+      return c.contact.joint == *joint && c.contact.start <= *time && *time <= c.contact.end;
+    });
+    if (removed == 0) {
+      return Error("keys-none",
+                   fmt::format("'{}' has no contact at {} s", change.name, readable(*time)),
+                   "run without --remove-contact to list the contacts");
+    }
+    sidecar.edited = true;
+  }
+  for (const ContactChange& change : changes.add_contact) {
+    const auto joint = joint_of(change.joint, clip);
+    if (!joint) return joint.error();
+    const auto from = seconds_of(change.from, clip);
+    if (!from) return from.error();
+    const auto to = seconds_of(change.to, clip);
+    if (!to) return to.error();
+    if (*to < *from) {
+      return Error("keys-time", fmt::format("--add-contact {}: ends at {} s, before it starts "
+                                            "at {} s",
+                                            change.joint, readable(*to), readable(*from)));
+    }
+    const Contact contact{*joint, *from, *to, place_of(clip, *joint, *from, *to)};
+    std::erase_if(list, [&](const MarkedContact& c) { return overlap(c.contact, contact); });
+    list.push_back({contact, true});
+  }
+  put(std::move(list), sidecar);
+  return {};
+}
+
+}  // namespace
+
+krok::keys::Sidecar with_edits(MotionKeys found, const krok::keys::Sidecar& before) {
+  krok::keys::Sidecar result;
+  result.keys = std::move(found);
+  std::vector<MarkedKeytime> keytimes = keytimes_of(result);
+  std::vector<MarkedContact> contacts = contacts_of(result);
+  for (const MarkedKeytime& set : keytimes_of(before)) {
+    if (!set.by_hand) continue;
+    const auto same = nearest(keytimes, set.key.name, set.key.time);
+    if (same != keytimes.end() && !same->by_hand) keytimes.erase(same);
+    keytimes.push_back(set);
+  }
+  for (const MarkedContact& set : contacts_of(before)) {
+    if (!set.by_hand) continue;
+    std::erase_if(contacts, [&](const MarkedContact& c) {
+      return !c.by_hand && overlap(c.contact, set.contact);
+    });
+    contacts.push_back(set);
+  }
+  put(std::move(keytimes), result);
+  put(std::move(contacts), result);
+  return result;
+}
+
+Status change(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar) {
+  if (Status status = set_keytimes(changes, clip, sidecar); !status) return status.error();
+  return set_contacts(changes, clip, sidecar);
 }
 
 }  // namespace krok::cli::keys

@@ -5,6 +5,7 @@
 #include "contacts/gait_metrics.h"
 #include "contacts/step_measures.h"
 #include "core/result.h"
+#include "formats/keys/keys.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
@@ -36,5 +37,15 @@ Result<int> write_gait_table(const Options& options, ToolContext& context);
 
 // Writes -o OUT.csv: a row for each keytime of each motion. Otherwise the same.
 Result<int> write_event_table(const Options& options, ToolContext& context);
+
+// Within so many seconds keytimes of a name are one.
+inline constexpr double kSameKeytime = 0.15;
+
+// Merges detected keys with manual edits: detected keytimes of the same name within kSameKeytime
+// and detected contacts of the same joint that overlap are replaced.
+krok::keys::Sidecar with_edits(MotionKeys found, const krok::keys::Sidecar& before);
+
+// Applies the edits from the options. Codes: keys-none (nothing to remove), keys-joint, keys-time.
+Status change(const Changes& changes, const Clip& clip, krok::keys::Sidecar& sidecar);
 
 }  // namespace krok::cli::keys

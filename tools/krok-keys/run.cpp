@@ -22,7 +22,6 @@
 #include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/usage.h"
-#include "tools/krok-keys/edit_keys.h"
 #include "tools/krok-keys/gait_table.h"
 #include "tools/shared/keys_sidecar.h"
 

@@ -5,7 +5,6 @@
 #include "core/numbers.h"
 #include "formats/weights/weights.h"
 #include "skin/morph.h"
-#include "tools/krok-morph/motion_file.h"
 #include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
 

@@ -19,7 +19,6 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "scene/morph_set.h"
 #include "skin/key_frame_mesh.h"
-#include "tools/krok-morph/motion_file.h"
 #include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
 

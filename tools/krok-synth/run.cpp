@@ -16,7 +16,6 @@
 #include "roles/roles.h"
 #include "tools/cli/output_set.h"
 #include "tools/krok-synth/asked_parameters.h"
-#include "tools/krok-synth/sequence.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/planting.h"
 
