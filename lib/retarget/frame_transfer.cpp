@@ -145,7 +145,9 @@ class FrameTransfer {
     const Vec3 goal = plan_.scale * middle(source_pose, plan_.source_sides);
     // Who lies or sits on the ground is no higher for the height of his ankles.
     const double upright =
-        smooth_step(0.25 * plan_.leg_length, 0.6 * plan_.leg_length, goal.y() - plan_.floor);
+        plan_.leg_length > 0
+            ? smooth_step(0.25 * plan_.leg_length, 0.6 * plan_.leg_length, goal.y() - plan_.floor)
+            : 0;
     const Vec3 shift = goal + upright * plan_.rise * kUp - middle(pose, plan_.target_sides);
     for (std::size_t k = 0; k < pose.size(); ++k) {
       if (below_anchor_[k] != 0) pose[k].position += shift;

@@ -395,6 +395,18 @@ class Transfer {
     return {};
   }
 
+  // The first mapped joint, or the first below it at which the skeleton branches.
+  int first_of_body() const {
+    const int first = first_mapped(plan_.mapping);
+    const auto children = target_.children();
+    int joint = first;
+    while (children[at(joint)].size() == 1) {
+      joint = children[at(joint)].front();
+      if (plan_.mapping[at(joint)].first < 0) return first;
+    }
+    return children[at(joint)].empty() ? first : joint;
+  }
+
   Status prepare_names() {
     report_->method = Method::names;
     plan_.mapping = map_by_names(source_.skeleton, target_);
@@ -414,7 +426,10 @@ class Transfer {
     turns_ = align_by_names({source_.skeleton, source_roles_, rest_},
                             {target_, target_roles_, target_rest_}, plan_.mapping);
     report_->scale = options_.scale.value_or(bone_ratio(source_.skeleton, target_, plan_.mapping));
-    plan_.anchor = first_mapped(plan_.mapping);
+    // The hips carry the travel; a root above them may stay where it is.
+    const int hips = target_roles_.joint(Role::hips), of_source = source_roles_.joint(Role::hips);
+    const bool by_hips = hips >= 0 && of_source >= 0 && plan_.mapping[at(hips)].first == of_source;
+    plan_.anchor = by_hips ? hips : first_of_body();
     plan_.source_sides = {plan_.mapping[at(plan_.anchor)].first,
                           plan_.mapping[at(plan_.anchor)].first};
     plan_.target_sides = {plan_.anchor, plan_.anchor};

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "math/quaternion.h"
+#include "scene/skeleton.h"
 #include "tracks/key_reducer_internal.h"
 
 namespace krok::tracks_detail {

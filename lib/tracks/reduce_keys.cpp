@@ -168,15 +168,6 @@ bool keep_all_where_few_go(const ReduceOptions& options, const Reduction& reduct
   return any;
 }
 
-template <typename Track>
-void keep(const Track& all, std::span<const int> frames, Track& kept) {
-  kept.curve = all.curve;
-  for (const int frame : frames) {
-    kept.times.push_back(all.times[static_cast<std::size_t>(frame)]);
-    kept.values.push_back(all.values[static_cast<std::size_t>(frame)]);
-  }
-}
-
 }  // namespace
 
 Result<Reduction> choose_keys(std::span<const int> parents, std::span<const double> times,
@@ -216,35 +207,6 @@ Result<Reduction> choose_keys(std::span<const int> parents, std::span<const doub
     reduction.keys_after += kept.size();
   }
   return reduction;
-}
-
-Result<ReducedClip> reduce_keys(const Clip& clip, const ReduceOptions& options, int jobs) {
-  const KeyedClip all = keyed_clip(clip);
-  const std::size_t joints = all.joints.size();
-  const auto frames = static_cast<std::size_t>(clip.frame_count());
-  std::vector<double> times;
-  if (joints > 0) times = all.joints[0].rotation.times;
-  std::vector<Transform> local(joints * frames);
-  for (std::size_t j = 0; j < joints; ++j) {
-    for (std::size_t f = 0; f < frames; ++f) {
-      local[f * joints + j] = {all.joints[j].position.values[f], all.joints[j].rotation.values[f]};
-    }
-  }
-  auto reduction = choose_keys(clip.skeleton.parents, times, local, options, jobs);
-  if (!reduction) return std::move(reduction).error();
-  ReducedClip result;
-  result.clip.skeleton = all.skeleton;
-  result.clip.duration = all.duration;
-  result.clip.provenance = all.provenance;
-  result.clip.joints.resize(joints);
-  if (frames > 0) {
-    for (std::size_t j = 0; j < joints; ++j) {
-      keep(all.joints[j].position, reduction->joints[j].position, result.clip.joints[j].position);
-      keep(all.joints[j].rotation, reduction->joints[j].rotation, result.clip.joints[j].rotation);
-    }
-  }
-  result.reduction = *std::move(reduction);
-  return result;
 }
 
 }  // namespace krok

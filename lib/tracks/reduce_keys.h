@@ -3,7 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "tracks/keyed_clip.h"
+#include "core/result.h"
+#include "math/transform.h"
 
 // Key reduction: removes keys where linear interpolation of positions and slerp of rotations
 // between the remaining ones keeps every joint within a tolerance. The error is measured in model
@@ -46,12 +47,5 @@ struct Reduction {
 Result<Reduction> choose_keys(std::span<const int> parents, std::span<const double> times,
                               std::span<const Transform> joint_to_parent,
                               const ReduceOptions& options, int jobs = 1);
-
-// A clip with the keys selected by choose_keys(). A clip without frames gives one without keys.
-struct ReducedClip {
-  KeyedClip clip;
-  Reduction reduction;
-};
-Result<ReducedClip> reduce_keys(const Clip& clip, const ReduceOptions& options, int jobs = 1);
 
 }  // namespace krok

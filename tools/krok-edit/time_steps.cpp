@@ -16,7 +16,6 @@
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
 #include "tools/krok-edit/steps.h"
-#include "tracks/keyed_clip.h"
 
 namespace krok::cli::edit {
 

@@ -124,7 +124,8 @@ Result<Shot> Shot::create(std::vector<MovingActor> actors, const Options& option
   shot.setting_ = setting;
   shot.actors_ = std::move(actors);
   shot.track_ = std::move(camera);
-  const double frames = std::floor((setting.end - setting.start) * setting.rate + 1e-6) + 1;
+  constexpr double kSameFrame = 1e-3;  // times of files are floats
+  const double frames = std::floor((setting.end - setting.start) * setting.rate + kSameFrame) + 1;
   if (frames > kMaxFrames) {
     return Error("film-long",
                  fmt::format("{} s at {} frames per second exceed the limit of {} frames",

@@ -26,8 +26,7 @@
 #include "positions/from_positions.h"
 #include "property/promises/motions.h"
 #include "retarget/retarget.h"
-#include "tracks/reduce_keys.h"
-#include "tracks/sample_keys.h"
+#include "support/reduced_motion.h"
 
 namespace krok {
 namespace {
@@ -301,41 +300,29 @@ TEST(Promises, WithoutSpikesNothingChanges) {
   }
 }
 
-// tracks/reduce_keys.h: "metres, <= tolerance"; tracks/keyed_clip.h: "lossless".
+// tracks/reduce_keys.h: "metres, <= tolerance".
 TEST(Promises, ReducedAndReducedAgainIsWithinTheTolerance) {
   for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
-    const Clip same = *uniform_clip(keyed_clip(clip), clip.rate);
-    EXPECT_LT(metres_apart(same, clip), kFloat * size * 4) << name;
     const ReduceOptions options{.tolerance = 1e-3};
-    const auto once = reduce_keys(clip, options);
+    const auto once = test::reduce_keys(clip, options);
     ASSERT_TRUE(once.ok()) << name;
     EXPECT_LE(once->reduction.largest_error, options.tolerance) << name;
     EXPECT_LE(once->reduction.keys_after, once->reduction.keys_before);
-    const Clip reduced = *uniform_clip(once->clip, clip.rate);
-    ASSERT_EQ(reduced.frame_count(), clip.frame_count()) << name;
+    Clip reduced = clip;
+    std::vector<Transform> pose(clip.skeleton.names.size());
+    for (int f = 0; f < clip.frame_count(); ++f) {
+      once->pose_at(f / clip.rate, pose);
+      reduced.set_pose(f, pose);
+    }
     for (std::size_t i = 0; i < clip.positions.size(); ++i) {
       ASSERT_LT((reduced.positions[i] - clip.positions[i]).norm(),
                 options.tolerance + 4 * kFloat * size)
           << name;
     }
-    const auto twice = reduce_keys(reduced, options);
+    const auto twice = test::reduce_keys(reduced, options);
     ASSERT_TRUE(twice.ok()) << name;
     EXPECT_LE(twice->reduction.largest_error, options.tolerance) << name;
-  }
-}
-
-// tracks/sample_keys.h: "times within [0, duration] are unchanged".
-TEST(Promises, TimesWithinAreUnchanged) {
-  Dice dice(3);
-  for (int i = 0; i < 1000; ++i) {
-    const double duration = dice.between(1e-6, 100), time = duration * dice.between(0, 1);
-    for (const Wrap wrap : {Wrap::clamp, Wrap::loop, Wrap::ping_pong}) {
-      EXPECT_EQ(wrap_time(time, duration, wrap), time);
-      EXPECT_EQ(wrap_time(duration, duration, wrap), duration);
-      const double outside = wrap_time(dice.between(-500, 500), duration, wrap);
-      EXPECT_TRUE(outside >= 0 && outside <= duration);
-    }
   }
 }
 

@@ -412,6 +412,30 @@ TEST(Retarget, SkeletonsThatAreNoHumansAreMappedByNames) {
   }
 }
 
+// A fox whose root stays on the ground while its hips leap. Would fail if the leap were the root's
+// alone: other animals dived into the ground.
+TEST(Retarget, HipsUnderARootThatStaysCarryTheTravelByNames) {
+  Skeleton from = skeleton_from_text("Root .Hips ..Chest ...Head ..Tail1 ...Tail2");
+  for (int j = 0; j < from.joint_count(); ++j) {
+    from.reference[at(j)].position = Vec3(std::sin(j), j == 0 ? 0 : 1, j);
+  }
+  Clip clip;
+  clip.skeleton = from;
+  clip.resize(2);
+  clip.set_pose(0, from.reference);
+  std::vector<Transform> leap = from.reference;
+  for (std::size_t j = 1; j < leap.size(); ++j) leap[j].position.y() += 1;
+  clip.set_pose(1, leap);
+  Skeleton to = scaled(from, 2);
+  to.add("Ear", to.find("Head"), to.reference[at(to.find("Head"))]);
+  const auto result = transfer(clip, to);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->report.method, Method::names);
+  const auto hips = at(to.find("Hips"));
+  EXPECT_NEAR(result->clip.frame_positions(1)[hips].y() - result->clip.frame_positions(0)[hips].y(),
+              2, 1e-4);
+}
+
 TEST(Retarget, WhatIsMissingIsSaid) {
   const Skeleton snake = skeleton_from_text("a .b ..c ...d");
   const auto result = transfer(lively_clip(human_skeleton(), 2), snake);

@@ -1,7 +1,7 @@
 // If these fail, motions resampled along Hermite curves leave their frames, bend at them, or do not
 // stop at them with full tension.
 
-#include "tracks/keyed_clip.h"
+#include "motion/retime.h"
 
 #include <gtest/gtest.h>
 
