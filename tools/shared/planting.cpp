@@ -102,6 +102,11 @@ Json planting_json(const PlantedFeet& planted, bool contacts_given) {
 }
 
 std::string planting_line(const PlantedFeet& planted) {
+  if (planted.drift_after == planted.drift_before && planted.rolls.empty() &&
+      planted.pelvis_lowered == 0 && planted.body_steadied == 0) {
+    return fmt::format("feet stay in {} already, heels and balls drift by up to {}: left as it is",
+                       counted(planted.stays.size(), "stay"), millimetres(planted.drift_after));
+  }
   std::string line = fmt::format("feet planted in {}", counted(planted.stays.size(), "stay"));
   if (planted.stance_share) {
     line += fmt::format(", {:.0f} % of the time from strike to toe-off",
