@@ -308,8 +308,19 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
   };
   note_frame(report.source_frame, "input");
   note_frame(report.target_frame, "target");
+  double hips_turned = 0;
   for (const krok::retarget::MappedJoint& joint : report.mapped) {
     const Role role = outcome.target_roles.roles[at(joint.target)];
+    if (role == Role::hips) hips_turned = joint.alignment;
+    if (role == Role::head && joint.alignment > hips_turned + kPi / 2) {
+      choices.push_back(make_warning(
+          "retarget-head",
+          fmt::format("{} is turned by {:.0f} deg against the hips to match the input's "
+                      "reference pose: perhaps neck and head of another kind of rig",
+                      outcome.target.names[at(joint.target)], to_degrees(joint.alignment)),
+          "look at the result; krok-info -v shows the roles, --map and --onto-map of krok-retarget "
+          "set them"));
+    }
     if ((role != Role::left_foot && role != Role::right_foot) ||
         std::abs(joint.heading) < kTurnedFoot) {
       continue;
