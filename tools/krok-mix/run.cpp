@@ -322,6 +322,15 @@ Result<int> run(const Options& options, ToolContext& context) {
   constexpr double kNothing = 0.01;  // seconds
   for (const ItemFacts& item : mixed->items) {
     if (item.skipped < kNothing) continue;
+    if (item.skipped > item.end - item.start) {
+      context.warn("timeline-skipped",
+                   fmt::format("{}: of {} s its first {} s are left out, so that its steps meet "
+                               "those before",
+                               item.name, readable(item.skipped + item.end - item.start, 3),
+                               readable(item.skipped, 3)),
+                   "\"sync\": \"clock\" plays them; or let the item before it end elsewhere");
+      continue;
+    }
     context.log(fmt::format(
         "{}: its first {} s are left out, so that its steps meet those before (\"sync\": "
         "\"clock\" plays them)",

@@ -131,6 +131,18 @@ TEST_F(KrokMix, MistakesAreToldByLineAndColumnAndLeaveNothing) {
   EXPECT_EQ(mask.exit_code, 2);
 }
 
+// Would fail if a motion of which hardly anything is played passed for one that is played.
+TEST_F(KrokMix, AnItemThatIsHardlyPlayedIsWarnedOf) {
+  const std::string twice = timeline(
+      "{\"source\": \"walk\"}, {\"source\": \"walk\", \"to\": \"1.4s\", \"change\": {\"kind\": "
+      "\"crossfade\", "
+      "\"duration\": \"0.2s\"}}");
+  const json item = result_of(twice)["items"][1];
+  const double played = item["end"].get<double>() - item["start"].get<double>();
+  ASSERT_GT(item["skipped"].get<double>(), played);
+  EXPECT_TRUE(has_code(mix(twice).err, "timeline-skipped"));
+}
+
 // Would fail if the beginning of a motion were left out without a word.
 TEST_F(KrokMix, WhatTimeAlignmentLeavesOutIsPrinted) {
   const ToolRun run = mix(timeline(kFade));
