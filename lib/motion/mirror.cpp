@@ -239,20 +239,22 @@ class AxesFinder {
   // joints above and below, those which turn the joint least in its parent; where these turn it
   // far, `usual` turned about the bone.
   Quat by_posture(int joint, const Correlation& correlation, const Quat& usual) const {
+    // As they will be, fitted to the bone: it is decided alike when mirrored again.
+    const Quat fitted = correlation.turn(usual);
     std::vector<Quat> turns;
     const auto consider = [&](const Quat& turn) {
-      if (correlation.angle_after(turn) < kBent) turns.push_back(turn);
+      if (correlation.angle_after(turn) < kBent) turns.push_back(correlation.turn(turn));
     };
     consider(found_[at(skeleton_.parents[at(joint)])]);
     const auto found = below(joint);
     if (found) consider(*found);
     // Mirroring turns a head that looks aside by twice as much.
     const double clearly_less = found ? kClearlyLess : 2 * kLooksAside;
-    const Quat chosen = least_changed(joint, joint, usual, std::move(turns), clearly_less);
+    const Quat chosen = least_changed(joint, joint, fitted, std::move(turns), clearly_less);
     const bool of_body = pairs_.in_body.empty() || pairs_.in_body[at(joint)] != 0;
-    if (chosen.coeffs() != usual.coeffs() || !of_body) return chosen;
+    if (chosen.coeffs() != fitted.coeffs()) return chosen;
+    if (!of_body) return usual;
     // The bone alone says nothing of the twist about it: half round, or else whatever it is.
-    const Quat fitted = correlation.turn(usual);
     const auto twisted = [&](double angle) {
       return Quat(fitted * Quat(Eigen::AngleAxisd(angle, correlation.own())));
     };

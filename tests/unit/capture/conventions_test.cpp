@@ -552,7 +552,8 @@ TEST(RotationToKrok, IsExactlyTheIdentityForKroksFrame) {
 TEST(Directions, NamesReadBack) {
   for (const Direction d : kAll) EXPECT_EQ(*parse_direction(direction_name(d)), d);
   EXPECT_EQ(*parse_direction("+y"), Direction::plus_y);
-  for (const char* text : {"", "+", "-", "w", "X", "+-x", "--x", "xy"}) {
+  EXPECT_EQ(*parse_direction("-Z"), Direction::minus_z);
+  for (const char* text : {"", "+", "-", "w", "+-x", "--x", "xy"}) {
     const auto parsed = parse_direction(text);
     ASSERT_FALSE(parsed.ok()) << text;
     EXPECT_EQ(parsed.error().code, "direction-unknown");
