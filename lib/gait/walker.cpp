@@ -9,6 +9,7 @@
 #include "gait/foot_paths_internal.h"
 #include "math/euler.h"
 #include "math/quaternion.h"
+#include "math/window.h"
 #include "pose/packed_pose.h"
 
 namespace krok::gait {
