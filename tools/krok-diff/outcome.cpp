@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 #include "core/numbers.h"
 
@@ -326,8 +325,8 @@ std::string worst_of(const Outcome& outcome) {
   std::vector<std::string> parts;
   if (worst != nullptr) parts.push_back(to_text(*worst, outcome));
   constexpr std::size_t kShown = 2;
-  for (const std::string& line : outcome.structure | std::views::take(kShown)) {
-    parts.push_back(line);
+  for (std::size_t i = 0; i < std::min(kShown, outcome.structure.size()); ++i) {
+    parts.push_back(outcome.structure[i]);
   }
   if (outcome.structure.size() > kShown) {
     parts.push_back(fmt::format("{} more", outcome.structure.size() - kShown));
