@@ -258,6 +258,10 @@ Result<Plan> make_plan(const FrameSource& source, const BodyOptions& options, Bo
   auto found = actor ? human_build_pose(source, roles, *actor) : general_build_pose(source);
   if (!found) return found.error();
   BuildPose pose = *std::move(found);
+  // In the reference pose itself the skin is whole as that has the joints.
+  if (actor && options.pose != BodyPose::reference) {
+    if (Status status = untwist(source, pose.joint_to_world); !status) return status.error();
+  }
   body.pose = options.pose == BodyPose::automatic   ? pose.name
               : options.pose == BodyPose::reference ? "reference"
                                                     : fmt::format("frame {}", options.frame);

@@ -252,9 +252,6 @@ Result<std::vector<Transform>> pose_of(const FrameSource& source, int frame) {
   return pose;
 }
 
-// Of reference poses that have joints half round about their bones against every frame of the
-// motion, the bones' directions say nothing, and skins around them would be wrung all the time:
-// turns such joints back about their bones, where a single bone hangs on them.
 Status untwist(const FrameSource& source, std::vector<Transform>& pose) {
   constexpr double kNoPosture = 120 * kDegree;
   const auto usual = usual_pose(source);
@@ -295,7 +292,6 @@ Result<BuildPose> human_build_pose(const FrameSource& source, const RoleMap& rol
       name = "T-pose built from the skeleton";
     }
   }
-  if (Status status = untwist(source, best.joint_to_world); !status) return status.error();
   return BuildPose{std::move(best.joint_to_world), std::move(name)};
 }
 

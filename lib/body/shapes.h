@@ -42,6 +42,11 @@ struct BuildPose {
 // One frame of a motion, joint_to_world.
 Result<std::vector<Transform>> pose_of(const FrameSource& source, int frame);
 
+// Reference poses that have joints half round about their bones against every frame of the motion
+// would wring skins around them all the time: turns such joints of `pose` about their bones to
+// where they usually are, where a single bone hangs on them. Errors are those of the source.
+Status untwist(const FrameSource& source, std::vector<Transform>& pose);
+
 // The reference pose, standing upright with limbs apart (see human_pose.h); a T-pose built from the
 // skeleton (retarget::neutral_skeleton) if the reference pose needs so much rotation that the twist
 // of the limbs would be arbitrary.

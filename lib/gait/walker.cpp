@@ -53,13 +53,13 @@ std::size_t index_of_time(const parametric::Library& library, const char* name) 
 
 namespace {
 
-constexpr int kMeanSamples = 32;                       // of a step, for means over it
-constexpr double kRaised = 0.004;                      // metres
-constexpr double kRaisedInRun = 0.012;                 // the toes push on
-constexpr double kEarliestOff = 0.15;                  // of the time to the off
-constexpr double kLeastPitch = 2 * kRadiansPerDegree;  // of a foot that shows how round its heel is
-constexpr double kMaxHeelRadius = 0.55;                // of the length of the sole behind the ankle
-constexpr double kStandingLeg = 0.994;                 // of the length: nearly straight
+constexpr int kMeanSamples = 32;                     // of a step, for means over it
+constexpr double kRaised = 0.004;                    // metres
+constexpr double kRaisedInRun = 0.012;               // the toes push on
+constexpr double kEarliestOff = 0.15;                // of the time to the off
+constexpr double kMinPitch = 2 * kRadiansPerDegree;  // of a foot that shows how round its heel is
+constexpr double kMaxHeelRadius = 0.55;              // of the length of the sole behind the ankle
+constexpr double kStandingLeg = 0.994;               // of the length: nearly straight
 constexpr double kToeShare = 0.35;  // of the sole, from the ball to the tip, where no end site is
 
 FootGeometry geometry_of(const parametric::FootShape& shape, const Vec3& up) {
@@ -102,7 +102,7 @@ double heel_radius(const parametric::Library& library, const Leg& leg) {
     const Transform flat = sole_at(middle_of_stance(example.keytimes, library));
     const Transform strike = flat.inverse() * sole_at(example.keytimes.front());
     const double pitch = std::asin(std::clamp((strike.orientation * Vec3::UnitZ()).y(), -1.0, 1.0));
-    if (pitch < kLeastPitch) continue;
+    if (pitch < kMinPitch) continue;
     radii.push_back(-strike.position.y() / (std::cos(pitch) + std::sin(pitch) - 1));
   }
   if (radii.empty()) return 0;

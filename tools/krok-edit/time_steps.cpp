@@ -273,9 +273,9 @@ Status change_timing(const Options& options, ToolContext& context, Edit& edit) {
   const double duration = before.duration();
   const Interpolation& how = options.interpolation;
   // The pose that a loop ends with is the first one: without it, it has a gap.
-  const bool closes = !edit.frames && !how.hermite && loop_displacement(edit.clip, edit.carrier);
+  const bool closes = !edit.frames && loop_displacement(edit.clip, edit.carrier);
   if (how.hermite) {
-    auto retimed = retime_on_curves(edit.clip, rate, edit.speed, how.tension, edit.loop);
+    auto retimed = retime_on_curves(edit.clip, rate, edit.speed, how.tension, closes || edit.loop);
     if (!retimed) return retimed.error();
     edit.clip = std::move(*retimed);
   } else {

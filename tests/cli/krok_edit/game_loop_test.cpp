@@ -315,14 +315,16 @@ TEST_F(GameLoop, ALoopStaysClosedAtAnotherRate) {
   Clip pack = read("out.anim");
   pack.provenance = {};
   write("pack.anim", pack);
-  const double rate = 24.5 / pack.duration();
-  const ToolRun run =
-      run_here("krok-edit", {"pack.anim", "--rate", std::to_string(rate), "-o", "out.anim"});
-  EXPECT_THAT(run.err, HasSubstr("so that the loop stays closed"));
-  const Clip out = read("out.anim");
-  const auto first = out.frame_positions(0), last = out.frame_positions(out.frame_count() - 1);
-  for (std::size_t j = 0; j < first.size(); ++j) {
-    EXPECT_LT((first[j] - last[j]).norm(), 1e-5f) << j;
+  const std::string rate = std::to_string(24.5 / pack.duration());
+  for (const char* how : {"linear", "hermite"}) {
+    const ToolRun run = run_here(
+        "krok-edit", {"pack.anim", "--rate", rate, "--interpolation", how, "-o", "out.anim"});
+    EXPECT_THAT(run.err, HasSubstr("so that the loop stays closed"));
+    const Clip out = read("out.anim");
+    const auto first = out.frame_positions(0), last = out.frame_positions(out.frame_count() - 1);
+    for (std::size_t j = 0; j < first.size(); ++j) {
+      EXPECT_LT((first[j] - last[j]).norm(), 1e-5f) << j;
+    }
   }
   EXPECT_EQ(report_here("krok-keys", {"out.anim"})["result"]["gait"]["steps"], 2);
 }

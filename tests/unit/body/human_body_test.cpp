@@ -293,6 +293,11 @@ TEST(HumanBody, CollarBonesHalfRoundInEveryFrameDoNotWringTheSkin) {
   const Body body = make_body(clip, {.detail = BodyDetail::low}).value();
   EXPECT_LT(angle_between(body.model.skeleton.reference[collar].orientation, half_round), 0.2);
   expect_valid_body(body);
+  // Asked for in the reference pose, the skin is whole there.
+  const Body there =
+      make_body(clip, {.detail = BodyDetail::low, .pose = BodyPose::reference}).value();
+  const Body usual = build(human_skeleton(), {.detail = BodyDetail::low});
+  EXPECT_NEAR(there.volume, usual.volume, 1e-6);
 }
 
 TEST(HumanBody, AFootThatHangsOnAJointUnderTheAnkleStaysLevel) {
