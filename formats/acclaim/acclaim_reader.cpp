@@ -6,13 +6,10 @@
 #include <atomic>
 #include <charconv>
 #include <mutex>
-#include <string_view>
-#include <vector>
 
 #include "capture/far_values.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "core/result.h"
 #include "core/text.h"
 #include "formats/acclaim/files_internal.h"
 #include "formats/acclaim/kinematics_internal.h"

@@ -7,7 +7,7 @@
 #include "capture/capture.h"
 #include "capture/rest_frame.h"
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 // Reader for Acclaim skeletons (ASF) and motions (AMC), the formats of the CMU motion capture
 // database. Format: M. Schafer, "Acclaim Skeleton File Definition V1.10", Acclaim, 1995, which also

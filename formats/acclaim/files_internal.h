@@ -13,8 +13,8 @@
 #include "core/result.h"
 #include "formats/acclaim/acclaim_reader.h"
 #include "formats/acclaim/source_text_internal.h"
-#include "math/euler.h"
-#include "math/types.h"
+#include "math/quaternion.h"
+#include "math/transform.h"
 
 namespace krok::acclaim {
 

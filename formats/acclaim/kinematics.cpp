@@ -5,7 +5,7 @@
 
 #include "capture/far_values.h"
 #include "capture/unique_names.h"
-#include "math/euler.h"
+#include "math/quaternion.h"
 
 namespace krok::acclaim {
 

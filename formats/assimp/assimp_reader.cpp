@@ -5,25 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/bytes.h"
-#include "core/child_process.h"
 #include "core/file.h"
 #include "core/path_inside.h"
-#include "core/result.h"
 #include "core/text.h"
 #include "formats/assimp/fbx_elements_internal.h"
 #include "formats/assimp/run_assimp_internal.h"
 #include "formats/assimp/scene_transfer.h"
 #include "formats/registry/registry.h"
-#include "nodes/scene.h"
 
 namespace krok::assimp {
 
@@ -395,12 +390,12 @@ Error error_of(const ChildReport& report, const ChildLimits& limits) {
   const std::string hint(kHint);
   switch (report.end) {
     case ChildEnd::out_of_time:
-      return Error(
-          "assimp-time",
-          fmt::format(
-              "Assimp was stopped after {:.4g} seconds, the time limit for a file of this size",
-              limits.seconds),
-          "allow more with --limit-time; if that does not help, " + hint);
+      return Error("assimp-time",
+                   fmt::format("Assimp was stopped after {}, {} for a file of this size",
+                               report.what, report.signal == 0 ? "too little" : "the time limit"),
+                   report.signal == 0
+                       ? "the machine is busy, or Assimp waits: try again; --limit-time allows more"
+                       : "allow more with --limit-time; if that does not help, " + hint);
     case ChildEnd::out_of_memory:
       return Error("assimp-memory",
                    fmt::format("Assimp exceeded {} MiB, the memory limit for a file of this size",

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "core/numbers.h"
-#include "core/text.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::assimp {
 

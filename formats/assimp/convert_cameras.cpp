@@ -13,7 +13,7 @@
 #include "formats/assimp/collada_text_internal.h"
 #include "formats/assimp/conversion_internal.h"
 #include "math/quaternion.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::assimp {
 

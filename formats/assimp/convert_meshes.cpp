@@ -11,7 +11,7 @@
 
 #include "formats/assimp/conversion_internal.h"
 #include "formats/assimp/fbx_elements_internal.h"
-#include "formats/assimp/ms3d_file_internal.h"
+#include "formats/assimp/run_assimp_internal.h"
 #include "nodes/scene.h"
 
 namespace krok::assimp {

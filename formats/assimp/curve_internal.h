@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Curves of FBX and COLLADA, one number over time. Assimp 5.2 reads their keys alone, interpolates
 // each curve linearly and rotations by slerp; resample() adds the keys that make this correct.

@@ -10,7 +10,6 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/assimp/ms3d_file_internal.h"
 
 namespace krok::assimp {
 

@@ -1,4 +1,4 @@
-#include "formats/assimp/ms3d_file_internal.h"
+#include "formats/assimp/run_assimp_internal.h"
 
 #include <algorithm>
 #include <array>

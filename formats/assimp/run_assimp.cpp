@@ -8,14 +8,12 @@
 #include <algorithm>
 #include <cstring>
 #include <new>
-#include <span>
 
 #include "core/text.h"
 #include "formats/assimp/collada_text_internal.h"
 #include "formats/assimp/conversion_internal.h"
 #include "formats/assimp/curve_internal.h"
 #include "nodes/evaluate.h"
-#include "nodes/scene.h"
 
 namespace krok::assimp {
 

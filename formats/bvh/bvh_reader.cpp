@@ -8,15 +8,11 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "capture/far_values.h"
-#include "capture/rest_frame.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "core/result.h"
 #include "core/text.h"
 #include "formats/bvh/choose_conventions_internal.h"
 #include "formats/bvh/hierarchy.h"

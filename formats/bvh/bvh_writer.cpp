@@ -13,7 +13,6 @@
 #include "capture/unique_names.h"
 #include "core/numbers.h"
 #include "formats/bvh/text_cursor.h"
-#include "math/quaternion.h"
 
 namespace krok::bvh {
 

@@ -4,7 +4,7 @@
 
 #include "core/file.h"
 #include "core/result.h"
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "scene/clip.h"
 #include "scene/frame_source.h"
 

@@ -5,19 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "capture/exporter.h"
 #include "capture/far_values.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/bvh/hierarchy.h"
-#include "formats/bvh/motion_rows.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::bvh {
 

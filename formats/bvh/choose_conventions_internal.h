@@ -81,8 +81,8 @@ struct PositionChoice {
 // and a non-zero OFFSET votes: in the median row, are its values near the OFFSET (absolute) or near
 // zero (additive)? Joints below the root decide, if there are any. A root travels, and so does a
 // joint that carries the whole skeleton: the mode that puts the character on the ground is chosen;
-// if that is inconclusive, only the root's height is compared, if its OFFSET has one. Without `up`,
-// where it is unclear, the positions of a root replace its OFFSET, as in most files.
+// if that is inconclusive, only the root's height is compared. The positions of a root whose OFFSET
+// is horizontal replace it, as in most files, and so they do without `up`, where it is unclear.
 PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& rows,
                                 std::optional<Direction> up);
 

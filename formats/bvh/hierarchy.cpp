@@ -5,15 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <optional>
-#include <span>
-#include <string>
-#include <string_view>
 
 #include "core/numbers.h"
-#include "core/result.h"
 #include "core/text.h"
 #include "formats/bvh/row_lines_internal.h"
 #include "formats/bvh/text_cursor.h"
@@ -92,7 +87,7 @@ std::string hint_for(registry::Kind kind, std::string_view what, const std::stri
            "are from";
   }
   if (what.find("OBJ") != std::string_view::npos) return "krok-morph takes shapes of a mesh";
-  if (what.find("binary file") != std::string_view::npos) {
+  if (what.find("binary file") != std::string_view::npos || what.ends_with(')')) {
     return registry::advice(registry::Kind::unknown, registry::Kind::anim);
   }
   return "a BVH file is text that begins with HIERARCHY";

@@ -9,7 +9,7 @@
 
 #include "core/result.h"
 #include "formats/bvh/bvh_reader.h"
-#include "math/euler.h"
+#include "math/quaternion.h"
 
 namespace krok::bvh {
 

@@ -30,17 +30,20 @@ Vec3 replaced_offset(const Hierarchy& hierarchy, const Hierarchy::Joint& joint) 
 }
 
 // Position of a joint's values along its OFFSET in the median row: 0 at zero, 1 at the OFFSET.
-// nullopt if the joint has no position channels, no OFFSET, or there are no rows.
+// nullopt if the joint has no position channels, no OFFSET, or there are no rows. Of a root only
+// the heights count where up is known: takes start anywhere on the ground. Infinity if its OFFSET
+// has none.
 std::optional<double> place_along_offset(const Hierarchy& hierarchy, std::size_t index,
                                          const SampleRows& rows, std::optional<Direction> up) {
   const Hierarchy::Joint& joint = hierarchy.joints[index];
   Vec3 offset = replaced_offset(hierarchy, joint);
+  if (offset.isZero(0) || rows.count() == 0) return std::nullopt;
   if (joint.parent < 0 && up) {
     const Vec3 direction = direction_vector(*up);
     const Vec3 height = direction * direction.dot(offset);
-    if (height.norm() > 0.2 * offset.norm()) offset = height;
+    if (height.norm() < 1e-3 * offset.norm()) return INFINITY;
+    offset = height;
   }
-  if (offset.isZero(0) || rows.count() == 0) return std::nullopt;
   std::vector<double> places;
   for (std::size_t row = 0; row < rows.count(); ++row) {
     Vec3 value = Vec3::Zero();
@@ -191,17 +194,21 @@ PositionChoice choose_positions(const Hierarchy& hierarchy, const SampleRows& ro
     if (heights) {
       if (const auto by_ground = choose_by_ground(*heights)) return *by_ground;
     }
-    const bool usual = !up || (heights && lies_far_from_both(*root_place, *heights));
+    const bool level = std::isinf(*root_place);
+    const bool usual = !up || level || (heights && lies_far_from_both(*root_place, *heights));
     is_additive = *root_place <= 0.5 && !usual;
     const double distance = std::abs(*root_place - (is_additive ? 0.0 : 1.0));
     result.choice.reason =
-        fmt::format("the root's positions are at {} of its OFFSET, {}", readable(*root_place, 2),
-                    !up           ? "and up is unclear; in most files they replace it"
-                    : usual       ? "which is inconclusive; in most files they replace it"
-                    : is_additive ? "so they are added to it"
-                                  : "so they replace it");
-    result.choice.confidence =
-        distance < 0.35 && (up || *root_place > 0.5) ? Confidence::likely : Confidence::guess;
+        level ? "the root's OFFSET is horizontal; in most files the positions replace it"
+              : fmt::format("the root's positions are at {} of its OFFSET, {}",
+                            readable(*root_place, 2),
+                            !up           ? "and up is unclear; in most files they replace it"
+                            : usual       ? "which is inconclusive; in most files they replace it"
+                            : is_additive ? "so they are added to it"
+                                          : "so they replace it");
+    result.choice.confidence = level || (distance < 0.35 && (up || *root_place > 0.5))
+                                   ? Confidence::likely
+                                   : Confidence::guess;
   } else {
     result.choice.reason = rows.count() == 0 ? "there are no frames to decide from"
                                              : "no joint has both position channels and an OFFSET";

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "core/numbers.h"
-#include "core/text.h"
 #include "formats/bvh/motion_rows.h"
 
 namespace krok::bvh {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/fed_program.h"
-#include "formats/csv/field.h"
+#include "formats/csv/csv_writer.h"
 
 namespace krok::chart {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Orientations as stored in Krok's binary formats. Three floats x, y, z are enough for a unit
 // quaternion, because q and -q are the same rotation: the one with w <= 0 is stored, and w is

@@ -8,7 +8,7 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/csv/field.h"
+#include "formats/csv/csv_writer.h"
 
 namespace krok::csv {
 
@@ -120,6 +120,9 @@ Result<Table> Table::read(std::string_view text, const std::string& path) {
 }
 
 Status Table::read_header(std::size_t& at) {
+  // Tables of OpenSim (.mot, .sto) begin after this line.
+  const std::size_t end = text_.substr(0, std::size_t{64} << 10).find("\nendheader");
+  if (end != std::string_view::npos) at = std::min(text_.find('\n', end + 1), text_.size());
   while (at < text_.size() && is_space(text_[at])) ++at;
   if (at == text_.size()) return Error("csv-empty", "the table is empty").in_file(path_);
   const std::size_t begin = at;
@@ -211,8 +214,10 @@ Result<std::size_t> Table::find(std::string_view name) const {
   for (const auto& column : columns_) headers.push_back(column.header);
   const std::string near = nearest_name(name, headers);
   return Error("csv-column", fmt::format("no column is named '{}'", shown(name)),
-               (near.empty() ? "" : fmt::format("did you mean '{}'? ", shown(near))) +
-                   "columns are " + names)
+               2 * std::ranges::count(headers, "") > std::ssize(headers)
+                   ? "names of columns are read from the first line: leave out the lines above them"
+                   : (near.empty() ? "" : fmt::format("did you mean '{}'? ", shown(near))) +
+                         "columns are " + names)
       .in_file(path_);
 }
 

@@ -5,17 +5,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <set>
 
 #include "core/json_internal.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/gltf/glb_container_internal.h"
-#include "formats/gltf/gltf_reader.h"
 #include "formats/gltf/joint_tracks.h"
 #include "formats/gltf/json_text_internal.h"
-#include "math/quaternion.h"
 
 namespace krok::gltf {
 

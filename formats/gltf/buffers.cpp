@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-
 #include "core/path_inside.h"
 
 namespace krok::gltf {

@@ -60,7 +60,7 @@ Status unpack_meshopt(ParsedJson& parsed, Buffers& buffers, std::uint64_t most_b
 
 // Version 1 of the attribute codec, which libmeshoptimizer has since 0.23, and the COLOR filter.
 // Source: KHR_meshopt_compression, appendices A and B. `to` has elements of `stride` bytes, a
-// multiple of 4 up to 256 (colours: 4 or 8). (vertex_codec.cpp)
+// multiple of 4 up to 256 (colours: 4 or 8). (filters.cpp)
 bool is_second_codec(std::span<const std::byte> packed);
 // False if the data is invalid.
 bool unpack_second_codec(std::span<const std::byte> packed, std::size_t stride,

@@ -259,17 +259,18 @@ std::string Document::unique_node_name(const std::string& wanted) {
 void Document::add_channel(tinygltf::Animation& animation, int node, const char* path, int times,
                            int values) {
   auto& samplers = animation.samplers;
-  if (samplers.empty()) samplers_.clear();
-  const auto [known, made] =
-      samplers_.try_emplace({times, values}, static_cast<int>(samplers.size()));
-  if (made) {
+  // Looked up in the animation itself: weights are added to each after the joints of all.
+  const auto known = std::ranges::find_if(samplers, [&](const tinygltf::AnimationSampler& one) {
+    return one.input == times && one.output == values;
+  });
+  tinygltf::AnimationChannel channel;
+  channel.sampler = static_cast<int>(known - samplers.begin());
+  if (known == samplers.end()) {
     tinygltf::AnimationSampler& sampler = samplers.emplace_back();
     sampler.input = times;
     sampler.output = values;
     sampler.interpolation = "LINEAR";
   }
-  tinygltf::AnimationChannel channel;
-  channel.sampler = known->second;
   channel.target_node = node;
   channel.target_path = path;
   animation.channels.push_back(std::move(channel));

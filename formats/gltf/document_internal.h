@@ -220,10 +220,9 @@ class Document {
   std::map<std::vector<float>, int> times_;          // accessors of key times
   // Accessors of data, by component, type, filter and checksum of the bytes.
   std::map<std::tuple<int, int, Filter, std::uint64_t>, int> known_;
-  std::map<std::pair<int, int>, int> samplers_;  // of the animation, by times and values
-  std::uint64_t size_ = 0;                       // bytes of the parts and the streamed data
-  std::uint64_t promised_ = 0;                   // bytes of the streamed data
-  std::size_t bounds_ = 0;                       // bounds that are not filled in yet
+  std::uint64_t size_ = 0;      // bytes of the parts and the streamed data
+  std::uint64_t promised_ = 0;  // bytes of the streamed data
+  std::size_t bounds_ = 0;      // bounds that are not filled in yet
   OutputFile* file_ = nullptr;
   std::uint64_t data_begin_ = 0;      // of the buffer in the file
   std::string json_;                  // with space reserved for the bounds

@@ -190,8 +190,9 @@ Error error_of(const ChildReport& report) {
     return Error("gltf-compression", "cannot start a process to unpack Draco data: " + report.what,
                  "close some programs and try again");
   }
-  const std::string what =
-      report.end == ChildEnd::out_of_time ? "the decoder took too long" : report.what;
+  const std::string what = report.end == ChildEnd::out_of_time
+                               ? "the decoder was stopped after " + report.what
+                               : report.what;
   return Error(
       "gltf-compression", "cannot unpack Draco data: " + what,
       (report.end == ChildEnd::out_of_time ? "allow more with --limit-time; if that does not help, "

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Private to the writers: values as the filters of EXT_meshopt_compression store them, which lose
 // precision but leave small whole numbers, which compress well. Source: the extension's page,

@@ -11,7 +11,6 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/path_inside.h"
-#include "core/result.h"
 #include "core/text.h"
 #include "formats/gltf/accessors_internal.h"
 #include "formats/gltf/buffers_internal.h"
@@ -19,7 +18,6 @@
 #include "formats/gltf/json_text_internal.h"
 #include "formats/gltf/reader_internal.h"
 #include "math/quaternion.h"
-#include "nodes/scene.h"
 
 namespace krok::gltf {
 

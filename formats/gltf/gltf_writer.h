@@ -12,7 +12,7 @@
 #include "core/result.h"
 #include "formats/gltf/joint_tracks.h"
 #include "formats/gltf/quantize.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/character.h"
 #include "scene/clip.h"
 #include "scene/material.h"

@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <memory>
-#include <span>
 
 #include "core/numbers.h"
 #include "core/parallel.h"

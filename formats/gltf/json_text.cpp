@@ -9,7 +9,6 @@
 #include <span>
 #include <tuple>
 
-#include "core/json_internal.h"
 #include "core/numbers.h"
 #include "core/text.h"
 

@@ -1,4 +1,5 @@
 #include "formats/gltf/quantize.h"
+#include "formats/gltf/quantize_internal.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "formats/gltf/document_internal.h"
 #include "formats/gltf/filters_internal.h"
-#include "formats/gltf/quantize_internal.h"
-#include "scene/model.h"
 
 namespace krok::gltf {
 

@@ -9,7 +9,6 @@
 #include "core/index.h"
 #include "formats/gltf/buffers_internal.h"
 #include "formats/gltf/filters_internal.h"
-#include "formats/gltf/joint_tracks.h"
 #include "skin/morph.h"
 
 namespace krok::gltf {

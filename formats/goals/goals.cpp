@@ -9,7 +9,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/fields.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "roles/body_frame.h"
 
 namespace krok::goals {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "terrain/height_field.h"
+#include "terrain/shapes.h"
 
 // Height fields from images: OpenEXR and grey PNG. Where they lie is not in the image, but in a
 // sidecar or given by the user; see formats/height_field/SPEC.md.

@@ -2,10 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
-#include <vector>
 
-#include "core/text.h"
 #include "formats/io/readers_internal.h"
 
 namespace krok::io {

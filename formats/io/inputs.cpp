@@ -29,12 +29,12 @@ Result<InputFile> open_address(const std::string& path) {
         .in_file(address.file);
   }
   std::error_code unknown;
-  const std::size_t colon = path.rfind(':');
-  if (!file && file.error().code == "file-missing" && colon != std::string::npos &&
-      std::filesystem::is_regular_file(path.substr(0, colon), unknown)) {
+  const std::size_t mark = path.find_last_of(":@|");
+  if (!file && file.error().code == "file-missing" && mark != std::string::npos &&
+      std::filesystem::is_regular_file(path.substr(0, mark), unknown)) {
     Error error = std::move(file).error();
     error.hint = fmt::format("an animation of a file is '{}#{}', in quotes",
-                             shown(path.substr(0, colon)), shown(path.substr(colon + 1)));
+                             shown(path.substr(0, mark)), shown(path.substr(mark + 1)));
     return error;
   }
   if (file) file->choose_part(std::move(address.animation));

@@ -52,7 +52,7 @@ class Inputs {
 
   int jobs = 0;                  // threads; 0 is one per core
   Progress* progress = nullptr;  // may be null
-  Takes* takes = nullptr;        // the other files of a batch (takes.h); null outside one
+  Takes* takes = nullptr;        // the other files of a batch (open_motion.h); null outside one
 };
 
 // Opens files as they are and keeps what readers report.

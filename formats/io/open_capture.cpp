@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <limits>
 
+#include "core/numbers.h"
 #include "formats/acclaim/acclaim_reader.h"
 #include "formats/io/formats.h"
+#include "formats/io/open_motion.h"
 #include "formats/io/readers_internal.h"
-#include "formats/io/takes.h"
+#include "roles/body_frame.h"
 
 namespace krok::io {
 
@@ -67,7 +71,9 @@ Status check_no_skeleton(const InputFile& file, const CaptureReading& reading) {
   return Error("usage",
                fmt::format("--skeleton is for an Acclaim motion (AMC) and for arrays (.npy, .npz), "
                            "which {} is not",
-                           file.path()));
+                           file.path()),
+               "leave it out: other files have their skeleton, but tables of OpenSim (.mot, .sto), "
+               "which are only written");
 }
 
 acclaim::ReadOptions acclaim_options(const CaptureReading& reading) {
@@ -214,6 +220,61 @@ Result<OpenedCapture> open_as_capture(const Format& format, const InputFile& fil
   return read_whole(std::move(capture), {});
 }
 
+// The median of how long bones are in a pose, over their length in the skeleton.
+double growth_of(const Skeleton& skeleton, std::span<const Vec3f> pose) {
+  std::vector<double> ratios;
+  for (std::size_t j = 0; j < pose.size(); ++j) {
+    const int parent = skeleton.parents[j];
+    if (parent < 0) continue;
+    const auto above = static_cast<std::size_t>(parent);
+    const double length =
+        (skeleton.reference[j].position - skeleton.reference[above].position).norm();
+    if (length > 0) {
+      ratios.push_back(static_cast<double>((pose[j] - pose[above]).norm()) / length);
+    }
+  }
+  if (ratios.empty()) return 1;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::ranges::nth_element(ratios, middle);
+  return *middle;
+}
+
+// Warns of a motion in another unit than its skeleton: its bones are longer, or its body is over
+// the ground all the time, by more than a person jumps or climbs.
+void warn_of_another_unit(const OpenedCapture& opened) {
+  const FrameSource& frames = opened.frames;
+  const auto stature = stature_of(frames.skeleton, opened.capture->roles);
+  if (!stature || frames.frame_count == 0) return;
+  constexpr int kLooks = 32;
+  constexpr double kHigh = 0.4;    // of the stature
+  constexpr double kLonger = 1.5;  // than in the skeleton
+  std::vector<Vec3f> places(frames.skeleton.names.size());
+  std::vector<Quatf> turns(places.size());
+  double lowest = std::numeric_limits<double>::infinity(), growth = 1;
+  for (int look = 0; look < kLooks; ++look) {
+    const long long frame = static_cast<long long>(look) * frames.frame_count / kLooks;
+    if (!frames.read(static_cast<int>(frame), 1, places, turns)) return;
+    if (look == 0) growth = growth_of(frames.skeleton, places);
+    for (const Vec3f& place : places) {
+      lowest = std::min(lowest, static_cast<double>(place.y()));
+    }
+  }
+  Diagnostics& found = opened.capture->diagnostics;
+  if (growth > kLonger || growth < 1 / kLonger) {
+    found.push_back(make_warning(
+        "motion-scale",
+        fmt::format("bones are {} times as long as in the skeleton", readable(growth, 3)),
+        "are the positions of joints in another unit than the skeleton?"));
+  } else if (lowest > kHigh * stature->metres) {
+    found.push_back(make_warning(
+        "motion-height",
+        fmt::format("the lowest joint is {} m or more above the ground, of a person of {} m",
+                    readable(lowest, 3), readable(stature->metres, 3)),
+        "are the positions of the root in another unit than the skeleton? krok-edit --on-ground "
+        "lowers a motion"));
+  }
+}
+
 }  // namespace
 
 Status use_capture(const InputFile& file, Inputs& inputs, const CaptureReading& reading, bool whole,
@@ -228,6 +289,7 @@ Status use_capture(const InputFile& file, Inputs& inputs, const CaptureReading& 
   };
   auto opened = open(!whole);
   if (!opened) return opened.error();
+  warn_of_another_unit(*opened);
   if (opened->streamed) {
     std::atomic<bool> faulty = false;
     opened->frames = watched(opened->frames, faulty);

@@ -4,7 +4,7 @@
 
 #include "formats/io/inputs.h"
 #include "roles/roles.h"
-#include "scene/actor.h"
+#include "scene/character.h"
 
 namespace krok::io {
 

@@ -2,14 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <new>
 
+#include "core/file.h"
+#include "core/hash.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
+#include "formats/bvh/bvh_reader.h"
+#include "formats/io/formats.h"
 #include "formats/io/readers_internal.h"
+#include "formats/npy/array_reader.h"
 #include "formats/role_map/role_map.h"
 
 namespace krok::io {
@@ -214,6 +221,163 @@ Result<FindRoles> open_role_map(const std::string& path, Inputs& inputs) {
   return FindRoles([file](const Skeleton& skeleton) {
     return role_map::read(file->text(), file->path(), skeleton);
   });
+}
+
+namespace {
+
+// Of the hierarchy without the root's OFFSET, which some programs take from the first frame.
+std::uint64_t key_of(std::string_view text) {
+  std::string hierarchy(text.substr(0, text.find("MOTION")));
+  const std::size_t offset = hierarchy.find("OFFSET");
+  if (offset != std::string::npos) {
+    hierarchy.erase(offset, std::min(hierarchy.find('\n', offset), hierarchy.size()) - offset);
+  }
+  return xxh3(std::as_bytes(std::span(hierarchy)));
+}
+
+std::optional<Conventions> conventions_of(const std::string& path) {
+  const auto file = InputFile::open(path);
+  if (!file) return std::nullopt;
+  bvh::ReadOptions options;
+  options.jobs = 1;
+  if (const auto opened = bvh::open(file->text(), path, options)) return opened->conventions;
+  auto read = bvh::read(file->text(), path, options);
+  return read ? std::optional(read->conventions) : std::nullopt;
+}
+
+std::optional<Takes::Axes> vote(const std::vector<std::string>& paths) {
+  constexpr std::size_t kAsked = 8;
+  constexpr std::array kWeights = {1, 4, 16};  // of a guess, a likely axis, a certain one
+  struct Votes {
+    Conventions conventions;
+    int weight = 0, count = 0;
+  };
+  std::map<std::array<Direction, 4>, Votes> all;
+  std::vector<std::string> from;
+  const std::size_t asked = std::min(kAsked, paths.size());
+  for (std::size_t i = 0; i < asked; ++i) {
+    from.push_back(paths[i * (paths.size() - 1) / (asked - 1)]);
+    const auto found = conventions_of(from.back());
+    if (!found) continue;
+    Votes& votes = all[{found->up, found->forward, found->reference_up, found->reference_forward}];
+    votes.weight += kWeights[static_cast<std::size_t>(found->up_confidence)];
+    ++votes.count;
+    if (votes.count == 1 || found->up_confidence > votes.conventions.up_confidence) {
+      votes.conventions = *found;
+    }
+  }
+  if (all.empty()) return std::nullopt;
+  const auto& most =
+      std::ranges::max_element(all, {}, [](const auto& one) { return one.second.weight; })->second;
+  const Conventions& found = most.conventions;
+  return Takes::Axes{
+      found.up,
+      found.forward,
+      found.reference_up,
+      found.reference_forward,
+      std::min(found.up_confidence, Confidence::likely),
+      std::min(found.forward_confidence, Confidence::likely),
+      fmt::format("{} of {} takes of this skeleton in the batch have up {}, forward "
+                  "{}",
+                  most.count, asked, direction_name(found.up), direction_name(found.forward)),
+      from};
+}
+
+}  // namespace
+
+void Takes::find_groups() {
+  if (std::exchange(found_, true)) return;
+  std::ranges::sort(paths_);
+  for (const std::string& path : paths_) {
+    const auto file = InputFile::open(path);
+    if (file && file->text().find("HIERARCHY") < 1000)
+      groups_[key_of(file->text())].paths.push_back(path);
+  }
+}
+
+std::optional<Takes::Axes> Takes::axes_for(std::string_view text) {
+  const std::lock_guard lock(mutex_);
+  find_groups();
+  const auto group = groups_.find(key_of(text));
+  if (group == groups_.end() || group->second.paths.size() < 2) return std::nullopt;
+  if (!group->second.axes) group->second.axes = vote(group->second.paths);
+  return group->second.axes;
+}
+
+namespace {
+
+// What --skeleton names: a published order, a list of columns, a model of SMPL, a motion.
+Status take_skeleton(const std::string& name, Inputs& inputs, npy::ReadOptions& options,
+                     std::shared_ptr<const InputFile>& body) {
+  options.columns_name = name;
+  options.columns = named_skeleton(name);
+  if (options.columns) return {};
+  if (extension(name).empty()) {
+    const std::vector<std::string> names = skeleton_names();
+    const std::string nearest = nearest_name(name, names);
+    return Error("npy-skeleton", fmt::format("there is no skeleton {}", shown(name)),
+                 nearest.empty() ? fmt::format("known are {}", fmt::join(names, ", "))
+                                 : fmt::format("did you mean {}? known are {}", nearest,
+                                               fmt::join(names, ", ")));
+  }
+  auto opened = inputs.open_input(name);
+  if (!opened) return opened.error();
+  body = std::make_shared<const InputFile>(*std::move(opened));
+  if (npy::is_smpl_body(body->bytes())) {
+    options.body = body->bytes();
+    return {};
+  }
+  if (without_byte_order_mark(trimmed(body->text().substr(0, 64))).starts_with('{')) {
+    auto columns = npy::read_columns(body->text());
+    if (!columns) return std::move(columns.error()).in_file(name);
+    options.columns = *std::move(columns);
+    return {};
+  }
+  PlainInputs quiet;  // the skeleton alone is of interest
+  auto clip = open_motion(*body, quiet);
+  if (!clip) return std::move(clip.error()).in_file(name);
+  options.skeleton = std::move(clip->skeleton);
+  return {};
+}
+
+}  // namespace
+
+Result<OpenedCapture> open_arrays(const InputFile& file, Inputs& inputs,
+                                  const CaptureReading& reading, bool stream) {
+  if (Status status = check_bvh_choices(reading); !status) return status.error();
+  if (reading.rest_frame != RestFrame::keep) {
+    return Error("usage", "--skip-rest-frame is for BVH and AMC");
+  }
+  npy::ReadOptions options;
+  static_cast<CaptureOptions&>(options) = reading;
+  options.motion = reading.motion;
+  std::shared_ptr<const InputFile> skeleton;
+  if (!reading.skeleton.empty()) {
+    Status status = take_skeleton(reading.skeleton, inputs, options, skeleton);
+    if (!status) return status.error();
+  }
+  constexpr std::size_t kLongTransforms = std::size_t{1} << 19;
+  if (stream) {
+    if (auto found = npy::open(file.bytes(), file.path(), options, kLongTransforms)) {
+      OpenedCapture opened;
+      opened.streamed = true;
+      opened.details.motions = static_cast<int>(found->motions);
+      auto capture = std::make_shared<npy::OpenedCapture>(*std::move(found));
+      opened.frames = capture->frames;
+      opened.capture = std::move(capture);
+      return opened;
+    }
+  }
+  auto read = npy::read(file.bytes(), file.path(), options);
+  if (!read) return std::move(read).error();
+  CaptureDetails details;
+  details.motions = static_cast<int>(read->motions);
+  auto capture = std::make_shared<npy::Capture>(*std::move(read));
+  OpenedCapture opened;
+  opened.frames = frames_of(capture->clip);
+  opened.capture = std::move(capture);
+  opened.details = std::move(details);
+  return opened;
 }
 
 }  // namespace krok::io

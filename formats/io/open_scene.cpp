@@ -9,7 +9,6 @@
 
 #include "character/mesh.h"
 #include "character/motion.h"
-#include "character/scene_motion.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/path_inside.h"
@@ -137,8 +136,8 @@ std::vector<int> moving(const nodes::Scene& scene, std::span<const int> joints) 
   return animations;
 }
 
-// Metres between a motion and its file's curves that are warned of.
-constexpr double kLost = 1e-3;
+// Metres between a motion and its file's curves that are warned of, and noted.
+constexpr double kLost = 1e-3, kNoted = 1e-5;
 
 // "A, B and 3 more"
 std::string some_of(const std::vector<std::string>& names) {
@@ -185,9 +184,10 @@ Result<MorphWeights> face_weights(const nodes::Scene& scene, const nodes::Evalua
   return character::make_weights(*face, evaluator, animation, sampling);
 }
 
-// The parts of a scene that are asked for; adds to `found` what is to be reported.
-Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Inputs& inputs,
-                       const ActorOptions& options, Diagnostics& found) {
+// The parts of a scene that are asked for, of its animations `part` alone unless that is -1; adds
+// to `found` what is to be reported.
+Result<Actor> actor_of_scene(const nodes::Scene& scene, const std::string& path, int part,
+                             Inputs& inputs, const ActorOptions& options, Diagnostics& found) {
   const auto evaluator = nodes::Evaluator::create(scene);
   if (!evaluator) return evaluator.error();
   const auto rig = character::find_rig(scene, *evaluator, "", found);
@@ -195,8 +195,12 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
   if (options.keeps_mesh_alone) warn_of_left_out(scene, *evaluator, rig->joints.nodes, found);
   int animation = best_animation(scene, rig->joints.nodes).animation;
   std::vector<int> animations;
-  if (options.every_clip && options.clip.empty()) animations = moving(scene, rig->joints.nodes);
-  if (!options.clip.empty()) {
+  if (options.every_clip && options.clip.empty() && part < 0) {
+    animations = moving(scene, rig->joints.nodes);
+  }
+  if (part >= 0) {
+    animation = part;
+  } else if (!options.clip.empty()) {
     const auto chosen = find_animation(scene, options.clip, path);
     if (!chosen) return chosen.error();
     animation = *chosen;
@@ -258,15 +262,19 @@ Result<Actor> actor_of(const nodes::Scene& scene, const std::string& path, Input
     }
     motion.name = animation_name(scene, at(one));
     motion.clip = *std::move(clip);
+    // One for all motions, that of the first, where it is made from it.
+    Skeleton& skeleton = actor.motions.front().clip.skeleton;
+    motion.clip.skeleton.reference = skeleton.reference;
+    actor.model.skeleton.reference = skeleton.reference;
     if (options.with_weights && animated_targets(scene.animations[at(one)]) > 0) {
       auto weights = face_weights(scene, *evaluator, *rig, one, sampling->sampling);
       if (!weights) return weights.error();
       motion.weights = *std::move(weights);
     }
   }
-  if (lost.largest > kLost) {
-    found.push_back(make_warning(
-        "scene-sampling",
+  if (lost.largest > kNoted) {
+    found.push_back(make_diagnostic(
+        lost.largest > kLost ? Severity::warning : Severity::note, "scene-sampling",
         fmt::format("{}: between frames joints are up to {} mm from the file's curves ({} at {} s)"
                     "{}",
                     shown(lost_by), readable(1e3 * lost.largest, 3),
@@ -295,17 +303,24 @@ void warn_of_stillness(const nodes::Scene& scene, Diagnostics& found) {
   }
 }
 
+// The animation that the part of a file names; -1 for a file without one.
+Result<int> part_of(const nodes::Scene& scene, const InputFile& file) {
+  if (file.part().empty()) return -1;
+  const auto number =
+      file.part().starts_with('#') ? parse_integer(file.part().substr(1)) : std::nullopt;
+  const bool is_number = number && *number >= 0 && *number < std::ssize(scene.animations);
+  return is_number ? Result<int>(static_cast<int>(*number))
+                   : find_animation(scene, file.part(), file.path());
+}
+
 // The scene of a file, of whose animations its part alone is kept.
 Result<nodes::Scene> read_scene(const Format& format, const InputFile& file, Inputs& inputs,
                                 bool with_materials) {
   auto scene = format.read_scene(file, inputs, with_materials);
-  if (!scene || file.part().empty()) return scene;
-  const auto number =
-      file.part().starts_with('#') ? parse_integer(file.part().substr(1)) : std::nullopt;
-  const bool is_number = number && *number >= 0 && *number < std::ssize(scene->animations);
-  const auto chosen = is_number ? Result<int>(static_cast<int>(*number))
-                                : find_animation(*scene, file.part(), file.path());
+  if (!scene) return scene;
+  const auto chosen = part_of(*scene, file);
   if (!chosen) return chosen.error();
+  if (*chosen < 0) return scene;
   nodes::Animation only = std::move(scene->animations[at(*chosen)]);
   scene->animations.clear();
   scene->animations.push_back(std::move(only));
@@ -316,10 +331,13 @@ Result<nodes::Scene> read_scene(const Format& format, const InputFile& file, Inp
 
 Result<Actor> read_scene_actor(const Format& format, const InputFile& file, Inputs& inputs,
                                const ActorOptions& options) {
-  const auto scene = read_scene(format, file, inputs, options.with_mesh && options.with_materials);
+  // All animations: joints are what any of them moves, as in the mesh that the motions are for.
+  const auto scene = format.read_scene(file, inputs, options.with_mesh && options.with_materials);
   if (!scene) return scene.error();
+  const auto part = part_of(*scene, file);
+  if (!part) return part.error();
   Diagnostics found = scene->diagnostics;
-  auto actor = actor_of(*scene, file.path(), inputs, options, found);
+  auto actor = actor_of_scene(*scene, file.path(), *part, inputs, options, found);
   if (options.rest_frame_is_note) rest_frame_as_note(found);
   if (options.stays_still) warn_of_stillness(*scene, found);
   inputs.diagnose_in(file.path(), found);

@@ -9,7 +9,7 @@
 #include "formats/io/open_scene.h"
 #include "formats/obj/obj_reader.h"
 #include "nodes/evaluate.h"
-#include "terrain/mesh_ground.h"
+#include "terrain/shapes.h"
 #include "terrain/spec.h"
 
 namespace krok::io {

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 
-#include "core/numbers.h"
 #include "core/path_inside.h"
 #include "core/text.h"
-#include "formats/json/located_json.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 
 namespace krok::json {
 

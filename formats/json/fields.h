@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "formats/json/located_json.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 // Field tables: one declaration of the fields of an object gives its reader, its writer and its
 // JSON Schema.

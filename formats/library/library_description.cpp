@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/fields.h"
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 
 // Description of a step library, the hand-written input of krok-fit: the parameters, and the

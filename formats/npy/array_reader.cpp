@@ -13,12 +13,10 @@
 #include "core/text.h"
 #include "formats/json/fields.h"
 #include "formats/npy/array_motion_internal.h"
-#include "motion/ground_frame.h"
-#include "motion/place.h"
+#include "motion/hips_root.h"
+#include "motion/travel.h"
 #include "positions/from_positions.h"
-#include "scene/frame_blocks.h"
-#include "scene/frame_moment.h"
-#include "scene/skeleton.h"
+#include "scene/clip.h"
 
 namespace krok::npy {
 

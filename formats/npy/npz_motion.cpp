@@ -12,7 +12,6 @@
 #include "core/numbers.h"
 #include "formats/npy/array_motion_internal.h"
 #include "math/quaternion.h"
-#include "scene/frame_blocks.h"
 
 namespace krok::npy {
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "core/text.h"
 #include "formats/path/path_data_internal.h"
 
 namespace krok::path_file {

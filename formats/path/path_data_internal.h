@@ -9,7 +9,7 @@
 #include "core/numbers.h"
 #include "core/result.h"
 #include "core/text.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 // Private to this folder: points of SVG path data.
 

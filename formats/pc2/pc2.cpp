@@ -7,8 +7,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 

@@ -7,7 +7,7 @@
 #include "core/file.h"
 #include "core/progress.h"
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/mesh_motion.h"
 #include "scene/model.h"
 

@@ -8,7 +8,6 @@
 #include <functional>
 
 #include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
 #include "formats/json/fields.h"

@@ -1,7 +1,6 @@
 #include "formats/registry/registry.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -15,7 +14,7 @@ namespace {
 constexpr std::string_view kHierarchy = "HIERARCHY";
 
 // Other kinds of files that users may pass by mistake, by their first bytes.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kOtherKinds = {
+constexpr auto kOtherKinds = std::to_array<std::pair<std::string_view, std::string_view>>(
     {{"\x89PNG", "a PNG image"},
      {"\x1F\x8B", "a gzip archive"},
      {"BZh", "a bzip2 archive"},
@@ -30,7 +29,19 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kOtherKi
      {"PathFileType", "a TRC file (markers, no skeleton)"},
      {"{\"version\":1.3,\"people\"", "OpenPose JSON (2D points of one frame)"},
      {"%YAML", "YAML, as animations and scenes of Unity"},
-     {"version https://git-lfs", "a Git LFS pointer, not the file itself"}}};
+     {"BLENDER", "a scene of Blender (export it as glTF)"},
+     {"\x28\xB5\x2F\xFD", "a zstd archive, or a scene of Blender (export it as glTF)"},
+     {"//Maya ASCII", "a scene of Maya (export it as FBX)"},
+     {"FOR4", "a scene of Maya (export it as FBX)"},
+     {"FOR8", "a scene of Maya (export it as FBX)"},
+     {"animVersion", "curves of Maya without a skeleton (export FBX)"},
+     {"MATLAB 5.0", "arrays of MATLAB (write them as .npz, with scipy and numpy)"},
+     {"\x89HDF", "an HDF5 file (write its arrays as .npz, with numpy)"},
+     {"\x80\x02", "a pickle of Python (write its arrays as .npz, with numpy)"},
+     {"\x80\x03", "a pickle of Python (write its arrays as .npz, with numpy)"},
+     {"\x80\x04", "a pickle of Python (write its arrays as .npz, with numpy)"},
+     {"\x80\x05", "a pickle of Python (write its arrays as .npz, with numpy)"},
+     {"version https://git-lfs", "a Git LFS pointer, not the file itself"}});
 
 std::string_view text_of(std::span<const std::byte> content) {
   return {reinterpret_cast<const char*>(content.data()), content.size()};
@@ -275,6 +286,12 @@ std::string_view describe_content(std::span<const std::byte> content) {
   }
   if (is_text(text) && (first.starts_with("{\"") || first.starts_with("[{"))) {
     return "a JSON text file";
+  }
+  if ((text.size() > 8 && text.substr(4, 4) == "ftyp") || text.starts_with("\x1A\x45\xDF\xA3")) {
+    return "a video (a pose estimator's joints are read as .npy or .npz)";
+  }
+  if (text.substr(0, 512).find("<OpenSimDocument") != std::string_view::npos) {
+    return "a document of OpenSim (its models have no motion)";
   }
   if (first_word(text).starts_with('<')) return "an XML text file";
   if (is_text(text) && is_obj(text)) return "an OBJ mesh (without joints)";

@@ -127,8 +127,11 @@ class Reader {
       const std::string nearest = nearest_name(member.value.text, all_labels());
       return json::error_at(text_, member.value.offset, "role-map-role",
                             fmt::format("there is no role \"{}\"", shown(member.value.text)),
-                            nearest.empty() ? "formats/role_map/SPEC.md lists the roles"
-                                            : fmt::format("did you mean \"{}\"?", nearest));
+                            nearest.empty()
+                                ? "roles are hips, left_upper_leg, left_foot, right_hand and "
+                                  "so on: krok-info -v shows those of joints that it "
+                                  "knows"
+                                : fmt::format("did you mean \"{}\"?", nearest));
     }
     given->joint = joint;
     given_.push_back(*given);

@@ -6,7 +6,7 @@
 
 #include "core/text.h"
 #include "formats/json/fields.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 
 namespace krok::sequences {
 

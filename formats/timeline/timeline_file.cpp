@@ -7,7 +7,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/json/fields.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 
 namespace krok::timeline_file {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/result.h"
-#include "face/blinks.h"
 #include "face/visemes.h"
 #include "timeline/timeline.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 #include "scene/morph_set.h"
-#include "skin/morph_curves.h"
+#include "skin/morph.h"
 
 // Reader for morph target weights over time: a table (CSV) as written by krok-import, or
 // hand-written keys (JSON). See formats/weights/SPEC.md.

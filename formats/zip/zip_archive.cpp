@@ -4,7 +4,6 @@
 #include <zip.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "core/text.h"
 

@@ -7,21 +7,13 @@
 #include <memory>
 #include <set>
 #include <utility>
-#include <vector>
 
-#include "blend/long_take.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
 #include "motion/hips_root.h"
-#include "pose/blend_pose.h"
 #include "pose/packed_pose.h"
-#include "scene/clip.h"
-#include "scene/frame_blocks.h"
-#include "scene/frame_moment.h"
 
 namespace krok::blend {
 

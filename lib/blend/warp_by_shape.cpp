@@ -8,7 +8,7 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/sample.h"
 
 namespace krok::blend {

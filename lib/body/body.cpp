@@ -6,13 +6,11 @@
 #include <span>
 
 #include "body/human_parts.h"
-#include "body/long_take.h"
 #include "body/polygonise.h"
 #include "body/shapes.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "roles/stature.h"
-#include "scene/model.h"
+#include "roles/body_frame.h"
 
 namespace krok::body {
 
@@ -246,8 +244,11 @@ struct Plan {
 Result<Plan> make_plan(const FrameSource& source, const BodyOptions& options, Body& body) {
   const Skeleton& skeleton = source.skeleton;
   const RoleMap roles = find_roles(skeleton);
-  const auto actor = find_human(skeleton, roles);
+  auto actor = find_human(skeleton, roles);
   body.human = actor.has_value();
+  if (actor) {
+    if (Status status = drop_tips_below_ankles(source, *actor); !status) return status.error();
+  }
   Plan plan;
   if (options.pose == BodyPose::reference) plan.wanted = skeleton.reference;
   if (options.pose == BodyPose::frame) {

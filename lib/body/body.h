@@ -5,6 +5,7 @@
 #include "core/progress.h"
 #include "core/result.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 #include "scene/model.h"
 
 namespace krok {
@@ -35,7 +36,7 @@ struct Body {
   Model model;
   bool human = false;       // shaped by human proportions; otherwise by bone lengths
   double volume = 0;        // enclosed by the mesh, cubic metres
-  double stature = 0;       // metres, see roles/stature.h; 0 unless human
+  double stature = 0;       // metres, see roles/body_frame.h; 0 unless human
   std::string pose;         // "reference", "reference, limbs turned aside", "frame 12", ...
   Diagnostics diagnostics;  // notes and warnings
 };
@@ -52,5 +53,10 @@ Result<Body> make_body(const Clip& clip, const BodyOptions& options = {});
 
 // As above, without frames to choose from.
 Result<Body> make_body(const Skeleton& skeleton, const BodyOptions& options = {});
+
+// Bodies for takes that do not fit in memory.
+
+// As of a clip with these frames, of which a few are read. Errors are those of the source, too.
+Result<Body> make_body(const FrameSource& source, const BodyOptions& options = {});
 
 }  // namespace krok

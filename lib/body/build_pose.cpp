@@ -9,7 +9,7 @@
 #include "body/human_actor.h"
 #include "math/quaternion.h"
 #include "retarget/stance.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 namespace krok::body {
 
@@ -271,6 +271,20 @@ Status untwist(const FrameSource& source, std::vector<Transform>& pose) {
     const double twist = 2 * std::atan2(turn.w() < 0 ? -along : along, std::abs(turn.w()));
     if (!(std::abs(twist) > kNoPosture)) continue;
     pose[j].orientation = pose[j].orientation * Quat(Eigen::AngleAxisd(twist, bone));
+  }
+  return {};
+}
+
+Status drop_tips_below_ankles(const FrameSource& source, HumanActor& actor) {
+  constexpr double kInLine = 25 * kDegree;  // feet of dancers who point them are at 35 and more
+  const auto usual = usual_pose(source);
+  if (!usual) return usual.error();
+  if (usual->empty()) return {};
+  const auto place = [&](int joint) { return (*usual)[static_cast<std::size_t>(joint)].position; };
+  for (HumanActor::Leg& leg : actor.legs) {
+    if (leg.toes >= 0 || leg.tip < 0) continue;
+    const Vec3 shank = place(leg.ankle) - place(leg.knee), foot = place(leg.tip) - place(leg.ankle);
+    if (turn_angle(shank, foot) < kInLine) leg.tip = -1;
   }
   return {};
 }

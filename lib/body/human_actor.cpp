@@ -1,14 +1,11 @@
 #include "body/human_actor.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <vector>
 
 #include "math/quaternion.h"
 #include "math/window.h"
 #include "roles/joint_names.h"
-#include "roles/roles.h"
 
 namespace krok::body {
 

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // The implicit surface of a body: tubes along the bones. Connected tubes are blended smoothly;
 // tubes that merely come close are not, so that an arm beside the trunk stays separate.

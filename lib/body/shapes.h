@@ -47,6 +47,11 @@ Result<std::vector<Transform>> pose_of(const FrameSource& source, int frame);
 // where they usually are, where a single bone hangs on them. Errors are those of the source.
 Status untwist(const FrameSource& source, std::vector<Transform>& pose);
 
+// Some skeletons end each leg with a point below the ankle, on the ground, which is no tip of a
+// foot: it would hang from the shank. Takes such tips, in line with the shank in the motion, out
+// of the landmarks. Errors are those of the source.
+Status drop_tips_below_ankles(const FrameSource& source, HumanActor& actor);
+
 // The reference pose, standing upright with limbs apart (see human_pose.h); a T-pose built from the
 // skeleton (retarget::neutral_skeleton) if the reference pose needs so much rotation that the twist
 // of the limbs would be arbitrary.

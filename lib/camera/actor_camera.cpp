@@ -1,19 +1,13 @@
 #include "camera/actor_camera.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <vector>
 
-#include "camera/framing.h"
 #include "camera/look_at.h"
-#include "camera/spring.h"
 #include "core/index.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "roles/body_frame.h"
-#include "scene/frame_blocks.h"
 
 namespace krok {
 

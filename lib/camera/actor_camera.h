@@ -75,7 +75,7 @@ struct ActorCamera {
   double margin = 0.08;  // fraction of height and width kept free at each edge; in [0, 0.45]
 
   // Smoothing time in seconds for the joint's path and the facing; see smooth_both_ways in
-  // camera/spring.h. 0 disables smoothing. The facing is smoothed for longer where it turns faster
+  // camera/look_at.h. 0 disables smoothing. The facing is smoothed for longer where it turns faster
   // than 90 degrees a second, but for at most 20 s: a steady spin is followed.
   double smoothing = 0.5;
   // Metres that the joint may move before the camera follows.

@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "core/index.h"
-#include "motion/ground_frame.h"
-#include "motion/place.h"
+#include "motion/hips_root.h"
+#include "motion/travel.h"
 
 namespace krok {
 

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Camera framing. Shapes to be framed are balls, so that a joint includes the flesh around it.
 

@@ -5,13 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "camera/look_at.h"
 #include "core/numbers.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 
 namespace krok {
 

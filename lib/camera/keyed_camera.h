@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/camera_track.h"
 
 // A camera animated by keys at arbitrary times.

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "capture/conventions.h"
+#include "roles/body_frame.h"
 #include "roles/roles.h"
-#include "roles/stature.h"
 #include "scene/skeleton.h"
 
 // Body measurements used to detect conventions: body directions, height, and the height of the

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/text.h"
 
 namespace krok {

@@ -5,9 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "capture/capture.h"
 #include "math/quaternion.h"
-#include "scene/frame_moment.h"
 
 namespace krok {
 

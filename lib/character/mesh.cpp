@@ -1,20 +1,15 @@
-#include "character/mesh.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <utility>
 
-#include "capture/unique_names.h"
 #include "character/mesh_internal.h"
 #include "character/motion.h"
 #include "core/index.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "scene/model.h"
 #include "scene/skeleton.h"
 
 namespace krok::character {
@@ -26,6 +21,8 @@ namespace {
 // Of a mesh at many nodes a model has a copy for each: more vertices than this are refused if they
 // are so many times the file's.
 constexpr std::size_t kMaxCopied = 1'000'000, kMaxGrowth = 20;
+// Copies that are worth a warning: vertices beyond the file's, and as many as the file has.
+constexpr std::size_t kMinCopied = 5'000;
 
 // The first few distinct names, for a message.
 class NameList {
@@ -91,7 +88,7 @@ class MeshBuilder {
     return placements_.is_skinned(instance);
   }
   bool is_wanted(const nodes::Instance& instance);
-  Status check_growth() const;
+  Status check_growth();
   void report_what_is_left();
   void leave_tangents_out(const char* why);
   void look_at_attributes();
@@ -140,7 +137,7 @@ bool MeshBuilder::is_wanted(const nodes::Instance& instance) {
   return true;
 }
 
-Status MeshBuilder::check_growth() const {
+Status MeshBuilder::check_growth() {
   std::size_t copied = 0, in_file = 0;
   std::set<std::pair<int, int>> seen;
   for (const nodes::Instance& instance : wanted_) {
@@ -148,14 +145,20 @@ Status MeshBuilder::check_growth() const {
     copied += count;
     if (seen.emplace(instance.mesh, instance.primitive).second) in_file += count;
   }
-  if (copied <= kMaxCopied || copied <= kMaxGrowth * in_file) return {};
+  if (copied < 2 * in_file || copied - in_file < kMinCopied) return {};
+  const std::string growth = fmt::format(
+      "{} at {}: {} vertices, {} times the file's {}, as a model has a copy for each "
+      "node",
+      counted(std::ssize(seen), "primitive"), counted(std::ssize(wanted_), "place"),
+      grouped(static_cast<long long>(copied)),
+      readable(static_cast<double>(copied) / static_cast<double>(in_file), 3),
+      grouped(static_cast<long long>(in_file)));
+  if (copied <= kMaxCopied || copied <= kMaxGrowth * in_file) {
+    diagnostics_.push_back(make_warning("scene-instances", growth));
+    return {};
+  }
   return Error(
-      "scene-instances",
-      fmt::format("{} at {} would be {} vertices, {} times the file's {}: a model has a copy "
-                  "for each node",
-                  counted(std::ssize(seen), "primitive"), counted(std::ssize(wanted_), "place"),
-                  grouped(static_cast<long long>(copied)), copied / in_file,
-                  grouped(static_cast<long long>(in_file))),
+      "scene-instances", growth,
       fmt::format("models over {} vertices may be {} times the file's: leave instances out",
                   grouped(static_cast<long long>(kMaxCopied)), kMaxGrowth));
 }

@@ -6,7 +6,7 @@
 #include "character/rig.h"
 #include "character/sampling.h"
 #include "core/result.h"
-#include "scene/actor.h"
+#include "scene/character.h"
 
 // Converts the meshes of a scene to one model on a rig.
 
@@ -45,7 +45,7 @@ struct SceneActorOptions {
 //
 // An Error if vertices are not finite (scene-value), there are too many morph targets
 // (scene-morphs: more than 50 million vertices in all targets together) or many nodes share a mesh
-// (scene-instances: over a million vertices that are 20 times the file's).
+// (scene-instances: over a million vertices that are 20 times the file's; a warning from twice on).
 Result<SceneActor> make_actor(const nodes::Scene& scene, const nodes::Evaluator& evaluator,
                               const Rig& rig, const Conversion& conversion,
                               const SceneActorOptions& options, Diagnostics& diagnostics);

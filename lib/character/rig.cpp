@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "capture/unique_names.h"
-#include "character/joints.h"
 #include "character/space.h"
 #include "core/index.h"
 #include "core/numbers.h"
@@ -178,6 +177,7 @@ Result<Rig> make_rig(const Scene& scene, const nodes::Evaluator& evaluator, Join
                      Diagnostics& diagnostics) {
   Rig rig;
   rig.joints = std::move(joints);
+  rig.has_mesh = !scene.meshes.empty();
   rig.to_axes = rotation_to_apply(scene.space);
   BindPose bind = find_bind_pose(scene, evaluator, rig.joints, rig.to_axes, diagnostics);
   rig.reference = std::move(bind.joint_to_world);

@@ -26,6 +26,9 @@ struct Rig {
   std::vector<Mat4> reference;  // F_j, [joints]
   std::vector<Mat3> unscale;    // S_j^-1, [joints]
 
+  // Whether the scene has a mesh; else its nodes without animation are in any pose.
+  bool has_mesh = true;
+
   // Applied to everything; see rotation_to_apply.
   Mat4 to_axes = Mat4::Identity();
 

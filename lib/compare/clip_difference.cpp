@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "compare/matching.h"
-#include "compare/skeleton_match.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "math/quaternion.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "compare/measure.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/scene.h"
 
 // Mesh comparison shared by models and scenes.

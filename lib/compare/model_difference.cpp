@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "compare/mesh_difference.h"
-#include "compare/skeleton_match.h"
 #include "math/quaternion.h"
 
 namespace krok::compare {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Private to this folder: finds the triangles nearest to a point.
 

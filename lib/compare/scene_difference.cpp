@@ -36,6 +36,22 @@ void place_meshes(SceneComparison& comparison) {
   }
 }
 
+// Whether each of some vertices has one of `others` within a tolerance.
+bool all_at_places(const std::vector<Vec3>& vertices, const std::vector<Vec3>& others,
+                   double tolerance) {
+  std::vector<Facet> places;
+  for (std::uint32_t v = 0; v < others.size(); ++v) {
+    places.push_back({0, {v, v, v}, {others[v], others[v], others[v]}});
+  }
+  const auto tree = places.empty() ? nullptr : FacetTree::create(std::move(places));
+  std::vector<FoundFacet> found;
+  return tree != nullptr && std::ranges::all_of(vertices, [&](const Vec3& place) {
+           tree->find(place, found);
+           return std::ranges::any_of(
+               found, [&](const FoundFacet& one) { return one.distance <= tolerance; });
+         });
+}
+
 // Vertices that are over the tolerance by index, all of which have others at their places.
 void note_other_order(SceneComparison& comparison) {
   const Tolerance& tolerance = comparison.options.tolerance;
@@ -50,22 +66,14 @@ void note_other_order(SceneComparison& comparison) {
     }
     const auto& ours = a.positions[static_cast<std::size_t>(i)];
     const auto& theirs = b.positions[static_cast<std::size_t>(j)];
-    std::vector<Facet> places;
-    for (std::uint32_t v = 0; v < theirs.size(); ++v) {
-      places.push_back({j, {v, v, v}, {theirs[v], theirs[v], theirs[v]}});
-    }
-    const auto tree = places.empty() ? nullptr : FacetTree::create(std::move(places));
-    std::vector<FoundFacet> found;
+    // Both ways: a vertex of a seam that moved leaves another at its place.
+    const std::size_t shared = std::min(ours.size(), theirs.size());
+    const bool all = all_at_places(ours, theirs, tolerance.length) &&
+                     all_at_places(theirs, ours, tolerance.length);
     std::size_t moved = 0;
-    const bool all = tree != nullptr && std::ranges::all_of(ours, [&](const Vec3& place) {
-                       tree->find(place, found);
-                       const auto at_place = [&](const FoundFacet& one) {
-                         return one.distance <= tolerance.length;
-                       };
-                       const auto v = static_cast<std::size_t>(&place - ours.data());
-                       moved += (place - theirs[v]).norm() > tolerance.length ? 1 : 0;
-                       return std::ranges::any_of(found, at_place);
-                     });
+    for (std::size_t v = 0; v < shared; ++v) {
+      moved += (ours[v] - theirs[v]).norm() > tolerance.length ? 1 : 0;
+    }
     if (!all || moved == 0) continue;
     comparison.note(fmt::format(
         "{}: its vertices are at the places of the second's, {} of them under another index; "

@@ -69,6 +69,20 @@ ListMatch match_meshes(SceneComparison& comparison) {
                       named[0][name].size() == 1;
     once ? pair(static_cast<int>(i), other->second[0]) : left.push_back(static_cast<int>(i));
   }
+  // Names that are shifted against the meshes, as some programs number them anew.
+  const auto count = [](const SceneMesh& mesh) { return mesh.vertex_count; };
+  const bool names_fit = std::ranges::all_of(match.pairs, [&](const auto& one) {
+    return count(first[static_cast<std::size_t>(one.first)]) ==
+           count(second[static_cast<std::size_t>(one.second)]);
+  });
+  if (!names_fit && std::ranges::equal(first, second, {}, count, count)) {
+    match = {};
+    for (int i = 0; i < std::ssize(first); ++i) match.pairs.emplace_back(i, i);
+    comparison.note(
+        "meshes are matched by their order: of those with the same names, the numbers "
+        "of vertices differ");
+    return match;
+  }
   const std::size_t by_name = match.pairs.size();
   for (const bool same_size : {true, false}) {
     if (same_size && first.size() == second.size()) continue;

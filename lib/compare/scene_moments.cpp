@@ -296,7 +296,13 @@ void compare_rest_pose(SceneComparison& comparison) {
                          readable(1000 * most, 3));
     });
   }
-  if (!where.empty()) comparison.say("without an animation, at rest: " + where);
+  if (where.empty()) return;
+  // A mesh may be bound in another pose than the reference pose of the motion that moves it.
+  if (first.only_joints != second.only_joints) {
+    comparison.note("without an animation, at rest: " + where + ", which no animation shows");
+  } else {
+    comparison.say("without an animation, at rest: " + where);
+  }
 }
 
 }  // namespace krok::compare

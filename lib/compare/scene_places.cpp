@@ -7,8 +7,6 @@
 #include "compare/scene_comparison_internal.h"
 #include "core/index.h"
 #include "core/numbers.h"
-#include "core/text.h"
-#include "math/quaternion.h"
 
 // Nodes without a mesh, extras and variants.
 

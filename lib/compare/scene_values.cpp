@@ -84,6 +84,7 @@ void gather(std::span<const double> values, std::size_t begin, ValueLocation pla
       totals.largest = value;
       worst = i;
     }
+    totals.sum += value;
     totals.square_sum += value * value;
     totals.over += value > totals.tolerance ? 1 : 0;
     spread.add(value);

@@ -108,10 +108,12 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
                            (1 - u - v) * points[one.corners[2]];
         surfaces.tree.find(place, found);
         bool backs = true;
+        double nearest = found.empty() ? 0 : found.front().distance;
         for (const FoundFacet& facet : found) {
-          if (facet.distance > allowed) one.gap = std::max(one.gap, facet.distance);
+          nearest = std::min(nearest, facet.distance);
           backs = backs && cosine_to(facet.facet, normal) < kBackFace;
         }
+        if (nearest > allowed) one.gap = std::max(one.gap, nearest);
         if (!backs || one.turned || one.gap > 0) return;
         // Others that are about as near may face this way, as the sides of a sheet do.
         surfaces.tree.find(place, found, allowed);
@@ -171,9 +173,11 @@ void find_holes(SceneComparison& comparison, const std::vector<SurfaceMatch>& ma
 
 void compare_areas(SceneComparison& comparison, const SurfaceGroup& group,
                    const SurfaceMoments& first, const SurfaceMoments& second) {
+  // Files of points alone have no area; meshes of lines have lost theirs.
   const auto is_cloud = [](const SurfaceMoments& scene, const std::vector<int>& meshes) {
-    return std::ranges::all_of(meshes, [&](int mesh) {
-      return scene.meshes[static_cast<std::size_t>(mesh)].triangles.empty();
+    return std::ranges::all_of(meshes, [&](int index) {
+      const SceneMesh& mesh = scene.meshes[static_cast<std::size_t>(index)];
+      return mesh.triangles.empty() && mesh.only_points;
     });
   };
   if (is_cloud(first, group.first) || is_cloud(second, group.second)) return;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "contacts/series_internal.h"
 #include "math/window.h"
 
 namespace krok::contacts {

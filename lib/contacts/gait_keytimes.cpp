@@ -7,12 +7,11 @@
 #include <string>
 
 #include "contacts/event_pairing_internal.h"
-#include "contacts/gait_plausibility.h"
-#include "contacts/series_internal.h"
+#include "contacts/gait_metrics.h"
 #include "contacts/walking_feet_internal.h"
 #include "math/window.h"
-#include "motion/ground_frame.h"
-#include "scene/clip.h"
+#include "motion/hips_root.h"
+#include "motion/travel.h"
 
 namespace krok::contacts {
 
@@ -346,13 +345,22 @@ Gait find_between_frames(const Clip& clip, const RoleMap& roles, const GaitOptio
 double travel_speed(const Clip& clip, const RoleMap& roles) {
   const auto carrier = static_cast<std::size_t>(carrying_joint(roles));
   const int part = std::max(1, static_cast<int>(clip.rate));  // a second: sway does not count
+  const std::vector<Jump> jumps = jumps_of(clip, carrying_joint(roles));
   double way = 0;
+  int frames = 0;
   for (int f = 0; f + 1 < clip.frame_count(); f += part) {
     const int to = std::min(f + part, clip.frame_count() - 1);
+    // Jumps are no travel, and ends at which a pose is held no time of it.
+    const bool jumps_here = std::ranges::any_of(
+        jumps, [&](const Jump& jump) { return jump.frame > f && jump.frame <= to; });
+    if (jumps_here || clip.frame_positions(f)[carrier] == clip.frame_positions(to)[carrier]) {
+      continue;
+    }
+    frames += to - f;
     const Vec3f moved = clip.frame_positions(to)[carrier] - clip.frame_positions(f)[carrier];
     way += std::hypot(static_cast<double>(moved.x()), static_cast<double>(moved.z()));
   }
-  return way / std::max(1e-9, clip.duration());
+  return frames == 0 ? 0 : way * clip.rate / frames;
 }
 
 }  // namespace

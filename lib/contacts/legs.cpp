@@ -1,7 +1,9 @@
 #include "contacts/legs.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "math/hermite.h"
 #include "roles/roles.h"
 
 namespace krok {
@@ -20,6 +22,13 @@ bool is_below(const Skeleton& skeleton, int joint, int ancestor) {
 const SolePoint* point_of(std::span<const SolePoint> points, FootPart part) {
   const auto found = std::ranges::find(points, part, &SolePoint::part);
   return found == points.end() ? nullptr : &*found;
+}
+
+double beside_for_hips(double width, double other_width, double leg) {
+  constexpr double kUsual = 0.06, kOther = 0.12;  // of the leg
+  const double wider = 0.5 * (width - other_width);
+  const double share = (std::abs(wider) - kUsual * leg) / ((kOther - kUsual) * leg);
+  return leg > 0 ? smoother_step(share) * wider : 0;
 }
 
 }  // namespace krok

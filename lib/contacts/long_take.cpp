@@ -11,7 +11,7 @@
 
 #include "contacts/contacts.h"
 #include "contacts/gait_keytimes.h"
-#include "contacts/slide_speed.h"
+#include "contacts/sole_points.h"
 #include "core/parallel.h"
 
 namespace krok {

@@ -7,7 +7,7 @@
 #include "contacts/event_pairing_internal.h"
 #include "contacts/sole_points.h"
 #include "math/window.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/loop.h"
 #include "motion/travel.h"
 

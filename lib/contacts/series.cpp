@@ -5,7 +5,7 @@
 
 #include "contacts/series_internal.h"
 #include "core/index.h"
-#include "filter/butterworth.h"
+#include "filter/smooth_clip.h"
 
 namespace krok::contacts {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Point tracks over frames: filtering, velocities, breaks, jitter.
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contacts/legs.h"
-#include "contacts/series_internal.h"
 #include "math/window.h"
-#include "roles/roles.h"
+#include "motion/travel.h"
 
 namespace krok {
 
@@ -96,6 +96,21 @@ Vec3 position(const Clip& clip, int frame, int joint) {
   return clip.frame_positions(frame)[static_cast<std::size_t>(joint)].cast<double>();
 }
 
+// All frames but those that repeat the one before: a take that is held for seconds before its
+// motion, a foot in the air, shows no more of the foot than one frame does.
+std::vector<int> distinct_frames(const Clip& clip) {
+  constexpr float kSame = 1e-5F;  // metres
+  const auto same = [](const Vec3f& a, const Vec3f& b) { return (a - b).norm() < kSame; };
+  std::vector<int> distinct;
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    if (f > 0 && std::ranges::equal(clip.frame_positions(f), clip.frame_positions(f - 1), same)) {
+      continue;
+    }
+    distinct.push_back(f);
+  }
+  return distinct;
+}
+
 // The frames in which the foot is probably flat; empty: use the reference pose.
 std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length) {
   const int frames = clip.frame_count();
@@ -108,17 +123,18 @@ std::vector<int> flat_frames(const Clip& clip, const Leg& leg, double leg_length
     return (position(clip, to, joint) - position(clip, from, joint)).norm() * clip.rate /
            std::max(1, to - from);
   };
-  for (int f = 0; f < frames; ++f) {
+  const std::vector<int> distinct = distinct_frames(clip);
+  for (const int f : distinct) {
     if (std::max(moved(leg.foot, f), moved(front, f)) < kStillSpeed * leg_length) flat.push_back(f);
   }
   const auto height = [&](int f) {
     return position(clip, f, leg.foot).y() + position(clip, f, front).y();
   };
   if (static_cast<int>(flat.size()) < kMinFrames) {
-    flat.resize(static_cast<std::size_t>(frames));
-    for (int f = 0; f < frames; ++f) flat[static_cast<std::size_t>(f)] = f;
+    flat = distinct;
     std::ranges::stable_sort(flat, {}, height);
-    flat.resize(std::max<std::size_t>(1, static_cast<std::size_t>(frames * kLowest)));
+    flat.resize(std::max<std::size_t>(
+        1, static_cast<std::size_t>(static_cast<double>(flat.size()) * kLowest)));
     std::ranges::sort(flat);
   }
   return flat;
@@ -299,6 +315,33 @@ std::vector<Vec3> track_of(const Clip& clip, const SolePoint& point, double leg_
   }
   if (jumps_at_start(track, leg_length)) track[0] = 2 * track[1] - track[2];
   return track;
+}
+
+double slide_speed(const Clip& clip, const RoleMap& roles) {
+  const Feet feet = find_feet(clip, roles);
+  std::vector<std::vector<Vec3>> tracks;
+  for (const auto& points : feet.points) {
+    for (const SolePoint& point : points) {
+      tracks.push_back(track_of(clip, point, feet.leg_length));
+    }
+  }
+  if (tracks.empty() || clip.frame_count() < 2) return 0;
+  // A path that goes back to its start takes the feet along.
+  std::vector<char> jumps(tracks.front().size(), 0);
+  if (const int hips = roles.joint(Role::hips); hips >= 0) {
+    for (const Jump& jump : jumps_of(clip, hips)) jumps[static_cast<std::size_t>(jump.frame)] = 1;
+  }
+  double way = 0;
+  for (std::size_t f = 1; f < tracks.front().size(); ++f) {
+    if (jumps[f] != 0) continue;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& track : tracks) {
+      const Vec3 moved = track[f] - track[f - 1];
+      least = std::min(least, std::hypot(moved.x(), moved.z()));
+    }
+    way += least;
+  }
+  return way / clip.duration();
 }
 
 }  // namespace krok

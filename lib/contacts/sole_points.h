@@ -41,8 +41,8 @@ struct Feet {
 // as in boots on short legs, are as high as in a reference pose on the ground at y = 0. The down
 // direction in the foot's frame is taken from the frames in which the foot is still, because
 // reference poses may point the toes anywhere; if there are none, from the frames in which it is
-// lowest, and for clips of fewer than five frames from the reference pose. A foot that is only an
-// end site has one point, at the ankle.
+// lowest, and for clips of fewer than five frames from the reference pose. Frames that repeat the
+// one before do not count. A foot that is only an end site has one point, at the ankle.
 Feet find_feet(const Clip& clip, const RoleMap& roles);
 
 // Which way the ground below a point faces: a unit vector, world. Without a function: upwards.
@@ -59,5 +59,11 @@ bool jumps_at_start(std::span<const Vec3> track, double leg_length);
 // Position of a point in each frame, shape [frames]. A first frame from which it jumps is replaced
 // by linear extrapolation from the next two frames.
 std::vector<Vec3> track_of(const Clip& clip, const SolePoint& point, double leg_length);
+
+// Foot skate as a speed, metres per second: in each frame the horizontal speed of the slowest sole
+// point of both feet, averaged over the clip. In walking and standing one foot is always down, so
+// this is 0 without foot skate, independent of contact detection. Not meaningful for runs and
+// jumps, which have flight phases. 0 for fewer than two frames, and if the roles include no foot.
+double slide_speed(const Clip& clip, const RoleMap& roles);
 
 }  // namespace krok

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "contacts/gait_metrics.h"
-#include "contacts/series_internal.h"
 #include "math/window.h"
+#include "motion/travel.h"
 
 namespace krok {
 
@@ -16,8 +16,9 @@ constexpr double kNoWay = 0.01;     // metres; a shorter stride has no direction
 constexpr double kAlike = 0.5;      // of the longer of two strides, and of the hips' way
 
 struct FootPlace {
-  std::size_t side = 0;  // FootSide
-  double time = 0;       // seconds, its middle
+  std::size_t side = 0;       // FootSide
+  double begin = 0, end = 0;  // seconds, of the part of the stance that it is the mean of
+  double time = 0;            // seconds, its middle
   Vec3 place = Vec3::Zero();
 };
 
@@ -74,7 +75,7 @@ std::vector<FootPlace> places_of(const Clip& clip, const std::array<int, 2>& ank
     for (const StanceTimes& stance : stances) {
       const double third = (stance.off - stance.strike) / 3;
       places.push_back(
-          {side, 0.5 * (stance.strike + stance.off),
+          {side, stance.strike + third, stance.off - third, 0.5 * (stance.strike + stance.off),
            mean_position(clip, ankles[side], stance.strike + third, stance.off - third)});
     }
   }
@@ -103,10 +104,18 @@ StepMeasures measures_of(const Clip& clip, const RoleMap& roles,
   const std::array<int, 2> thighs = {roles.joint(Role::left_upper_leg),
                                      roles.joint(Role::right_upper_leg)};
   std::array<std::vector<double>, 2> lengths;
+  // No stride leads across a jump of the hips, as where a path goes back to its start.
+  const std::vector<Jump> jumps = hips < 0 ? std::vector<Jump>() : jumps_of(clip, hips);
+  const auto jumps_within = [&](double from, double to) {
+    return std::ranges::any_of(jumps, [&](const Jump& jump) {
+      return jump.frame > from * clip.rate && jump.frame <= to * clip.rate + 1;
+    });
+  };
   for (std::size_t i = 0; i + 2 < places.size(); ++i) {
     const FootPlace &first = places[i], &between = places[i + 1], &next = places[i + 2];
     if (first.side == between.side || first.side != next.side ||
-        between.time - first.time > kLongestStep || next.time - between.time > kLongestStep) {
+        between.time - first.time > kLongestStep || next.time - between.time > kLongestStep ||
+        jumps_within(first.begin, next.end)) {
       follows = false;
       continue;
     }

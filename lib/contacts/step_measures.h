@@ -42,7 +42,7 @@ struct StepMeasures {
 // A foot's place is the mean position of its ankle in the middle third of a stance, which is from a
 // strike to the toe-off after it. Where whole stances give no step of a foot, those that the clip
 // cuts off count, too, if their middle third is within it. A step is three places in turn (left,
-// right, left, ..), each within three seconds of the next.
+// right, left, ..), each within three seconds of the next and without a jump of the hips between.
 StepMeasures step_measures(const Clip& clip, const RoleMap& roles,
                            const std::vector<Keytime>& keytimes);
 

@@ -4,7 +4,7 @@
 
 #include "contacts/series_internal.h"
 #include "contacts/walking_feet_internal.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::contacts {
 

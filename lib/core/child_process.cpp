@@ -6,6 +6,7 @@
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -31,6 +32,10 @@ constexpr bool kSanitized = false;
 #endif
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double kMaxSeconds = 1e6;
+// A busy machine must not stop work that takes a second, and a child that waits forever must end.
+constexpr double kWallPerCpu = 10;
 
 // The pipe carries one header, then `size` bytes.
 struct Header {
@@ -87,6 +92,17 @@ void set_limit(int resource, std::uint64_t value) {
   (void)setrlimit(static_cast<__rlimit_resource>(resource), &limit);
 }
 
+// SIGPROF ends the process after so many seconds of CPU time, SIGKILL if it ignores that.
+void limit_cpu_time(double seconds) {
+  itimerval timer{};
+  const double whole = std::floor(seconds);
+  timer.it_value.tv_sec = static_cast<time_t>(whole);
+  timer.it_value.tv_usec = static_cast<suseconds_t>(std::ceil((seconds - whole) * 999'999));
+  if (whole < 1 && timer.it_value.tv_usec == 0) timer.it_value.tv_usec = 1;
+  (void)setitimer(ITIMER_PROF, &timer, nullptr);
+  set_limit(RLIMIT_CPU, static_cast<std::uint64_t>(whole) + 2);
+}
+
 // Address space in use, bytes; read without allocating.
 std::uint64_t address_space() {
   const int descriptor = ::open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
@@ -137,7 +153,7 @@ void close_descriptors() {
   }
   set_limit(RLIMIT_CORE, 0);
   prctl(PR_SET_DUMPABLE, 0);  // no core for a collector either
-  set_limit(RLIMIT_CPU, static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0))));
+  limit_cpu_time(std::clamp(limits.seconds, 0.0, kMaxSeconds));
   set_limit(RLIMIT_FSIZE, 0);
   if (!kSanitized) set_limit(RLIMIT_NOFILE, 0);  // nothing more can be opened
   std::set_new_handler(report_out_of_memory);
@@ -223,15 +239,15 @@ ChildReport receive_report(int descriptor, const ChildLimits& limits, Clock::tim
 }
 
 // Waits for the child to end; kills it at the deadline, or immediately if `at_once`. Returns
-// whether it was killed here; `status` is that of waitpid(), -1 if unknown.
-bool reap(pid_t child, bool at_once, Clock::time_point deadline, int& status) {
+// whether it was killed here; `status` is that of wait4(), -1 if unknown, as `usage` is.
+bool reap(pid_t child, bool at_once, Clock::time_point deadline, int& status, rusage& usage) {
   bool killed = false;
   for (long nap = 50'000;; nap = std::min(nap * 2, 10'000'000L)) {
     if (!killed && (at_once || Clock::now() >= deadline)) {
       ::kill(child, SIGKILL);
       killed = true;
     }
-    const pid_t done = waitpid(child, &status, killed ? 0 : WNOHANG);
+    const pid_t done = wait4(child, &status, killed ? 0 : WNOHANG, &usage);
     if (done == child) return killed;
     if (done < 0 && errno != EINTR) {
       status = -1;  // the caller ignores SIGCHLD, and the system has reaped it
@@ -251,12 +267,23 @@ void describe_crash(int status, bool killed, ChildReport& report) {
   } else if (WIFSIGNALED(status)) {
     report.signal = WTERMSIG(status);
     report.what = signal_text(report.signal);
-    const bool late = report.signal == SIGXCPU || (killed && report.signal == SIGKILL);
+    const bool late = report.signal == SIGPROF || (killed && report.signal == SIGKILL);
     if (late) report = report_of(ChildEnd::out_of_time);
   } else {
     report.what = fmt::format("the process exited with code {} before it was done",
                               WIFEXITED(status) ? WEXITSTATUS(status) : -1);
   }
+}
+
+// Which clock stopped the child.
+void describe_end_of_time(int status, const rusage& usage, double wall, ChildReport& report) {
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  const double cpu = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  report.signal = WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF ? SIGPROF : 0;
+  report.what = fmt::format("{:.3g} seconds of CPU time", cpu);
+  if (report.signal == 0) report.what = fmt::format("{:.4g} seconds with {}", wall, report.what);
 }
 
 }  // namespace
@@ -289,8 +316,7 @@ ChildReport run_in_child(const std::function<std::vector<std::byte>()>& work,
     report.what = std::strerror(why);
     return report;
   };
-  constexpr double kMaxSeconds = 1e6;
-  const double seconds = std::clamp(limits.seconds, 0.0, kMaxSeconds);
+  const double wall = kWallPerCpu * std::clamp(limits.seconds, 0.0, kMaxSeconds);
   Pipe pipe;
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) return not_started(errno);
@@ -303,7 +329,7 @@ ChildReport run_in_child(const std::function<std::vector<std::byte>()>& work,
   pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t caller = getpid();
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                           std::chrono::duration<double>(seconds));
+                                           std::chrono::duration<double>(wall));
   const pid_t child = fork();
   if (child == 0) {
     result_descriptor = pipe.write_end;
@@ -316,14 +342,16 @@ ChildReport run_in_child(const std::function<std::vector<std::byte>()>& work,
 
   ChildReport report;
   int status = 0;
+  rusage usage{};
   try {
     report = receive_report(pipe.read_end, limits, deadline);
   } catch (...) {  // no memory for the result
-    (void)reap(child, true, deadline, status);
+    (void)reap(child, true, deadline, status, usage);
     throw;
   }
-  const bool killed = reap(child, report.end != ChildEnd::crashed, deadline, status);
+  const bool killed = reap(child, report.end != ChildEnd::crashed, deadline, status, usage);
   if (report.end == ChildEnd::crashed) describe_crash(status, killed, report);
+  if (report.end == ChildEnd::out_of_time) describe_end_of_time(status, usage, wall, report);
   return report;
 }
 

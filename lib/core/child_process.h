@@ -14,7 +14,7 @@
 namespace krok {
 
 struct ChildLimits {
-  double seconds = 60;  // wall-clock time; also limits CPU time, rounded up
+  double seconds = 60;  // of CPU time; wall-clock time is limited to ten times that
   // Address space beyond what is in use when the child starts. Not enforced in sanitizer builds,
   // which reserve terabytes.
   std::uint64_t memory_bytes = std::uint64_t{1} << 30;
@@ -31,7 +31,7 @@ enum class ChildEnd : unsigned char {
   returned,          // `bytes` is the result of the work
   threw,             // the work threw an exception other than std::bad_alloc; see `what`
   crashed,           // killed by `signal`, or the process exited (signal 0, see `what`)
-  out_of_time,       // stopped at the time limit
+  out_of_time,       // at the limit of CPU time, or of wall-clock time (signal 0); see `what`
   out_of_memory,     // an allocation failed or exceeded the limit
   result_too_large,  // more than `result_bytes`
   not_started,       // the system could not start a process; see `what`

@@ -9,7 +9,6 @@
 #include <cassert>
 #include <cerrno>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include "core/appended_bytes_internal.h"
@@ -108,7 +107,7 @@ struct OutputFile::State {
 
   // Opens a file in the target's folder: one without a name if the file system supports that,
   // otherwise one with a temporary name.
-  Status open_beside_target(std::optional<mode_t> replaced_mode) {
+  Status open_beside_target(const mode_t* replaced_mode) {
     const std::string folder = folder_of(target);
     tidy_once(folder);
     open(create_unnamed(folder), false);
@@ -304,7 +303,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, Options options) 
     return file_error("file-unwritable", path,
                       fmt::format("cannot be replaced: {}", system_text(errno)));
   }
-  const auto replaced_mode = exists ? std::optional(status.st_mode) : std::nullopt;
+  const mode_t* replaced_mode = exists ? &status.st_mode : nullptr;
   if (Status opened = state->open_beside_target(replaced_mode); !opened) return opened.error();
   return OutputFile(std::move(state));
 }

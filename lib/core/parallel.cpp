@@ -5,9 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
-#include <cstddef>
 #include <exception>
-#include <functional>
 #include <mutex>
 #include <new>
 #include <system_error>

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "compare/matching.h"
-#include "compare/skeleton_match.h"
 #include "core/numbers.h"
 #include "draw/chart_style_internal.h"
 #include "math/quaternion.h"

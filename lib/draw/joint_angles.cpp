@@ -3,10 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "math/quaternion.h"
 #include "retarget/pose_alignment.h"
 #include "retarget/stance.h"
-#include "roles/roles.h"
 
 namespace krok::draw {
 

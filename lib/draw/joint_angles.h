@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "roles/joint_names.h"
 #include "roles/roles.h"
 #include "scene/clip.h"

@@ -140,6 +140,7 @@ CycleCharts cycle_charts(std::span<const ChartedMotion> motions) {
   CycleCharts charts;
   std::array<double, 2> off{};  // sums of percents
   std::vector<bool> has_cycle(motions.size(), false);
+  std::vector<int> cycles(motions.size(), 0);
   for (const BodyAngleName& name : kBodyAngles) {
     Panel panel;
     panel.title = name.title;
@@ -164,6 +165,7 @@ CycleCharts cycle_charts(std::span<const ChartedMotion> motions) {
           has_cycle[m] = true;
           if (charts.panels.empty()) {
             ++charts.counts[s];
+            ++cycles[m];
             const double stance = (cycle.off - cycle.strike) / (cycle.next - cycle.strike);
             if (stance < 0.5) ++charts.runs;
             off[s] += 100 * stance;
@@ -186,6 +188,10 @@ CycleCharts cycle_charts(std::span<const ChartedMotion> motions) {
     charts.panels.push_back(std::move(panel));
   }
   charts.motions = static_cast<int>(std::ranges::count(has_cycle, true));
+  if (const auto max = std::ranges::max_element(cycles); max != cycles.end() && *max > 0) {
+    charts.max_cycles = *max;
+    charts.max_cycles_of = static_cast<int>(max - cycles.begin());
+  }
   return charts;
 }
 

@@ -11,7 +11,8 @@
 #include "draw/joint_angles.h"
 #include "draw/plot.h"
 #include "draw/viewer_page.h"
-#include "math/euler.h"
+#include "math/quaternion.h"
+#include "math/transform.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
@@ -75,6 +76,8 @@ struct CycleCharts {
   std::array<int, 2> counts{};  // cycles of the left and right side
   int runs = 0;                 // of both, with the foot on the ground for less than half of it
   int motions = 0;              // that have a cycle
+  int max_cycles = 0;           // of one motion
+  int max_cycles_of = -1;       // its index
 };
 CycleCharts cycle_charts(std::span<const ChartedMotion> motions);
 
@@ -95,5 +98,9 @@ std::vector<Panel> euler_panels(std::span<const ChartedMotion> motions,
 // The names of at most `count` joints that rotate most in the frames shown, in skeleton order; end
 // sites and joints that do not rotate are left out.
 std::vector<std::string> most_turning_joints(const ChartedMotion& motion, int count);
+
+// The outline of a left sole, seen from above, in parts of its length: x to the left, y ahead, from
+// the heel at (0, 0) to the tip at 1; closed. A right one is its mirror image.
+std::vector<Vec2> sole_outline();
 
 }  // namespace krok::draw

@@ -4,7 +4,6 @@
 
 #include "core/text.h"
 #include "draw/pack_motion_internal.h"
-#include "math/quaternion.h"
 
 namespace krok::draw {
 

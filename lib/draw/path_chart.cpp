@@ -9,8 +9,7 @@
 #include "core/numbers.h"
 #include "draw/chart_style_internal.h"
 #include "draw/motion_charts.h"
-#include "draw/sole_outline.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::draw {
 

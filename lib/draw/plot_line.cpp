@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "draw/plot_style_internal.h"
+#include "draw/chart_style_internal.h"
 
 namespace krok::draw {
 

@@ -1,11 +1,8 @@
 #include "draw/plot_panel_internal.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/numbers.h"
 #include "core/text.h"
-#include "draw/plot_style_internal.h"
+#include "draw/chart_style_internal.h"
 
 namespace krok::draw {
 

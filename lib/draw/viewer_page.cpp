@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "core/text.h"
+#include "draw/motion_charts.h"
 #include "draw/pack_motion_internal.h"
 #include "draw/page_text_internal.h"
-#include "draw/sole_outline.h"
 
 namespace krok::draw {
 

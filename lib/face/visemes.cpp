@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <numbers>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -227,6 +229,113 @@ void VisemeTrack::at(double seconds, std::span<double> weights) const {
       weights[t] += shares[v] / sum * shapes_[v][t];
     }
   }
+}
+
+namespace {
+
+constexpr double kSigma = 0.5;
+
+// SplitMix64 (Steele, Lea, Flood 2014).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  // More than 0, less than 1.
+  double uniform() {
+    std::uint64_t value = state_ += 0x9e3779b97f4a7c15u;
+    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9u;
+    value = (value ^ (value >> 27)) * 0x94d049bb133111ebu;
+    return (static_cast<double>((value ^ (value >> 31)) >> 12) + 0.5) * 0x1p-52;
+  }
+  // Box and Muller.
+  double normal() {
+    const double radius = std::sqrt(-2 * std::log(uniform()));
+    return radius * std::cos(2 * std::numbers::pi * uniform());
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace
+
+std::vector<double> blink_times(double duration, const BlinkOptions& options) {
+  std::vector<double> times;
+  Random random(options.seed);
+  const double mean = 60 / options.per_minute;
+  const double length = options.closing + options.closed + options.opening;
+  const auto interval = [&] {
+    return std::max(length, mean * std::exp(kSigma * random.normal() - 0.5 * kSigma * kSigma));
+  };
+  for (double time = interval() * random.uniform(); time <= duration; time += interval()) {
+    times.push_back(time);
+  }
+  return times;
+}
+
+double blink_at(double seconds, const std::vector<double>& times, const BlinkOptions& options) {
+  const auto after = std::ranges::upper_bound(times, seconds);
+  if (after == times.begin()) return 0;
+  const double since = seconds - *(after - 1);
+  return timeline::Easing().at(since / options.closing) -
+         timeline::Easing().at((since - options.closing - options.closed) / options.opening);
+}
+
+namespace {
+
+constexpr double kMaxWeights = 100e6;
+
+double strength_at(const Item& item, double time) {
+  if (time < item.start || time > item.end) return 0;
+  double strength = item.weight.at(time - item.start);
+  if (item.fade_in.duration > 0) {
+    strength *= item.fade_in.easing.at((time - item.start) / item.fade_in.duration);
+  }
+  if (item.fade_out.duration > 0) {
+    strength *= item.fade_out.easing.at((item.end - time) / item.fade_out.duration);
+  }
+  return strength;
+}
+
+}  // namespace
+
+Item item_of(MorphCurves curves) {
+  Item item;
+  for (const MorphCurve& curve : curves.curves) item.has.push_back(curve.times.empty() ? 0 : 1);
+  item.at = [shared = std::make_shared<const MorphCurves>(std::move(curves))](
+                double seconds, std::span<double> weights) {
+    for (std::size_t t = 0; t < weights.size(); ++t) {
+      weights[t] = weight_at(shared->curves[t], seconds);
+    }
+  };
+  return item;
+}
+
+Result<MorphWeights> mix(std::span<const std::string> targets, std::span<const Item> items,
+                         double rate, int frames) {
+  if (static_cast<double>(targets.size()) * frames > kMaxWeights) {
+    return Error("morph-too-long", "the face has more than 100 million weights");
+  }
+  MorphWeights mixed;
+  mixed.rate = rate;
+  mixed.names.assign(targets.begin(), targets.end());
+  std::vector<double> sum(targets.size()), own(targets.size());
+  for (int frame = 0; frame < frames; ++frame) {
+    const double time = frame / rate;
+    std::ranges::fill(sum, 0.0);
+    for (const Item& item : items) {
+      const double strength = strength_at(item, time);
+      if (strength == 0) continue;
+      std::ranges::fill(own, 0.0);
+      item.at(time - item.start, own);
+      for (std::size_t t = 0; t < sum.size(); ++t) {
+        if (item.has[t] == 0) continue;
+        sum[t] = (item.additive ? sum[t] : (1 - strength) * sum[t]) + strength * own[t];
+      }
+    }
+    for (const double weight : sum) mixed.values.push_back(static_cast<float>(weight));
+  }
+  return mixed;
 }
 
 }  // namespace krok::face

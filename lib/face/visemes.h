@@ -1,13 +1,19 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "blend/time_map.h"
 #include "core/result.h"
+#include "scene/morph_set.h"
+#include "skin/morph.h"
+#include "timeline/timeline.h"
 
 // Mouth shapes (visemes) for a list of phonemes, with coarticulation.
 //
@@ -75,5 +81,45 @@ class VisemeTrack {
   std::vector<Shape> shapes_;
   double hold_ = 0;
 };
+
+// Blinks at human intervals.
+
+struct BlinkOptions {
+  // Means of adults: 17 a minute at rest, 26 in conversation, 4.5 reading. Source: Bentivoglio et
+  // al., Analysis of blink rate patterns in normal subjects (Movement Disorders 12, 1997).
+  double per_minute = 26;  // > 0, at most 60
+  std::uint64_t seed = 1;
+  // The lid closes about twice as fast as it opens. Seconds; Krok's own, within what is measured.
+  double closing = 0.08, closed = 0.03, opening = 0.16;
+};
+
+// When lids begin to close, seconds from 0, up to `duration`. Intervals are log-normal with the
+// wanted mean, as measured ones have a long tail; their spread (sigma 0.5) is Krok's own. The first
+// comes after a part of an interval. The same seed gives the same blinks.
+std::vector<double> blink_times(double duration, const BlinkOptions& options);
+
+// How far lids are closed, 0 to 1, with continuous velocity.
+double blink_at(double seconds, const std::vector<double>& times, const BlinkOptions& options);
+
+// Several animations of a face, one above the other, as morph weights over time.
+
+struct Item {
+  // Sets the weights of the targets that it has, [targets], at a time since its start.
+  std::function<void(double seconds, std::span<double> weights)> at;
+  std::vector<char> has;      // [targets] 1: it moves this one
+  double start = 0, end = 0;  // seconds of the result
+  timeline::Fade fade_in, fade_out;
+  blend::WeightCurve weight = blend::WeightCurve::constant(1);  // over seconds since its start
+  bool additive = false;  // adds to what is below; otherwise replaces it
+};
+
+// Of curves for targets of the same names; those with keys are moved. The curves are copied.
+Item item_of(MorphCurves curves);
+
+// Weights of frames 0 to frames - 1. Items are applied in their order: with a strength s of fades
+// and weight, one that replaces gives (1 - s) below + s own, as cross-fades of motions do. Code
+// morph-too-long for more than 100 million weights.
+Result<MorphWeights> mix(std::span<const std::string> targets, std::span<const Item> items,
+                         double rate, int frames);
 
 }  // namespace krok::face

@@ -7,8 +7,8 @@
 
 #include "core/index.h"
 #include "core/parallel.h"
-#include "filter/rotation_series.h"
 #include "filter/series_denoiser.h"
+#include "filter/smooth_clip.h"
 #include "math/quaternion.h"
 #include "motion/local_motion.h"
 

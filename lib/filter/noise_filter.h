@@ -7,7 +7,7 @@
 
 #include "filter/spikes.h"
 #include "scene/clip.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 // Removes noise whose level is estimated from the motion itself, and spikes.
 

@@ -8,7 +8,6 @@
 
 #include "core/parallel.h"
 #include "math/quaternion.h"
-#include "motion/local_motion.h"
 
 namespace krok::filter {
 

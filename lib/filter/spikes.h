@@ -8,7 +8,7 @@
 #include "core/result.h"
 #include "motion/local_motion.h"
 #include "scene/clip.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 namespace krok::filter {
 

@@ -6,7 +6,6 @@
 #include "core/parallel.h"
 #include "fit/error_field_internal.h"
 #include "fit/joint_rows_internal.h"
-#include "fit/new_rows_internal.h"
 #include "rbf/sobol.h"
 #include "rbf/weight_solver.h"
 

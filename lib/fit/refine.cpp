@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 
 #include "core/parallel.h"
 #include "fit/error_field_internal.h"
-#include "fit/new_rows_internal.h"
-#include "fit/worst_points_internal.h"
+#include "fit/joint_rows_internal.h"
 #include "rbf/weight_solver.h"
 
 namespace krok::fit {

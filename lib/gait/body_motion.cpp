@@ -9,10 +9,9 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "math/euler.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::gait {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/numbers.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::gait {
 

@@ -8,7 +8,7 @@
 
 #include "core/numbers.h"
 #include "gait/ground_prints_internal.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::gait {
 

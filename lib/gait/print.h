@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "contacts/sole_points.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 // Footprints of a walk: where each foot is set, in order.
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "math/hermite.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::gait {
 

@@ -9,7 +9,7 @@
 
 #include "core/text.h"
 #include "math/window.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::gait {
 

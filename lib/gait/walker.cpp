@@ -7,7 +7,6 @@
 
 #include "core/index.h"
 #include "gait/foot_paths_internal.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "math/window.h"
 #include "pose/packed_pose.h"

@@ -9,7 +9,7 @@
 #include "ik/goal_motion.h"
 #include "ik/solver.h"
 #include "scene/clip.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 namespace krok::ik {
 

@@ -7,10 +7,9 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "roles/body_frame.h"
 #include "roles/roles.h"
 

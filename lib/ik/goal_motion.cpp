@@ -11,7 +11,7 @@
 #include "ik/frame_solver_internal.h"
 #include "ik/keyed_goal_internal.h"
 #include "math/quaternion.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 namespace krok::ik {
 

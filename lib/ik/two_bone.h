@@ -1,6 +1,6 @@
 #pragma once
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Two-bone inverse kinematics in closed form: thigh and shank, upper arm and forearm. The triangle
 // of the two bones and the line from the root to the target is solved by the law of cosines; the

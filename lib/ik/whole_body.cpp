@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/index.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::ik {
 

@@ -8,9 +8,9 @@
 #include "core/numbers.h"
 #include "lint/series_internal.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
+#include "roles/body_frame.h"
 #include "roles/roles.h"
-#include "roles/stature.h"
 
 // Rules about the body: its size, bones, limits, reference pose and the ends of a loop.
 
@@ -21,6 +21,7 @@ namespace {
 constexpr double kUsualStature = 1.72;  // metres
 constexpr double kMinChange = 0.0025;   // metres, of a bone
 constexpr double kShortestBone = 0.02;  // metres
+constexpr double kConstant = 0.0005;    // metres, of a distance that only rounding changes
 constexpr double kLongEnough = 0.1;     // seconds beyond a limit
 constexpr double kForwards = 0.7;       // cosine to where the toes point
 constexpr double kPointed = 0.5;        // of a foot's length, ahead of the shin
@@ -39,6 +40,21 @@ void find_unit(const Series& series, MotionFaults& out) {
 
 bool is_of_body(Role role) {
   return role != Role::none && role != Role::helper && role != Role::end && role != Role::root;
+}
+
+// Whether a joint keeps its distance from its parent's parent, as the thighs of a Biped do, whose
+// parent is the spine and whose place the pelvis gives.
+bool is_carried_past(const Series& series, int joint) {
+  const auto& parents = series.clip.skeleton.parents;
+  const int carrier = parents[at(parents[at(joint)])];
+  if (carrier < 0) return false;
+  float low = INFINITY, high = 0;
+  for (int f = 0; f < series.frames; ++f) {
+    const auto places = series.clip.frame_positions(f);
+    const float length = (places[at(joint)] - places[at(carrier)]).norm();
+    low = std::min(low, length), high = std::max(high, length);
+  }
+  return high - low < kConstant * series.scale;
 }
 
 void find_bones(const Series& series, MotionFaults& out) {
@@ -101,8 +117,9 @@ void find_bones(const Series& series, MotionFaults& out) {
     }
     const bool jumps = largest > range / 2;
     const Role role = series.roles.roles[at(j)];
-    // Shoulder blades glide on the ribs.
-    if (!jumps && (role == Role::left_collar || role == Role::right_collar)) continue;
+    // Shoulder blades glide on the ribs, and creatures are made to stretch.
+    const bool glides = !roles || role == Role::left_collar || role == Role::right_collar;
+    if ((!jumps && glides) || is_carried_past(series, j)) continue;
     finding.detail = fmt::format("{} to {} m{}", readable(low, 3), readable(high, 3),
                                  jumps ? ", in one frame" : "");
     found.push_back(finding);

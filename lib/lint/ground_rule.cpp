@@ -89,7 +89,7 @@ class GroundRule {
             readable(level_.spread, 2)));
         return;
       }
-      if (std::abs(level_.height) > kFloor * limit_) {
+      if (std::abs(level_.height) > kFloor * limit_ && stands_mostly()) {
         add("floor", {0, series_.frames - 1, 0}, std::abs(level_.height));
         out_.findings.back().threshold = kFloor * limit_;
       }
@@ -99,6 +99,19 @@ class GroundRule {
   }
 
  private:
+  // Not of who sits: the feet may be on what carries the seat.
+  bool stands_mostly() const {
+    double on_feet = 0, all = 0;
+    for (const Stay& stay : soles_.found.stays) {
+      const auto middle = static_cast<int>(0.5 * (stay.start + stay.end) * series_.rate);
+      all += stay.end - stay.start;
+      if (stands(series_, soles_, stay.track, std::min(middle, series_.frames - 1))) {
+        on_feet += stay.end - stay.start;
+      }
+    }
+    return on_feet > all / 2;
+  }
+
   std::optional<double> ground_at(const Vec3& point) const {
     return series_.options.ground ? series_.options.ground(point) : level_.height;
   }

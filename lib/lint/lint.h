@@ -2,13 +2,16 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/result.h"
 #include "lint/rules.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
+#include "scene/frame_source.h"
 
 // Finds faults of motions: what a capture or an export broke, by rule, with its place.
 
@@ -69,5 +72,37 @@ double legs_scale(const Skeleton& skeleton, const RoleMap& roles);
 // - joint-limit: knees that bend forwards. Ranges of other joints depend on how a skeleton shares
 //   them and on its reference pose.
 MotionFaults lint_motion(const Clip& clip, const RoleMap& roles, const MotionOptions& options);
+
+// Faults of takes that do not fit in memory.
+
+// What `judge`, such as lint_motion(), finds in parts of a take of about 32 MB each. A fault
+// belongs to the part that its worst frame is in, one that goes on into the next part is one. What
+// is usual in the motion is judged within a part and the 10 seconds around it: a take of one part
+// has the faults that `judge` finds in it, a longer one those of its minutes rather than of the
+// whole. The ends of a loop are compared by themselves.
+//
+// `judge` is called in the order of the parts. Codes: those of the source.
+Result<MotionFaults> lint_long_take(
+    const FrameSource& motion, const MotionOptions& options, int jobs,
+    const std::function<MotionFaults(const Clip& part, const MotionOptions& how)>& judge,
+    std::size_t part_bytes = std::size_t{32} << 20);
+
+// Finds motions that are the same under two names.
+
+// What a motion looks like, whatever its rate, unit, place and heading: the directions of arms and
+// legs as the hips see them, at 16 to 33 evenly spaced times.
+struct Signature {
+  double duration = 0;            // seconds
+  std::vector<Vec3f> directions;  // unit; empty for motions that cannot be compared
+};
+
+// Empty without the limbs' roles, for fewer than three frames, and for a pose that is held (within
+// 3 degrees): many takes have the same one. So it is where frames cannot be read.
+Signature signature_of(const FrameSource& motion, const RoleMap& roles);
+
+// Pairs (earlier, later) of the same motion: durations agree within 2 %, and no direction differs
+// by more than `radians`. Each motion is paired with the first one that it repeats.
+std::vector<std::pair<int, int>> find_duplicates(std::span<const Signature> signatures,
+                                                 double radians);
 
 }  // namespace krok::lint

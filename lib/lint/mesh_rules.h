@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lint/lint.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 // Finds faults of the meshes of characters. Weights are judged by the readers, which normalise
 // them: see tools/krok-lint.

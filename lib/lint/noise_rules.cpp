@@ -15,12 +15,17 @@ namespace {
 constexpr double kWindow = 0.5;            // seconds
 constexpr double kMedianOfNorm = 1.538;    // of three normal variables (Maxwell distribution)
 constexpr double kQuartileOfNorm = 1.101;  // the lower one
+constexpr std::ptrdiff_t kOfAJerk = 2;     // fourth differences on either side that one jerk is in
 constexpr double kFourthDifference = 70;   // its variance over that of white noise: 1+16+36+16+1
 // Lag-1 correlation of accelerations: -2/3 for white noise, near 1 for a smooth motion.
 constexpr double kNoiseLike = -0.45;
 constexpr float kMoves = 2e-3F;          // rad a frame
 constexpr double kDeviations = 5;        // of the detail of a motion's windows
+constexpr std::size_t kFewest = 8;       // windows, 2.25 s, that show what detail is usual
 constexpr double kFrozenLongest = 3600;  // seconds
+// A keyed pose is eased into and out of; a take that drops out stops or goes on at full speed.
+constexpr double kEdge = 0.1;   // seconds beside a hold
+constexpr float kEased = 0.4F;  // of the fastest frame there, of the one next to the hold
 // Motions that are generated begin and end at rest, at a tenth of the usual speed or less, and
 // are eased out of it and into it for so long, seconds.
 constexpr float kRest = 0.1F;
@@ -104,8 +109,15 @@ void look_at(std::span<const Vec3f> turns, const Windows& windows, float still, 
       return static_cast<float>(std::sqrt(*nth / kFourthDifference) / of_norm);
     };
     detail.noise = quantile(2, kMedianOfNorm);
-    // A jerky gesture of half of the window is no noise.
-    if (detail.noise > limit) detail.jitter = quantile(1, kQuartileOfNorm);
+    if (detail.noise <= limit) continue;
+    // A jerky gesture of half of the window is no noise, nor is one jerk, as of a foot that lands,
+    // which at low rates is in most of a window's differences.
+    const auto worst = std::max_element(place(first + 3), place(end));
+    sizes.sorted.clear();
+    for (auto size = place(first + 3); size != place(end); ++size) {
+      if (std::abs(size - worst) > kOfAJerk) sizes.sorted.push_back(*size);
+    }
+    if (!sizes.sorted.empty()) detail.jitter = quantile(1, kQuartileOfNorm);
   }
 }
 
@@ -165,7 +177,7 @@ void find_smooth(const Series& series, const Windows& windows, const DetailOfBod
   leave_out_rests(series, windows, detail);
   std::vector<double> known;
   std::ranges::copy_if(detail, std::back_inserter(known), [](double v) { return !std::isnan(v); });
-  if (known.size() < 6) return;
+  if (known.size() < kFewest) return;
   // What is smoothed may be over half of a take: the usual is that of the windows with more detail.
   const auto upper = known.begin() + static_cast<std::ptrdiff_t>(known.size() * 3 / 4);
   std::ranges::nth_element(known, upper);
@@ -183,19 +195,45 @@ void find_smooth(const Series& series, const Windows& windows, const DetailOfBod
   }
 }
 
-void find_frozen(const Series& series, std::vector<Finding>& found) {
-  const int shortest = series.frames_in(series.threshold(Rule::frozen), 3);
+// Stretches [first, end) in which the whole body is still.
+struct Holds {
+  std::vector<std::pair<int, int>> dropped;  // or of the take's beginning or end
+  bool keyed = false;                        // there are others, which are eased into and out of
+};
+
+Holds holds_of(const Series& series) {
+  const int shortest = series.frames_in(series.threshold(Rule::frozen), 3),
+            reach = series.frames_in(kEdge, 4);
+  const auto is_slow = [&](int frame, int from) {
+    const auto fastest = std::max_element(&series.moved[at(from)], &series.moved[at(from)] + reach);
+    return series.moved[at(frame)] < kEased * *fastest;
+  };
+  const auto is_still = [&](int f) { return f > 0 && series.moved[at(f)] < kStill; };
+  Holds holds;
+  for (const auto& [first, end] : runs_of(series.frames, is_still)) {
+    if (end - first < shortest) continue;
+    const bool eased = first > reach && end + reach <= series.frames &&
+                       is_slow(first - 1, first - reach) && is_slow(end, end);
+    if (eased) {
+      holds.keyed = true;
+    } else {
+      holds.dropped.emplace_back(first, end);
+    }
+  }
+  return holds;
+}
+
+void find_frozen(const Series& series, const Holds& holds, std::vector<Finding>& found) {
   const auto moving =
       std::ranges::count_if(series.moved, [](float moved) { return moved > 1e-4F; });
   // A pose that is held all the time is a pose and no fault.
   if (moving < series.frames / 10 + 2) return;
-  const auto is_still = [&](int f) { return f > 0 && series.moved[at(f)] < kStill; };
-  for (const auto& [first, end] : runs_of(series.frames, is_still)) {
-    if (end - first < shortest) continue;
+  for (const auto& [first, end] : holds.dropped) {
+    if (holds.keyed && (first == 1 || end == series.frames)) continue;
     found.push_back(finding_of(Rule::frozen, series,
                                std::min(kFrozenLongest, (end - first) / series.rate),
                                {first - 1, end - 1, first - 1}));
-    found.back().threshold = shortest / series.rate;
+    found.back().threshold = series.frames_in(series.threshold(Rule::frozen), 3) / series.rate;
   }
 }
 
@@ -203,6 +241,7 @@ void find_frozen(const Series& series, std::vector<Finding>& found) {
 
 void find_noise_faults(const Series& series, MotionFaults& out) {
   std::vector<Finding> found;
+  const Holds holds = holds_of(series);
   if (series.has(Rule::jitter) || series.has(Rule::over_smooth)) {
     const Windows windows = windows_of(series);
     DetailOfBody body(windows.count);
@@ -222,9 +261,13 @@ void find_noise_faults(const Series& series, MotionFaults& out) {
       }
       body.add(details);
     }
-    if (series.has(Rule::over_smooth)) find_smooth(series, windows, body, found);
+    if (series.has(Rule::over_smooth) && holds.keyed) {
+      out.notes.emplace_back("over-smooth: poses are keyed, which leaves no detail of a capture");
+    } else if (series.has(Rule::over_smooth)) {
+      find_smooth(series, windows, body, found);
+    }
   }
-  if (series.has(Rule::frozen)) find_frozen(series, found);
+  if (series.has(Rule::frozen)) find_frozen(series, holds, found);
   merge_joints(found, 1);
   out.findings.insert(out.findings.end(), found.begin(), found.end());
 }

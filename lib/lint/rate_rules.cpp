@@ -7,8 +7,8 @@
 #include "core/numbers.h"
 #include "lint/series_internal.h"
 #include "math/window.h"
+#include "roles/body_frame.h"
 #include "roles/roles.h"
-#include "roles/stature.h"
 
 // frame-rate: repeated frames, how long swings take, and how fast runs fall.
 
@@ -147,7 +147,7 @@ std::vector<double> falls_of(const Series& series, const std::vector<Swing>& lef
     }
     a->end < b->end ? ++a : ++b;
   }
-  if (falls.size() < kMinFlights || 2 * flying < kFlying * swinging) falls.clear();
+  if (2 * flying < kFlying * swinging) falls.clear();
   return falls;
 }
 
@@ -176,6 +176,7 @@ void find_speed(const Series& series, MotionFaults& out) {
   if (seconds.size() < kMinSwings) return;
   const auto falls = falls_of(series, left, right);
   const bool runs = !falls.empty();
+  if (runs && falls.size() < kMinFlights) return;  // a single cycle of a run
   const auto found = regular_median(runs ? falls : seconds);
   if (!found || (runs && *found < kSlowestFall)) return;
   const double usual = kUsualSwing * std::sqrt(series.scale);

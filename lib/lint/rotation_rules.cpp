@@ -79,6 +79,10 @@ constexpr std::array<Template, 3> kTemplates = {
 constexpr Clearness kOfToes = {3, 4};
 constexpr auto kSlap = static_cast<float>(35 * kRadiansPerDegree);  // at most, of a foot
 constexpr float kMinOverUsual = 2, kMinOverRest = 1;                // of all of them
+constexpr double kSpringRate = 35;                                  // frames per second
+constexpr double kBent = 0.4;                                       // seconds
+constexpr float kBack = 0.25F;                                      // of the jump
+constexpr double kFingers = 1e4 * kRadiansPerDegree;  // per second squared, of fingers that tap
 constexpr double kAround = 10;  // seconds before and after in which a jump is unlike others
 
 // A place where a template was tried.
@@ -247,6 +251,20 @@ class PopFinder {
   std::vector<float>& sizes_;
 };
 
+// Whether toes that were bent by the ground for a while spring back to where they were before, at
+// a frame: within 0.03 s or more, as a frame lasts at low rates.
+bool springs_back(const Series& series, std::span<const Vec3f> turns, const Pop& pop) {
+  if (series.rate > kSpringRate) return false;
+  const int from = std::max(1, pop.worst - series.frames_in(kBent, 4));
+  Vec3f way = turns[at(pop.worst)];
+  const float back = kBack * way.norm();
+  for (int f = pop.worst - 1; f >= from; --f) {
+    way += turns[at(f)];
+    if (f < pop.worst - 1 && way.norm() < back) return true;
+  }
+  return false;
+}
+
 // Joints that turn anywhere, and are more than the mark of a bone's end.
 std::vector<int> moving(const Series& series) {
   std::vector<int> joints;
@@ -296,20 +314,22 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
   std::vector<Finding> flips, pops, kinks, found;
   std::vector<float> sizes;
   const std::vector<int> joints = moving(series);
-  const auto add = [&](const Pop& pop, int joint, bool path) {
+  const auto limit = static_cast<float>(degrees * kRadiansPerDegree);
+  const auto fingers_start = static_cast<float>(kFingers / (series.rate * series.rate));
+  const auto add = [&](const Pop& pop, int joint, bool path, float least) {
     Finding& finding = (pop.kind == PopKind::kink ? kinks : pops)
                            .emplace_back(finding_of(Rule::pop, series, pop.value,
                                                     {pop.first, pop.last, pop.worst}));
     finding.kind = pop.kind == PopKind::spike ? "spike" : "step";
     finding.joint = joint;
     if (path) {
-      finding.threshold = kMinPath * series.scale, finding.unit = "m";
+      finding.threshold = least, finding.unit = "m";
       finding.detail = "path of the hips";
     } else {
+      if (least > limit) finding.threshold = least / kRadiansPerDegree;
       finding.value /= kRadiansPerDegree;
     }
   };
-  const auto limit = static_cast<float>(degrees * kRadiansPerDegree);
   for (const int j : joints) {
     const auto turns = series.turns_of(j);
     if (series.has(Rule::flip)) find_flips(series, j, turns, flips);
@@ -317,16 +337,22 @@ void find_rotation_faults(const Series& series, MotionFaults& out) {
     const Role role = series.roles.roles[at(j)];
     const bool toes = role == Role::left_toes || role == Role::right_toes;
     const bool feet = role == Role::left_foot || role == Role::right_foot;
+    const bool fingers = role == Role::left_fingers || role == Role::right_fingers;
+    const float least = fingers ? std::max(limit, fingers_start) : limit;
     // A change of speed is at most twice the largest speed.
-    if (4.001F * series.largest[at(j)] < limit * limit) continue;
-    PopFinder finder(turns, limit, block, around, toes ? INFINITY : feet ? kSlap : 0.0F, sizes);
-    for (const Pop& pop : finder.find()) add(pop, j, false);
+    if (4.001F * series.largest[at(j)] < least * least) continue;
+    PopFinder finder(turns, least, block, around, toes ? INFINITY : feet ? kSlap : 0.0F, sizes);
+    for (const Pop& pop : finder.find()) {
+      if (!toes || pop.kind == PopKind::spike || !springs_back(series, turns, pop)) {
+        add(pop, j, false, least);
+      }
+    }
   }
   if (series.has(Rule::pop)) {
-    PopFinder finder(series.steps, static_cast<float>(kMinPath * series.scale), block, around, 0,
-                     sizes);
+    const auto least = static_cast<float>(kMinPath * series.scale);
+    PopFinder finder(series.steps, least, block, around, 0, sizes);
     for (const Pop& pop : finder.find()) {
-      if (pop.kind != PopKind::kink) add(pop, series.carrier, true);
+      if (pop.kind != PopKind::kink) add(pop, series.carrier, true, least);
     }
   }
   // A flip is a pop, too, and what belongs to one rest frame is neither.

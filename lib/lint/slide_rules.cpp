@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/index.h"
 #include "core/numbers.h"
@@ -24,6 +23,10 @@ constexpr double kLift = 0.012;          // metres; a foot that is lifted by mor
 constexpr double kLongestLift = 0.3;     // seconds
 constexpr double kShuffle = 0.8;         // metres per second; what is faster for a short time steps
 constexpr double kLongestShuffle = 0.4;  // seconds
+constexpr double kShownRate = 10;        // frames per second; a step may be between two frames
+constexpr double kSettles = 2;           // times slower or faster, of a foot that lands or leaves
+constexpr double kUnder = 0.25;          // of the frames, with a foot on the ground
+constexpr double kSteady = 0.6;          // of the ground's speed, how far slides differ from it
 constexpr double kHipsStay = 0.2;        // of how far feet slide
 
 // Whether a foot is higher for a short time, [first, end) with the fastest frame among it, than
@@ -39,6 +42,40 @@ bool is_lifted(const Series& series, const std::vector<Vec3>& places, int first,
                        [&](const Vec3& place) { return place.y() < height; });
   };
   return is_lower(first - reach, fastest) && is_lower(fastest, end - 1 + reach);
+}
+
+// Whether a foot that bears, in frames [first, end), still comes down and slows, or goes up already
+// and speeds up: it lands or leaves, however slowly.
+bool lands_or_leaves(const Series& series, const Soles& soles, int first, int end) {
+  const int landing = soles.bearing[at(first)], leaving = soles.bearing[at(end - 1)];
+  const auto rise = [&](int track) {
+    const auto& places = soles.places[at(track)];
+    return (places[at(end - 1)].y() - places[at(first)].y()) / series.scale;
+  };
+  const double before = soles.speed(landing, first), after = soles.speed(leaving, end - 1);
+  return (rise(landing) < -kLift && kSettles * after < before) ||
+         (rise(leaving) > kLift && kSettles * before < after);
+}
+
+// Level velocity of the ground under who walks in place: that of the feet, if all slide alike and
+// the hips stay; otherwise zero.
+Vec3 velocity_below(const Series& series, const Soles& soles) {
+  Vec3 mean = Vec3::Zero();
+  double square = 0;
+  int count = 0;
+  for (int f = 0; f < series.frames; ++f) {
+    const int track = soles.bearing[at(f)];
+    if (track < 0) continue;
+    mean += soles.slip(track, f), square += soles.slip(track, f).squaredNorm(), ++count;
+  }
+  if (count < std::max(3.0, kUnder * series.frames)) return Vec3::Zero();
+  mean /= count;
+  const double speed = mean.norm(), seconds = (series.frames - 1) / series.rate;
+  const Vec3f hips = series.clip.frame_positions(series.frames - 1)[at(series.carrier)] -
+                     series.clip.frame_positions(0)[at(series.carrier)];
+  const bool steady = square / count - speed * speed < kSteady * kSteady * speed * speed;
+  const bool stays = level(hips.cast<double>()).norm() < kHipsStay * speed * seconds;
+  return steady && stays && speed > kCreeping * series.scale ? mean : Vec3::Zero();
 }
 
 // Whether both feet move together, in a third of the frames or more.
@@ -77,6 +114,7 @@ void find_moving(const Series& series, const Soles& soles, std::vector<Finding>&
                           first > 0 && soles.bearing[at(first - 1)] >= 0 &&
                           end - first <= series.frames_in(kLongestShuffle, 1);
     if (finding.value <= finding.threshold || shuffles ||
+        (rule == Rule::foot_slide && lands_or_leaves(series, soles, first, end)) ||
         is_lifted(series, soles.places[at(track)], first, end, worst)) {
       continue;
     }
@@ -186,6 +224,11 @@ void find_stays(const Series& series, const Soles& soles, std::vector<Finding>& 
 }  // namespace
 
 void find_slides(const Series& series, const Soles& soles, MotionFaults& out) {
+  if (series.rate < kShownRate) {
+    out.notes.push_back(fmt::format("foot-slide: {} frames per second do not show when feet rest",
+                                    readable(series.rate, 3)));
+    return;
+  }
   std::vector<Finding> found;
   find_moving(series, soles, found);
   find_stays(series, soles, found);
@@ -194,6 +237,20 @@ void find_slides(const Series& series, const Soles& soles, MotionFaults& out) {
     out.notes.emplace_back("foot-slide: no foot rests; --treadmill if the ground moves");
   }
   merge_joints(found, series.frames_in(2 * kLongestStepEnd, 1));
+  const Vec3 below = velocity_below(series, soles);
+  const auto slides = [](const Finding& one) { return one.rule == Rule::foot_slide; };
+  const auto worst = std::ranges::find_if(found, slides);
+  if (!below.isZero() && worst != found.end()) {
+    // One line for the take, not one for each of its steps.
+    Finding whole = *worst;
+    for (const Finding& one : found) {
+      if (slides(one) && one.value > whole.value) whole = one;
+    }
+    whole.first = 0, whole.last = series.frames - 1;
+    whole.detail = fmt::format("in place, over ground with {} m/s: --treadmill if the ground moves",
+                               readable(below.norm(), 2));
+    found.assign(1, whole);
+  }
   out.findings.insert(out.findings.end(), found.begin(), found.end());
 }
 

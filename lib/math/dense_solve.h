@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Small dense linear systems. Eigen's decompositions take seconds to compile wherever they are
 // used, so they are used only here. `a` has shape [rows x columns]. Input is not checked:

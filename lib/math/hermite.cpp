@@ -1,6 +1,5 @@
 #include "math/hermite.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <vector>

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Cubic Hermite curves through keys at any times, with continuous velocity (C1). A curve is stored
 // as times, values and velocities, spans of equal length; times are seconds (or any unit) and

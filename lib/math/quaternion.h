@@ -1,9 +1,10 @@
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "math/hermite.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 // Unit quaternions with defined results for equal, nearly equal, opposite and zero input.
 // Quaternions are q = (w, x, y, z) as in Eigen; q and -q are the same rotation.
@@ -57,5 +58,27 @@ void squad_velocities(std::span<const double> times, std::span<const Quat> rotat
 // From q0 (t = 0) to q1 (t = 1) in `span` seconds, with angular velocities w0 and w1 at its ends.
 // The sign of q1 does not matter; t = 0 and t = 1 give the keys, up to sign.
 Quat squad(const Quat& q0, const Vec3& w0, const Quat& q1, const Vec3& w1, double span, double t);
+
+enum class Axis : unsigned char { x = 0, y = 1, z = 2 };
+
+// An order of three different axes as in a BVH channel list: (z, x, y) means R = Rz * Rx * Ry, so
+// the last rotation is applied to a vector first.
+using EulerOrder = std::array<Axis, 3>;
+
+// The rotation by `angle` radians about a coordinate axis. Exact for angle 0.
+Quat axis_rotation(Axis axis, double angle);
+
+// R = R(axes[0], angles[0]) * R(axes[1], angles[1]) * ...; radians. Any number of axes, repeats
+// allowed, as in unusual channel lists. Both spans have the same length.
+Quat from_axis_rotations(std::span<const Axis> axes, std::span<const double> angles);
+
+// Angles (radians, in the order of `order`) with from_axis_rotations(order, angles) = q. The middle
+// angle is in [-pi/2, pi/2], the others in [-pi, pi]. At gimbal lock (middle angle within 1e-7 of
+// +-pi/2) the last angle is `last_at_lock` and the first contains the remaining rotation.
+Vec3 to_euler(const Quat& q, const EulerOrder& order, double last_at_lock = 0.0);
+
+// Of the equivalent angle triples (other branch of the middle angle, full turns added), the one
+// closest to `previous`, so that angle curves over time have no jumps.
+Vec3 closest_euler(const Vec3& angles, const Vec3& previous);
 
 }  // namespace krok

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // SIMD operations on long arrays of vectors, such as mesh vertices. Results are the same bits on
 // every machine.

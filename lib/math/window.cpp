@@ -7,7 +7,6 @@
 #include <deque>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "core/index.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // What stands for several values: medians of points, extremes and means of a window over a series.
 

@@ -11,11 +11,9 @@
 #include "core/numbers.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
 #include "motion/hips_root.h"
-#include "motion/place.h"
 #include "motion/sample.h"
-#include "scene/frame_blocks.h"
+#include "motion/travel.h"
 
 namespace krok {
 

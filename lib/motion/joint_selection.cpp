@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "core/text.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "roles/roles.h"
 
 namespace krok {

@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "core/index.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "math/transform.h"
-#include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"
 

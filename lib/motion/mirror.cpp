@@ -3,16 +3,13 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
-#include "scene/frame_blocks.h"
+#include "motion/hips_root.h"
 
 namespace krok {
 

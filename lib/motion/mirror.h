@@ -47,7 +47,7 @@ MirrorPairs find_mirror_pairs(const Skeleton& skeleton, const RoleMap& roles);
 // twisted, and what stays that far off is no posture. Joints above the hips that stand, or keep to
 // the hips' ground frame, are not turned.
 //
-// `posture` is that of axes_to_images(), by default the clip's usual_pose() (frame_blocks.h). Clips
+// `posture` is that of axes_to_images(), by default the clip's usual_pose() (frame_source.h). Clips
 // of one actor that are blended need the same.
 Clip mirror(const Clip& clip, const MirrorPairs& pairs, std::span<const Transform> posture = {});
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/mirror.h"
 #include "roles/joint_names.h"
 

@@ -1,12 +1,16 @@
 #include "motion/travel.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "core/index.h"
-#include "math/euler.h"
-#include "motion/ground_frame.h"
-#include "scene/frame_blocks.h"
+#include "math/quaternion.h"
+#include "motion/hips_root.h"
 
 namespace krok {
 
@@ -108,6 +112,128 @@ std::optional<Clip> travelling(const Clip& clip, int carrier) {
   const auto& removed = clip.provenance.removed_root_motion;
   if (!removed) return std::nullopt;
   return carried_along(clip, carrier, *removed);
+}
+
+std::vector<Jump> jumps_of(std::span<const Vec3f> track, double rate) {
+  constexpr double kJumps = 8, kTooFast = 10;  // times the median step; metres per second
+  std::vector<double> steps;
+  for (std::size_t f = 1; f < track.size(); ++f) {
+    steps.push_back((track[f] - track[f - 1]).cast<double>().norm());
+  }
+  std::vector<Jump> jumps;
+  if (steps.empty()) return jumps;
+  std::vector<double> sorted = steps;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const double max_step = std::max(kJumps * *middle, kTooFast / rate);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (steps[i] > max_step) jumps.push_back({static_cast<int>(i) + 1, steps[i]});
+  }
+  return jumps;
+}
+
+std::vector<Jump> jumps_of(const Clip& clip, int joint) {
+  std::vector<Vec3f> track;
+  track.reserve(at(clip.frame_count()));
+  for (int f = 0; f < clip.frame_count(); ++f) track.push_back(clip.frame_positions(f)[at(joint)]);
+  return jumps_of(track, clip.rate);
+}
+
+Displacement largest_displacement(const Clip& before, const Clip& after,
+                                  std::span<const int> joints) {
+  return largest_displacement(before, after, joints, 0, before.frame_count());
+}
+
+Displacement largest_displacement(const Clip& before, const Clip& after,
+                                  std::span<const int> joints, int begin, int end) {
+  assert(before.positions.size() == after.positions.size());
+  Displacement largest;
+  for (int f = begin; f < end; ++f) {
+    const auto from = before.frame_positions(f), to = after.frame_positions(f);
+    for (const int j : joints) {
+      const auto at = static_cast<std::size_t>(j);
+      const double distance = (to[at].cast<double>() - from[at].cast<double>()).norm();
+      if (distance > largest.distance) largest = {distance, j, f};
+    }
+  }
+  return largest;
+}
+
+void move_clip(const Transform& world_to_world, Clip& clip) {
+  const Transform& move = world_to_world;
+  const bool turns = move.orientation.vec().squaredNorm() > 0;
+  for (Vec3f& position : clip.positions) position = (move * position.cast<double>()).cast<float>();
+  if (!turns) return;
+  for (Quatf& orientation : clip.orientations) {
+    orientation =
+        normalized_or_identity(move.orientation * orientation.cast<double>()).cast<float>();
+  }
+}
+
+Transform to_origin(const Clip& clip, int carrier) {
+  Transform move;
+  if (clip.frame_count() == 0) return move;
+  const GroundFrame place = ground_frame(clip, carrier, 0);
+  move.position = Vec3(-place.x, 0, -place.z);
+  return move;
+}
+
+Transform turned_about_start(const Clip& clip, int carrier, double angle) {
+  Transform move;
+  if (clip.frame_count() == 0 || angle == 0) return move;
+  const GroundFrame place = ground_frame(clip, carrier, 0);
+  const Vec3 centre(place.x, 0, place.z);
+  move.orientation = axis_rotation(Axis::y, angle);
+  move.position = centre - move.orientation * centre;
+  return move;
+}
+
+Transform facing_at_start(const Clip& clip, int carrier, double heading) {
+  if (clip.frame_count() == 0) return {};
+  return turned_about_start(clip, carrier,
+                            wrapped(heading - ground_frame(clip, carrier, 0).heading));
+}
+
+Transform onto_ground(const Clip& clip, std::span<const int> joints) {
+  Transform move;
+  float lowest = std::numeric_limits<float>::infinity();
+  for (int f = 0; f < clip.frame_count(); ++f) {
+    const auto positions = clip.frame_positions(f);
+    for (const int j : joints)
+      lowest = std::min(lowest, positions[static_cast<std::size_t>(j)].y());
+  }
+  if (std::isfinite(lowest)) move.position.y() = -static_cast<double>(lowest);
+  return move;
+}
+
+Status scale_clip(double factor, Clip& clip) {
+  if (!(factor > 0) || !std::isfinite(factor)) {
+    return Error("motion-scale", fmt::format("cannot scale a motion by {}", factor),
+                 "the factor must be a positive number");
+  }
+  const auto scaled = [&](const Vec3f& position) {
+    return Vec3f((factor * position.cast<double>()).cast<float>());
+  };
+  const bool fits =
+      std::ranges::all_of(clip.positions,
+                          [&](const Vec3f& position) { return scaled(position).allFinite(); }) &&
+      std::ranges::all_of(clip.skeleton.reference, [&](const Transform& joint) {
+        return (factor * joint.position).cast<float>().allFinite();
+      });
+  if (!fits) {
+    return Error("motion-scale",
+                 fmt::format("positions scaled by {} exceed the range of a float", factor));
+  }
+  for (Vec3f& position : clip.positions) position = scaled(position);
+  for (Transform& joint : clip.skeleton.reference) joint.position *= factor;
+  return {};
+}
+
+double reference_height(const Skeleton& skeleton) {
+  if (skeleton.empty()) return 0;
+  const auto [low, high] = std::ranges::minmax_element(
+      skeleton.reference, {}, [](const Transform& joint) { return joint.position.y(); });
+  return high->position.y() - low->position.y();
 }
 
 }  // namespace krok

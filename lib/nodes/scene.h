@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/material.h"
 
 // An imported scene: a tree of nodes with meshes, morph targets, skins, cameras and keyframe

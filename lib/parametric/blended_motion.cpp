@@ -8,9 +8,7 @@
 
 #include "core/numbers.h"
 #include "math/hermite.h"
-#include "pose/local_to_model.h"
-#include "pose/packed_pose.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 
 namespace krok::parametric {
 

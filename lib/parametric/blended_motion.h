@@ -3,10 +3,10 @@
 #include <span>
 #include <vector>
 
-#include "motion/retime.h"
+#include "motion/sample.h"
 #include "parametric/example_sums.h"
 #include "parametric/packed_examples.h"
-#include "pose/blend_pose.h"
+#include "pose/packed_pose.h"
 
 namespace krok::parametric {
 

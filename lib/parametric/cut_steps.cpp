@@ -10,12 +10,11 @@
 #include "core/numbers.h"
 #include "math/quaternion.h"
 #include "math/window.h"
-#include "motion/cut.h"
-#include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/mirror.h"
+#include "motion/sample.h"
 #include "parametric/find_steps_internal.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 namespace krok::parametric {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "pose/blend_pose.h"
 #include "pose/packed_pose.h"
 
 namespace krok::parametric {

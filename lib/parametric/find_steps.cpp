@@ -6,7 +6,7 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::parametric {
 

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "contacts/legs.h"
-#include "math/euler.h"
-#include "math/types.h"
+#include "math/quaternion.h"
 #include "math/window.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::parametric {
 

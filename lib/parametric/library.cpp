@@ -9,13 +9,11 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/mirror.h"
-#include "motion/place.h"
+#include "motion/travel.h"
 #include "parametric/measure.h"
 #include "pose/packed_pose.h"
-#include "scene/frame_blocks.h"
-#include "scene/frame_moment.h"
 
 namespace krok::parametric {
 

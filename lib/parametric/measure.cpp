@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "pose/packed_pose.h"
 
 namespace krok::parametric {

@@ -5,7 +5,6 @@
 
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "pose/packed_pose.h"
 
 namespace krok::parametric {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/text.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::parametric {
 

@@ -12,7 +12,7 @@
 #include "core/index.h"
 #include "math/dense_solve.h"
 #include "parametric/bounds.h"
-#include "parametric/left_out_internal.h"
+#include "parametric/leave_one_out.h"
 #include "roles/roles.h"
 
 namespace krok::parametric {

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <string_view>

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "parametric/left_out_internal.h"
+#include "parametric/leave_one_out.h"
 #include "parametric/thin_out.h"
 #include "rbf/weight_solver.h"
 

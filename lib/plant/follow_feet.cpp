@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "contacts/contacts.h"
-#include "contacts/hip_widths.h"
 #include "contacts/legs.h"
 #include "math/quaternion.h"
 #include "math/window.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "plant/foot_paths_internal.h"
 #include "plant/sole_follower_internal.h"
 

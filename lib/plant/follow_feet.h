@@ -43,7 +43,7 @@ struct FollowedFeet {
 //   ground between the feet.
 // - Each sole is oriented as the source's sole. In a stance the middles of both lie together, or
 //   back or ahead of that where a longer foot would stand against a step or over an edge, and
-//   beside it by beside_for_hips() (contacts/hip_widths.h) across the hips. A sole that rolls over
+//   beside it by beside_for_hips() (contacts/legs.h) across the hips. A sole that rolls over
 //   its heel or ball rolls about its own.
 // - In swing the foot moves from one place to the next as the source's foot does.
 // - Legs are solved by solve_two_bone(), the pelvis is lowered, smoothly, where they are too short.

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "plant/legs_internal.h"
 
 namespace krok::plant {

@@ -14,7 +14,7 @@
 #include "math/hermite.h"
 #include "math/quaternion.h"
 #include "plant/foot_paths_internal.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 namespace krok {
 

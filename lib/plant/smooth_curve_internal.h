@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Curves of least curvature through known values. Used by plant_feet().
 

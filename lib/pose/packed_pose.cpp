@@ -1,12 +1,13 @@
 #include "pose/packed_pose.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
+#include <cmath>
 
 #include "core/index.h"
 #include "math/quaternion.h"
 #include "pose/pose_kernels_internal.h"
-#include "scene/frame_moment.h"
 
 namespace krok {
 
@@ -110,6 +111,119 @@ void sample_pose(const PackedClip& clip, double time, std::span<PoseBlock> pose)
 
 void sample_pose_reference(const PackedClip& clip, double time, std::span<PoseBlock> pose) {
   sample_with(pose_detail::scalar_kernels(), clip, time, pose);
+}
+
+namespace {
+
+using pose_detail::Between;
+using pose_detail::Kernels;
+
+// Terms per kernel call, which fit on the stack.
+constexpr std::size_t kRound = 16;
+
+float blend_with(const Kernels& kernels, std::span<const BlendTerm> terms,
+                 std::span<const PoseBlock> reference, std::span<PoseBlock> pose) {
+  assert(reference.size() == pose.size());
+  std::array<Between, kRound> round;
+  std::size_t count = 0;
+  bool first = true;
+  for (const BlendTerm& term : terms) {
+    assert(static_cast<std::size_t>(term.clip->blocks_per_pose()) == pose.size());
+    if (term.weight == 0.0f) continue;
+    if (count == kRound) {
+      kernels.blend(round.data(), count, {first, false}, reference.data(), pose.size(),
+                    pose.data());
+      first = false;
+      count = 0;
+    }
+    round[count++] = pose_detail::between_frames(*term.clip, term.time, term.weight);
+  }
+  return std::sqrt(kernels.blend(round.data(), count, {first, true}, reference.data(), pose.size(),
+                                 pose.data()));
+}
+
+}  // namespace
+
+float blend_poses(std::span<const BlendTerm> terms, std::span<const PoseBlock> reference,
+                  std::span<PoseBlock> pose) {
+  return blend_with(pose_detail::best_kernels(), terms, reference, pose);
+}
+
+float blend_poses_reference(std::span<const BlendTerm> terms, std::span<const PoseBlock> reference,
+                            std::span<PoseBlock> pose) {
+  return blend_with(pose_detail::scalar_kernels(), terms, reference, pose);
+}
+
+void clear_sum(std::span<PoseBlock> sum) {
+  for (PoseBlock& block : sum) block = {};
+}
+
+void add_to_sum(std::span<const PoseBlock> pose, float weight, std::span<const PoseBlock> reference,
+                std::span<PoseBlock> sum) {
+  assert(pose.size() == sum.size() && reference.size() == sum.size());
+  pose_detail::best_kernels().add(pose.data(), weight, reference.data(), sum.size(), sum.data());
+}
+
+float finish_sum(std::span<const PoseBlock> reference, std::span<PoseBlock> sum) {
+  assert(reference.size() == sum.size());
+  return std::sqrt(pose_detail::best_kernels().blend(nullptr, 0, {false, true}, reference.data(),
+                                                     sum.size(), sum.data()));
+}
+
+namespace {
+
+using pose_detail::ModelJob;
+
+ModelJob make_job(const LocalPoses& local, std::size_t transforms) {
+  const std::size_t joints = local.parents.size();
+  const auto blocks = static_cast<std::size_t>(pose_blocks(static_cast<int>(joints)));
+  const std::size_t count = blocks == 0 ? 0 : local.poses.size() / blocks;
+  assert(local.poses.size() == count * blocks && transforms == count * joints);
+  assert(local.scratch.size() >= static_cast<std::size_t>(model_scratch(static_cast<int>(joints))));
+  (void)transforms;
+  ModelJob job{};
+  job.parents = local.parents.data();
+  job.joints = joints;
+  job.poses = local.poses.data();
+  job.count = count;
+  job.scratch = local.scratch.data();
+  return job;
+}
+
+ModelJob make_job(const LocalPoses& local, std::span<Vec3f> positions,
+                  std::span<Quatf> orientations) {
+  assert(positions.size() == orientations.size());
+  ModelJob job = make_job(local, positions.size());
+  if (job.count == 0) return job;
+  job.positions = positions.data()->data();
+  job.orientations = orientations.data()->coeffs().data();
+  return job;
+}
+
+ModelJob make_job(const LocalPoses& local, std::span<JointMatrix> joint_to_world) {
+  ModelJob job = make_job(local, joint_to_world.size());
+  job.matrices = joint_to_world.data();
+  return job;
+}
+
+}  // namespace
+
+void local_to_model(const LocalPoses& local, std::span<Vec3f> positions,
+                    std::span<Quatf> orientations) {
+  pose_detail::local_to_model_simd(make_job(local, positions, orientations));
+}
+
+void local_to_model(const LocalPoses& local, std::span<JointMatrix> joint_to_world) {
+  pose_detail::local_to_model_simd(make_job(local, joint_to_world));
+}
+
+void local_to_model_reference(const LocalPoses& local, std::span<Vec3f> positions,
+                              std::span<Quatf> orientations) {
+  pose_detail::local_to_model_scalar(make_job(local, positions, orientations));
+}
+
+void local_to_model_reference(const LocalPoses& local, std::span<JointMatrix> joint_to_world) {
+  pose_detail::local_to_model_scalar(make_job(local, joint_to_world));
 }
 
 }  // namespace krok

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "pose/local_to_model.h"
 #include "pose/packed_pose.h"
 
 // Shared by the scalar references and the SIMD kernels: plain pointers and numbers. No inline

@@ -11,7 +11,6 @@
 #include "math/dense_solve.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "roles/roles.h"
 
 namespace krok {
 

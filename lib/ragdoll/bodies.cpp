@@ -6,7 +6,7 @@
 #include "core/index.h"
 #include "ik/anatomical_limits.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "ragdoll/overlaps.h"
 
 namespace krok::ragdoll {

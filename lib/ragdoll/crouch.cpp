@@ -8,7 +8,7 @@
 #include "ik/anatomical_limits.h"
 #include "ik/goal_motion.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/sample.h"
 
 namespace krok::ragdoll {

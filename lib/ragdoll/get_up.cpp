@@ -9,15 +9,13 @@
 #include <numeric>
 
 #include "core/index.h"
-#include "math/euler.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"
 #include "motion/mirror.h"
-#include "motion/place.h"
 #include "motion/sample.h"
+#include "motion/travel.h"
 #include "ragdoll/crouch_internal.h"
 
 namespace krok::ragdoll {

@@ -6,7 +6,7 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "roles/body_frame.h"
 
 namespace krok::ragdoll {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
-#include "render/colour.h"
+#include "math/transform.h"
+#include "render/image.h"
 #include "render/texture.h"
 
 // What is rendered: a character at one time, in world space, metres.

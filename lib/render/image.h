@@ -6,13 +6,40 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
-#include "render/colour.h"
+#include "math/transform.h"
+
+namespace krok::render {
+
+// An 8-bit sRGB colour.
+struct Colour {
+  std::uint8_t red = 0, green = 0, blue = 0;
+
+  bool operator==(const Colour&) const = default;
+};
+
+// From 0xRRGGBB, such as 0x3d7fd9.
+constexpr Colour colour(std::uint32_t rgb) {
+  return {static_cast<std::uint8_t>(rgb >> 16 & 0xFF), static_cast<std::uint8_t>(rgb >> 8 & 0xFF),
+          static_cast<std::uint8_t>(rgb & 0xFF)};
+}
+
+// Interpolates linearly from a (0) to b (1); `share` is clamped.
+constexpr Colour mixed(Colour a, Colour b, double share) {
+  const double part = share > 0 ? (share < 1 ? share : 1.0) : 0.0;
+  const auto channel = [part](int from, int to) {
+    // Never negative. NOLINTNEXTLINE(bugprone-incorrect-roundings)
+    return static_cast<std::uint8_t>(from + (to - from) * part + 0.5);
+  };
+  return {channel(a.red, b.red), channel(a.green, b.green), channel(a.blue, b.blue)};
+}
+
+// sRGB to linear light and back, 0 to 1 per channel; values out of range are clamped. Source: IEC
+// 61966-2-1 (sRGB).
+Vec3f to_light(Colour colour);
+Colour to_colour(const Vec3f& light);
 
 // An image in memory and 2D drawing. Pixel (x, y) covers [x, x + 1] x [y, y + 1] with x to the
 // right and y down. Drawing is clipped to the image.
-
-namespace krok::render {
 
 struct Image {
   int width = 0, height = 0;

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "render/colour.h"
+#include "render/image.h"
 
 namespace krok::render {
 

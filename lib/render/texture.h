@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/material.h"
 
 // Textures on surfaces.

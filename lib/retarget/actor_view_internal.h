@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/index.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "retarget/joint_mapping.h"
 #include "retarget/pose_alignment.h"
 #include "roles/roles.h"
@@ -104,6 +104,8 @@ class ActorView {
 // whose roles are missing keep their place. Without `limbs` the body is only turned upright as a
 // whole. Where a motion begins with a T-pose, as some exporters have it, that is the stance.
 std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs);
+// The same from a reference pose that is a frame of a motion, at its place and above its ground.
+std::vector<Transform> build_stance_from_frame(const Clip& clip, const RoleMap& roles);
 // build_stance() looks at every so many of a take's frames.
 int step_in_take(int frames);
 

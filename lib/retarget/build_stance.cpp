@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/index.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "retarget/actor_view_internal.h"
 #include "retarget/pose_alignment.h"
@@ -49,19 +48,31 @@ class StanceBuilder {
     stand_up(limbs);
     if (!limbs) return std::move(pose_);
     turn_chest();
-    straighten(Limb{Role::left_collar, Role::left_upper_arm, Role::left_lower_arm, Role::left_hand,
-                    kLeft, -kUpwards},
-               Limb{Role::right_collar, Role::right_upper_arm, Role::right_lower_arm,
-                    Role::right_hand, -kLeft, kUpwards});
-    straighten(Limb{Role::root, Role::left_upper_leg, Role::left_lower_leg, Role::left_foot,
-                    -kUpwards, kLeft},
-               Limb{Role::root, Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
-                    -kUpwards, kLeft});
-    const std::vector<FootOnGround> on_ground = feet_on_ground();
-    flatten(Role::left_foot, on_ground);
-    flatten(Role::right_foot, on_ground);
-    bend_toes(on_ground);
+    straighten_limbs();
     level_head();
+    return std::move(pose_);
+  }
+
+  // From a reference pose that is a frame of a motion: bones have their lengths in it, but where
+  // trunk and head are turned is the frame's.
+  std::vector<Transform> build_from_frame() {
+    const int hips = roles_.joint(Role::hips);
+    const Vec3 from = place(hips);
+    const double ground = lowest();
+    is_frame_ = true;
+    stand_up(true);
+    const std::vector<int> path = trunk();
+    const int neck = roles_.joint(Role::neck);
+    for (std::size_t i = 0; i + 1 < path.size() && path[i] != neck; ++i) {
+      point(path[i], place(path[i + 1]) - place(path[i]), kUpwards, kForward);
+    }
+    turn_chest();
+    const bool by_axes = align_by_axes(path);
+    straighten_limbs();
+    if (!by_axes) level_head();
+    Vec3 moved = from - place(hips);
+    moved.y() = ground - lowest();
+    for (Transform& joint : pose_) joint.position += moved;
     return std::move(pose_);
   }
 
@@ -87,6 +98,57 @@ class StanceBuilder {
   }
 
  private:
+  void straighten_limbs() {
+    straighten(Limb{Role::left_collar, Role::left_upper_arm, Role::left_lower_arm, Role::left_hand,
+                    kLeft, -kUpwards},
+               Limb{Role::right_collar, Role::right_upper_arm, Role::right_lower_arm,
+                    Role::right_hand, -kLeft, kUpwards});
+    straighten(Limb{Role::root, Role::left_upper_leg, Role::left_lower_leg, Role::left_foot,
+                    -kUpwards, kLeft},
+               Limb{Role::root, Role::right_upper_leg, Role::right_lower_leg, Role::right_foot,
+                    -kUpwards, kLeft});
+    if (is_frame_) turn_feet_ahead();
+    const std::vector<FootOnGround> on_ground = feet_on_ground();
+    flatten(Role::left_foot, on_ground);
+    flatten(Role::right_foot, on_ground);
+    bend_toes(on_ground);
+  }
+
+  double lowest() const {
+    double least = HUGE_VAL;
+    for (const Transform& joint : pose_) least = std::min(least, joint.position.y());
+    return least;
+  }
+
+  // Rigs give the joints of trunk and head the same axes across the body and upwards: where hips
+  // and chest show them, those of a head that the frame has aside or bowed are known, too. Returns
+  // whether they are.
+  bool align_by_axes(const std::vector<int>& path) {
+    constexpr double kShown = 0.9, kNear = 0.3;
+    const int chest = roles_.joint(Role::chest), head = roles_.joint(Role::head);
+    if (path.empty() || chest < 0 || head < 0) return false;
+    // The axis of the hips that is along a direction, if that of the chest is, too.
+    const auto shared_axis = [&](const Vec3& along) {
+      const Vec3 hips = pose_[at(path.front())].orientation.conjugate() * along;
+      Eigen::Index axis = 0;
+      hips.cwiseAbs().maxCoeff(&axis);
+      const Vec3 unit = Vec3::Unit(axis) * std::copysign(1.0, hips[axis]);
+      const bool shown =
+          hips.dot(unit) > kShown && (pose_[at(chest)].orientation * unit).dot(along) > kShown;
+      return shown ? unit : Vec3(Vec3::Zero());
+    };
+    const Vec3 across = shared_axis(kLeft), upright = shared_axis(kUpwards);
+    const auto align = [&](int joint, const Vec3& axis, const Vec3& along) {
+      const Vec3 now = pose_[at(joint)].orientation * axis;
+      if (!(now.dot(along) > kNear)) return false;
+      turn(joint, shortest_arc(now, along));
+      return true;
+    };
+    if (across.isZero()) return false;
+    for (const int joint : path) align(joint, across, kLeft);
+    return !upright.isZero() && align(head, upright, kUpwards);
+  }
+
   Vec3 place(int joint) const { return pose_[at(joint)].position; }
   Vec3 between(Role from, Role to) const {
     const int a = roles_.joint(from), b = roles_.joint(to);
@@ -286,7 +348,7 @@ class StanceBuilder {
 
   // Arms may hang or be held anywhere but folded or up, as long as the shoulders are aside.
   bool is_arm_of_a_stance(const Limb& limb) const {
-    if (limb.root == Role::root) return false;
+    if (limb.root == Role::root || is_frame_) return false;
     const auto bone = [&](Role from, Role to) {
       return Vec3(between(from, to).stableNormalized());
     };
@@ -379,6 +441,33 @@ class StanceBuilder {
     Role foot;
   };
 
+  // Legs of a frame are turned: both feet point outwards by as much, and by little. Rigs have an
+  // axis of a foot level with its sole, across it.
+  void turn_feet_ahead() {
+    constexpr double kMaxOut = 10 * kRadiansPerDegree, kAcross = 0.8;
+    std::array<Vec3, 2> ways = {Vec3::Zero(), Vec3::Zero()};
+    double out = 0;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const int foot = roles_.joint(kLegRoles[side].foot);
+      const int front = foot_front(clip_.skeleton, roles_, kLegRoles[side].foot);
+      if (foot < 0 || front < 0) return;
+      ways[side] = place(front) - place(foot);
+      out += (side == 0 ? 0.5 : -0.5) * std::atan2(ways[side].x(), ways[side].z());
+    }
+    out = std::clamp(out, 0.0, kMaxOut);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Vec3 wanted = std::cos(out) * kForward + (side == 0 ? 1 : -1) * std::sin(out) * kLeft;
+      const int foot = roles_.joint(kLegRoles[side].foot);
+      roll(foot, kUpwards, ways[side], wanted);
+      const Vec3 across = kUpwards.cross(wanted);
+      const Vec3 local = pose_[at(foot)].orientation.conjugate() * across;
+      Eigen::Index axis = 0;
+      if (local.cwiseAbs().maxCoeff(&axis) < kAcross) continue;
+      const Vec3 unit = Vec3::Unit(axis) * std::copysign(1.0, local[axis]);
+      roll(foot, wanted, pose_[at(foot)].orientation * unit, across);
+    }
+  }
+
   // Turns a foot about the ankle's hinge to the pitch that feet have on the ground.
   void flatten(Role role, const std::vector<FootOnGround>& on_ground) {
     const int foot = roles_.joint(role), front = foot_front(clip_.skeleton, roles_, role);
@@ -458,6 +547,7 @@ class StanceBuilder {
   const RoleMap& roles_;
   std::vector<Transform> pose_;
   int step_;
+  bool is_frame_ = false;  // the reference pose is one of a motion
 };
 
 }  // namespace
@@ -469,6 +559,10 @@ int step_in_take(int frames) {
 
 std::vector<Transform> build_stance(const Clip& clip, const RoleMap& roles, bool limbs) {
   return StanceBuilder(clip, roles).build(limbs);
+}
+
+std::vector<Transform> build_stance_from_frame(const Clip& clip, const RoleMap& roles) {
+  return StanceBuilder(clip, roles).build_from_frame();
 }
 
 bool begins_in_a_stance(const Clip& clip, const RoleMap& roles) {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "contacts/hip_widths.h"
+#include "contacts/legs.h"
 #include "core/index.h"
 #include "ik/soft_reach.h"
 #include "math/window.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "contacts/sole_points.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "roles/roles.h"
 #include "scene/model.h"
 

@@ -57,6 +57,7 @@ class FrameTransfer {
         plan_.legs.empty() ? std::vector<double>() : find_drops(softness);
     std::vector<std::array<LegPlacement::Outcome, 2>> outcomes(frames);
     std::vector<std::array<LegPlacement::Sunk, 2>> sunk(frames);
+    std::vector<LegPlacement::Sunk> sunk_above(frames);
     for_frames([&](std::size_t f, std::span<const Transform> from, std::span<Transform> pose) {
       const int frame = static_cast<int>(f);
       if (!shifts_.empty()) shift_body(shifts_[f], pose);
@@ -76,10 +77,17 @@ class FrameTransfer {
       for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
         sunk[f][i] = plan_.legs[i].placement.sunk(from, pose);
       }
+      sunk_above[f] = sunk_of_hands_and_head(from, pose);
       clip.set_pose(frame, pose);
     });
     for (std::size_t i = 0; i < plan_.legs.size(); ++i) {
       add(outcomes, sunk, i, *(plan_.legs[i].is_left ? report.left_foot : report.right_foot));
+    }
+    for (int f = run_.kept_begin; f < run_.kept_end; ++f) {
+      if (sunk_above[at(f)].depth <= report.largest_depth) continue;
+      report.largest_depth = sunk_above[at(f)].depth;
+      report.largest_depth_time = (run_.first + f) / source_.rate;
+      report.largest_depth_joint = sunk_above[at(f)].joint;
     }
     for (const double drop : kept(drops)) report.largest_drop = std::max(report.largest_drop, drop);
     if (touches_ != nullptr) {
@@ -237,6 +245,24 @@ class FrameTransfer {
       angles = softened_if_any(std::move(angles), softening_reach(source_.rate) / 2);
     }
     return bends;
+  }
+
+  // As LegPlacement::sunk(). No limb is moved for a hand that passes by, so longer arms go deep.
+  LegPlacement::Sunk sunk_of_hands_and_head(std::span<const Transform> source_pose,
+                                            std::span<const Transform> pose) const {
+    LegPlacement::Sunk sunk;
+    for (const AboveFloor& part : plan_.above_floor) {
+      double allowed = 0;
+      for (const int joint : part.source) {
+        const double height = source_pose[at(joint)].position.y() - plan_.source_floor;
+        allowed = std::min(allowed, plan_.scale * height);
+      }
+      for (const int joint : part.target) {
+        const double depth = allowed - (pose[at(joint)].position.y() - plan_.floor);
+        if (depth > sunk.depth) sunk = {depth, joint};
+      }
+    }
+    return sunk;
   }
 
   FootStance stance_of(std::size_t leg, std::size_t frame) const {

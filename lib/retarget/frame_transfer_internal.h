@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "retarget/foot_placement.h"
 #include "retarget/joint_mapping.h"
 #include "retarget/retarget.h"
 #include "retarget/touch_keeping.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 #include "scene/skeleton.h"
 
 namespace krok::retarget {
@@ -18,6 +18,11 @@ struct PlacedLeg {
   LegPlacement placement;
   LegPlacement::Stances stances;
   bool is_left = false;
+};
+
+// The joints of a part that is not moved for the floor, in both actors.
+struct AboveFloor {
+  std::vector<int> source, target;
 };
 
 // How the frames of a motion are transferred; the same for all of them.
@@ -29,13 +34,15 @@ struct TransferPlan {
   int anchor = 0;                // the target joint that carries the root motion
   std::array<int, 2> source_sides = {0, 0};  // joints whose midpoint is transferred
   std::array<int, 2> target_sides = {0, 0};
-  double scale = 1;             // lengths of the target over those of the source
-  double rise = 0;              // metres the target's hips are raised for the height of its ankles
-  double floor = 0;             // height of the floor in the result, metres
-  std::vector<PlacedLeg> legs;  // empty with Feet::free
-  GroundStays stays;            // of all frames
-  std::vector<KeptContact> kept;  // likewise
-  double leg_length = 0;          // metres, of the target; unused without legs and touches
+  double scale = 1;         // lengths of the target over those of the source
+  double rise = 0;          // metres the target's hips are raised for the height of its ankles
+  double floor = 0;         // height of the floor in the result, metres
+  double source_floor = 0;  // likewise in the source
+  std::vector<AboveFloor> above_floor;  // hands and head; by roles alone
+  std::vector<PlacedLeg> legs;          // empty with Feet::free
+  GroundStays stays;                    // of all frames
+  std::vector<KeptContact> kept;        // likewise
+  double leg_length = 0;                // metres, of the target; unused without legs and touches
 };
 
 // Notes in `touches`, which are those of `run`, where the target is by rotations alone, as far as

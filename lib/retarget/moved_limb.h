@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "retarget/pose_alignment.h"
 #include "scene/skeleton.h"
 

@@ -67,6 +67,21 @@ int joints_without_ends(const Skeleton& skeleton) {
   return static_cast<int>(std::count(skeleton.end_sites.begin(), skeleton.end_sites.end(), 0));
 }
 
+// The joint of a hand or head and those of its fingers and ends: what it holds or wears is not
+// counted.
+std::vector<int> with_its_parts(const Skeleton& skeleton, const RoleMap& roles, int joint) {
+  std::vector<int> parts;
+  for (const int j : joints_below(skeleton, joint)) {
+    const Role role = roles.roles[at(j)];
+    const bool is_part =
+        skeleton.end_sites[at(j)] != 0 || (role != Role::none && role != Role::helper);
+    if (j == joint || (is_part && std::ranges::count(parts, skeleton.parents[at(j)]) > 0)) {
+      parts.push_back(j);
+    }
+  }
+  return parts;
+}
+
 // The first mapped joint, which carries the root motion.
 int first_mapped(const JointMapping& mapping) {
   for (std::size_t k = 0; k < mapping.size(); ++k) {
@@ -123,10 +138,10 @@ class Transfer {
     take_hip_joints_from_motion();
     for (const Transform& joint : rest_) plan_.rest_back.push_back(joint.orientation.conjugate());
     plan_.scale = report_->path_scale = report_->scale;
-    if (by_roles) {
-      if (Status status = prepare_feet(feet); !status) {
-        return status.error();
-      }
+    if (!by_roles) {
+      keep_lowest_on_ground();
+    } else if (Status status = prepare_feet(feet); !status) {
+      return status.error();
     }
     note_joints();
     RetargetedFrames result{
@@ -336,6 +351,13 @@ class Transfer {
     if (has_soles) target_floor_.sole = *sole;
     target_floor_.motion = report_->scale * source_floor_.motion;
     report_->floor = plan_.floor = target_floor_.motion;
+    plan_.source_floor = source_floor_.motion;
+    for (const Role role : {Role::left_hand, Role::right_hand, Role::head}) {
+      const int of_source = source_roles_.joint(role), of_target = target_roles_.joint(role);
+      if (of_source < 0 || of_target < 0) continue;
+      plan_.above_floor.push_back({with_its_parts(source_.skeleton, source_roles_, of_source),
+                                   with_its_parts(target_, target_roles_, of_target)});
+    }
     for (const Role foot : {Role::left_foot, Role::right_foot}) {
       plan_.rise += 0.5 * (ankle_over_floor(onto(), foot, target_floor_) -
                            report_->scale * ankle_over_floor(from(), foot, source_floor_));
@@ -434,6 +456,28 @@ class Transfer {
                           plan_.mapping[at(plan_.anchor)].first};
     plan_.target_sides = {plan_.anchor, plan_.anchor};
     return {};
+  }
+
+  // Animals whose legs are shorter than their bones as a whole do not hang in the air by the legs
+  // of the source: in the reference pose the lowest mapped joints of both are equally high.
+  void keep_lowest_on_ground() {
+    std::vector<Transform> pose(target_rest_);
+    double lowest = 0, source_lowest = 0;  // above the anchor, metres
+    for (int k = 0; k < target_.joint_count(); ++k) {
+      const int parent = target_.parents[at(k)], from = plan_.mapping[at(k)].first;
+      if (parent >= 0) pose[at(k)] = pose[at(parent)] * plan_.local[at(k)];
+      if (from < 0) continue;
+      pose[at(k)].orientation = plan_.aligned[at(k)];
+      if (!carries(target_, plan_.anchor, k)) continue;
+      const auto above = [](const Transform& joint, const Transform& anchor) {
+        return joint.position.y() - anchor.position.y();
+      };
+      lowest = std::min(lowest, above(pose[at(k)], pose[at(plan_.anchor)]));
+      source_lowest =
+          std::min(source_lowest, above(rest_[at(from)], rest_[at(plan_.source_sides[0])]));
+    }
+    plan_.rise = plan_.scale * source_lowest - lowest;
+    plan_.leg_length = -lowest;
   }
 
   void note_joints() {

@@ -8,10 +8,10 @@
 
 #include "core/progress.h"
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "retarget/foot_points.h"
 #include "roles/roles.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 #include "scene/skeleton.h"
 
 // Retargeting: transfers a motion from one skeleton to another.
@@ -20,7 +20,8 @@
 // joint axes of the two skeletons do not matter. Before that the target's reference pose is aligned
 // with the source's: limbs point the same way, hips and chest face the same way. Between chains
 // with different numbers of joints (spine, neck), rotations are spread along their length. The hips
-// move as the source's, scaled by the length of the legs.
+// move as the source's, scaled by the length of the legs. Skeletons mapped by names are raised or
+// lowered so that their lowest mapped joints are equally high in the reference pose.
 
 namespace krok::retarget {
 
@@ -95,6 +96,7 @@ struct FootReport {
 // A stretch of time in which the source touches something, and what became of it.
 struct ContactReport {
   std::string part;           // "left hand", "left foot"
+  int joint = -1;             // of the target, of that part
   std::string on;             // "ground", "right hand", "left thigh"
   double start = 0, end = 0;  // seconds
   // On the ground: the mean horizontal speed of the part in the result and in the source, metres
@@ -124,6 +126,11 @@ struct Report {
   double largest_turn = 0;   // radians the trunk was turned for that
   double largest_drop = 0;   // metres the hips were lowered so that legs reach the floor
   std::optional<FootReport> left_foot, right_foot;  // with Feet::keep
+  // By roles: the joint of hands and head that goes deepest into the floor, metres deeper than any
+  // of the source's hand or head there, scaled. Joint of the target; -1 if none does.
+  double largest_depth = 0;
+  double largest_depth_time = 0;  // seconds
+  int largest_depth_joint = -1;
 };
 
 struct Retargeted {

@@ -66,10 +66,11 @@ std::vector<SharedBone> shared_bones(const Skeleton& source, const Skeleton& tar
   return bones;
 }
 
+// Fingers and what has no role, too: files that hold a pose have moved them in it.
 bool may_move(Role role) {
-  return role == Role::spine || role == Role::chest || role == Role::left_collar ||
-         role == Role::right_collar || role == Role::left_upper_leg ||
-         role == Role::right_upper_leg;
+  return role == Role::none || is_role_of_many(role) || role == Role::spine ||
+         role == Role::chest || role == Role::left_collar || role == Role::right_collar ||
+         role == Role::left_upper_leg || role == Role::right_upper_leg;
 }
 
 // Axes that are other ones about a bone do not show in its offset: reference poses are turned about
@@ -89,7 +90,16 @@ std::optional<SameSkeleton> with_bones_of_person(const std::vector<SharedBone>& 
   for (const SharedBone& bone : bones) {
     const double moved = may_move(roles.roles[at(bone.child)]) ? kMovedBone * bone.to.norm() : 0;
     if ((same.scale * bone.from - bone.to).norm() > tolerance + moved) return std::nullopt;
-    if (bone.joint > roles.joint(Role::hips) && std::abs(bone.twist) > kMaxTwist) {
+    // A forearm that is turned so alone is one that a pose turns.
+    const Role role = roles.roles[at(bone.joint)];
+    const Role other = role == Role::left_lower_arm    ? Role::right_lower_arm
+                       : role == Role::right_lower_arm ? Role::left_lower_arm
+                                                       : role;
+    const auto is_turned = [&](const SharedBone& one) {
+      return roles.roles[at(one.joint)] == other && std::abs(one.twist) > kMaxTwist;
+    };
+    if (bone.joint > roles.joint(Role::hips) && std::abs(bone.twist) > kMaxTwist &&
+        std::ranges::any_of(bones, is_turned)) {
       return std::nullopt;
     }
   }
@@ -145,6 +155,7 @@ std::optional<SameSkeleton> same_person(const Skeleton& source, const RoleMap& s
   if (!source_roles.humanoid || !target_roles.humanoid) return std::nullopt;
   if (!source_roles.given.empty() || !target_roles.given.empty()) return std::nullopt;
   const int hips = target_roles.joint(Role::hips);
+  const bool alike = source.names == target.names && source.parents == target.parents;
   SameSkeleton same;
   for (int k = 0; k < target.joint_count(); ++k) {
     const Role role = target_roles.roles[at(k)];
@@ -156,7 +167,9 @@ std::optional<SameSkeleton> same_person(const Skeleton& source, const RoleMap& s
                        carries(source, from, source_roles.joint(Role::hips));
     if (!below && !above) from = -1;
     const bool is_of_body = role != Role::none && role != Role::root && !is_role_of_many(role);
-    if (is_of_body && (from < 0 || source_roles.roles[at(from)] != role)) return std::nullopt;
+    if (is_of_body && (from < 0 || (!alike && source_roles.roles[at(from)] != role))) {
+      return std::nullopt;
+    }
   }
   const std::vector<SharedBone> bones = shared_bones(source, target, same);
   return with_bones_of_person(bones, target_roles, std::move(same));

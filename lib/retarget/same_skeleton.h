@@ -34,9 +34,10 @@ std::optional<SameSkeleton> same_body(const Skeleton& source, const RoleMap& sou
 // cameras, props, fingers. All the target's joints with a role of a single joint are in the source
 // by the same name, below the same parent (the hips, and what carries them, below any). Offsets
 // agree within 0.5 % of the mean bone; those of spine, collars and thighs, which some rigs (Biped)
-// move in their parents, may be off by a third of the bone. Below the hips no reference rotation is
-// turned by more than 75 degrees about a bone against the other's. Empty if not, and where the
-// user gave roles.
+// move in their parents, of fingers and of joints without a role may be off by a third of the bone.
+// Below the hips no reference rotation is turned by more than 75 degrees about a bone against the
+// other's, but for one forearm. Where names and parents are all the same, roles may differ, as
+// those found by a pose that the file happens to show. Empty if not, and where the user gave roles.
 std::optional<SameSkeleton> same_person(const Skeleton& source, const RoleMap& source_roles,
                                         const Skeleton& target, const RoleMap& target_roles);
 

@@ -8,7 +8,7 @@
 
 #include "retarget/actor_view_internal.h"
 #include "roles/roles.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 
 namespace krok::retarget {
 
@@ -63,6 +63,26 @@ class Posture {
     const Vec3 aside = bone(Role::right_upper_leg, Role::left_upper_leg);
     for (Vec3& thigh : thighs) thigh -= aside.dot(thigh) * aside;
     return angle_of(thighs[0], thighs[1]) > kThighsApart || largest - least > kKneesApart;
+  }
+
+  // Whether limbs of an upright body differ between the sides.
+  bool is_lopsided() const {
+    constexpr double kApart = 20 * kRadiansPerDegree;
+    constexpr std::array<std::array<Role, 4>, 4> kBones = {{
+        {Role::left_upper_leg, Role::left_lower_leg, Role::right_upper_leg, Role::right_lower_leg},
+        {Role::left_lower_leg, Role::left_foot, Role::right_lower_leg, Role::right_foot},
+        {Role::left_upper_arm, Role::left_lower_arm, Role::right_upper_arm, Role::right_lower_arm},
+        {Role::left_lower_arm, Role::left_hand, Role::right_lower_arm, Role::right_hand},
+    }};
+    const Vec3 aside = (bone(Role::right_upper_leg, Role::left_upper_leg) +
+                        bone(Role::right_upper_arm, Role::left_upper_arm))
+                           .stableNormalized();
+    if (trunk().y() < 0.5) return false;
+    return std::ranges::any_of(kBones, [&](const std::array<Role, 4>& ends) {
+      const Vec3 left = bone(ends[0], ends[1]), right = bone(ends[2], ends[3]);
+      return !left.isZero() && !right.isZero() &&
+             angle_of(left - 2 * aside.dot(left) * aside, right) > kApart;
+    });
   }
 
   // Whether trunk and legs lie along one line, whichever way it points.
@@ -121,6 +141,14 @@ Result<Skeleton> neutral_skeleton(const FrameSource& source, const RoleMap& role
   const auto looked_at = frames_looked_at(source);
   if (!looked_at) return looked_at.error();
   return neutral_skeleton(*looked_at, roles);
+}
+
+bool is_frame_of_motion(const Skeleton& skeleton, const RoleMap& roles) {
+  return roles.humanoid && Posture({skeleton, roles, skeleton.reference}).is_lopsided();
+}
+
+std::vector<Transform> stance_from_frame(const Clip& clip, const RoleMap& roles) {
+  return build_stance_from_frame(clip, roles);
 }
 
 Result<Clip> frames_looked_at(const FrameSource& source) {

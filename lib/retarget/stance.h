@@ -40,6 +40,14 @@ Skeleton neutral_skeleton(const Clip& clip, const RoleMap& roles);
 // The same of frames that are produced on demand.
 Result<Skeleton> neutral_skeleton(const FrameSource& source, const RoleMap& roles);
 
+// Whether a humanoid's reference pose is upright but not the same on both sides, by over 20 degrees
+// of a bone of the limbs: no T- or A-pose but a frame of a motion, as files without a mesh have.
+bool is_frame_of_motion(const Skeleton& skeleton, const RoleMap& roles);
+
+// A T-pose for a clip whose reference pose is such a frame, shape [joints]: facing +Z, with the
+// frame's bones, hips and ground.
+std::vector<Transform> stance_from_frame(const Clip& clip, const RoleMap& roles);
+
 // The frames of a motion, at most 2000, that find_stance() and neutral_skeleton() look at: they
 // give the same for these. Errors are those of the source.
 Result<Clip> frames_looked_at(const FrameSource& source);

@@ -34,6 +34,7 @@ constexpr std::array<GroundLimits, kBodyParts> kGroundLimits = {
 constexpr double kHandsNear = 0.15, kHandsFar = 0.4;  // leg lengths between palms
 constexpr double kSlowOnBody = 0.25;                  // metres per second
 constexpr double kLongOnBody = 0.2;                   // seconds
+constexpr double kBeyondEnd = 4;  // times what a palm is beyond a bone's end counts as distance
 
 BodyPart other_side(BodyPart left, std::size_t side) {
   return static_cast<BodyPart>(static_cast<std::size_t>(left) + side);
@@ -207,7 +208,9 @@ void TouchKeeping::find_on_body(const Clip& clip, const Actor& source, const Act
       for (std::size_t f = 0; f < frames; ++f) {
         const BesideLine beside = beside_line(palms[side][f], from[f], to[f]);
         off[f] = palms[side][f] - (from[f] + beside.along * (to[f] - from[f]));
-        distance[f] = off[f].norm();
+        const double height = (palms[side][f] - from[f]).dot((to[f] - from[f]).stableNormalized());
+        const double above = bone.begins * (to[f] - from[f]).norm() - height;
+        distance[f] = off[f].norm() + kBeyondEnd * std::max(0.0, above);
         // The palm's place along the bone counts as well as the way to it.
         off[f] += beside.along * (to[f] - from[f]).norm() * Vec3::UnitY();
       }
@@ -528,6 +531,7 @@ std::vector<ContactReport> TouchKeeping::report(const FrameRun& run,
         way += flat(places[f] - places[f - 1]).norm();
         source_way += flat(from[f] - from[f - 1]).norm();
       }
+      report.joint = point.target.joint;
       const double seconds = report.end - report.start;
       if (seconds > 0) report.slide = way / seconds, report.source_slide = source_way / seconds;
     });

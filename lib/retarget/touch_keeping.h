@@ -9,7 +9,7 @@
 #include "retarget/moved_limb.h"
 #include "retarget/retarget.h"
 #include "retarget/touches.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 #include "scene/motion_keys.h"
 
 // Keeps what an actor touches: goals for hands, elbows, knees and feet of the target, and the shift

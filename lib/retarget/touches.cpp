@@ -136,8 +136,12 @@ std::vector<BodyBone> body_bones(const Actor& source, const Actor& target) {
   // Radii of a person of 1.75 m with some air: thigh 9 cm, shank 6, arm 5, head and trunk 13 to 15.
   add("trunk", Role::hips, Role::neck, 0.17);
   add("head", Role::neck, Role::head, 0.17);
-  add("left thigh", Role::left_upper_leg, Role::left_lower_leg, 0.12);
-  add("right thigh", Role::right_upper_leg, Role::right_lower_leg, 0.12);
+  for (const bool is_left : {true, false}) {
+    const LegRoles& leg = kLegRoles[is_left ? 0 : 1];
+    const std::size_t before = bones.size();
+    add(is_left ? "left thigh" : "right thigh", leg.upper, leg.lower, 0.12);
+    if (bones.size() > before) bones.back().begins = 0.05;
+  }
   add("left shank", Role::left_lower_leg, Role::left_foot, 0.09);
   add("right shank", Role::right_lower_leg, Role::right_foot, 0.09);
   add("left upper arm", Role::left_upper_arm, Role::left_lower_arm, 0.09, true);

@@ -72,6 +72,9 @@ struct BodyBone {
   int onto_from = -1, onto_to = -1;  // of the target
   double radius = 0;                 // in leg lengths, within which a palm touches
   std::optional<bool> is_left;       // arms: whose
+  // Fraction of the bone above which a palm is beside the pelvis, as those of runners with bent
+  // arms, which other proportions would pull down to the thigh.
+  double begins = -1e9;
 };
 std::vector<BodyBone> body_bones(const Actor& source, const Actor& target);
 

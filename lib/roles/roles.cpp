@@ -1,7 +1,6 @@
 #include "roles/roles.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "core/index.h"

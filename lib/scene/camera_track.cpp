@@ -1,11 +1,10 @@
 #include "scene/camera_track.h"
 #include "math/quaternion.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 #include "scene/skeleton.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace krok {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/encoded_image.h"
 
 namespace krok {

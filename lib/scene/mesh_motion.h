@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 // Animated meshes as one whole shape per frame: the result of skinning and morphing, and the
 // content of point caches and baked files. Triangles, texture coordinates and parts come from a

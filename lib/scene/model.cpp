@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 #include <algorithm>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
-
-#include "scene/skeleton.h"
 
 namespace krok {
 

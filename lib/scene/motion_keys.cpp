@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "scene/skeleton.h"
-
 namespace krok {
 namespace {
 

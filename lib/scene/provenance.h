@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok {
 

@@ -1,7 +1,5 @@
 #include "scene/scene.h"
 
-#include "core/index.h"
-
 namespace krok {
 
 Skeleton skeleton_of(const Scene& scene) {

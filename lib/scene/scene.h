@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "math/transform.h"
-#include "math/types.h"
 #include "scene/material.h"
 #include "scene/skeleton.h"
 

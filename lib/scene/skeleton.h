@@ -8,7 +8,6 @@
 
 #include "core/result.h"
 #include "math/transform.h"
-#include "math/types.h"
 
 namespace krok {
 

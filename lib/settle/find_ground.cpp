@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "math/hermite.h"
 #include "math/window.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 #include "settle/settler_internal.h"
 
 namespace krok::settling {

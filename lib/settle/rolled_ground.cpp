@@ -1,4 +1,4 @@
-#include "settle/rolled_ground_internal.h"
+#include "settle/settler_internal.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,10 +9,8 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
-#include "ragdoll/bodies.h"
+#include "motion/hips_root.h"
 #include "retarget/stance.h"
-#include "scene/frame_blocks.h"
 #include "settle/settler_internal.h"
 
 namespace krok {

@@ -12,17 +12,92 @@
 #include "core/index.h"
 #include "motion/hips_root.h"
 #include "motion/local_motion.h"
+#include "ragdoll/bodies.h"
 #include "retarget/touches.h"
 #include "scene/frame_source.h"
-#include "settle/rolled_ground_internal.h"
 #include "settle/settle.h"
-#include "settle/smooth_system_internal.h"
-#include "settle/support_points_internal.h"
-
-// The steps of settle(): what touches (find_ground.cpp), where it belongs (set_targets.cpp), and
-// the smoothest motion that brings it there (solve.cpp).
+#include "terrain/terrain.h"
 
 namespace krok::settling {
+
+// Least squares for a step of values over time, [frames][size], whose second differences count as
+// errors, too: normal equations of a block for each frame, tied to the two frames before.
+class SmoothSystem {
+ public:
+  SmoothSystem(int frames, Eigen::Index size);
+
+  // The equations of a frame, to which errors of its own are added: J^T J and J^T error.
+  Eigen::MatrixXd& matrix(int frame) { return matrix_[static_cast<std::size_t>(frame)]; }
+  Eigen::VectorXd& right(int frame) { return right_[static_cast<std::size_t>(frame)]; }
+
+  void clear();
+
+  // The step of each frame, [frames], from `values` [before + frames], of which the first `before`
+  // (0 to 2) stay. `bend` is the weight of squared second differences, [size]. Solved by a block
+  // Cholesky decomposition in time linear in the frames. Equations of frames must leave nothing
+  // open.
+  const std::vector<Eigen::VectorXd>& solve(std::span<const Eigen::VectorXd> values, int before,
+                                            const Eigen::VectorXd& bend);
+
+ private:
+  std::vector<Eigen::MatrixXd> matrix_, one_before_, two_before_;
+  std::vector<Eigen::VectorXd> right_;
+  Eigen::Index size_;
+};
+
+// What of a body can touch the ground, as small spheres.
+
+struct SupportPoint {
+  int body = 0;
+  Vec3 centre = Vec3::Zero();  // metres, in the frame of the body's joint
+  double radius = 0;
+};
+
+// Of each body, in order: along capsules and over the sides of boxes; with a model its vertices
+// that are outermost in 80 directions.
+std::vector<SupportPoint> support_points(const std::vector<ragdoll::Body>& bodies,
+                                         const Model* model);
+
+// The ground at a place (world): the highest surface up to a step above it, or else the highest.
+std::optional<GroundPoint> surface_at(const Terrain& ground, const Vec3& place);
+
+// How far a sphere (world) is above the ground, metres, negative if it is in it; infinite where
+// there is no ground.
+double clearance(const Terrain& ground, const Vec3& centre, double radius);
+
+// The ground as a ball (a paraboloid) of 1.5 m radius rolls over it: what lies across stairs rests
+// on a ramp over the edges of the steps (morphological closing). Nowhere below the ground.
+class RolledGround final : public Terrain {
+ public:
+  // Over a rectangle on the ground (x, z); beyond it the ground is as it is. `ground` must outlive
+  // this.
+  RolledGround(const Terrain& ground, const Vec2& low, const Vec2& high, int jobs = 0);
+
+  // Whether there are steps: heights that differ by more than 1.25 of the way from one place to the
+  // next (51 degrees).
+  bool has_steps() const { return has_steps_; }
+
+  std::optional<GroundPoint> at(double x, double z, double below) const override;
+
+ private:
+  void find_heights(const Vec2& extent, double size);
+  void spread(std::span<const float> below, float sign);
+  float cell(int column, int row) const {
+    return heights_[static_cast<std::size_t>(row * columns_ + column)];
+  }
+  double height(double column, double row) const;  // NaN where there is none
+
+  const Terrain& ground_;
+  int jobs_;
+  Vec2 low_;
+  double size_ = 0;  // of a cell, metres
+  int columns_ = 0, rows_ = 0;
+  std::vector<float> heights_;  // [rows x columns], NaN where there is no ground
+  bool has_steps_ = false;
+};
+
+// The steps of settle(): what touches (find_ground.cpp), where it belongs (support_points.cpp), and
+// the smoothest motion that brings it there (solve.cpp).
 
 inline constexpr double kTolerated = 0.005;  // metres
 // Of a person of 1.75 m, metres: parts touch below the one, and are free above the other.

@@ -2,13 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <unordered_map>
+#include <vector>
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "scene/model.h"
+#include "math/quaternion.h"
+#include "scene/mesh_volume.h"
 
 namespace krok {
 
@@ -208,6 +214,147 @@ Result<Diagnostics> reference_differences(const Skeleton& model, const FrameSour
     return Status();
   });
   return status ? Result(differences.result()) : status.error();
+}
+
+namespace {
+
+constexpr double kInside = 0.25;      // of the winding number
+constexpr double kShortBone = 0.02;   // of the extent
+constexpr double kSuspicious = 0.05;  // of the length of all bones
+constexpr double kMost = 0.75;
+
+struct Surface {
+  std::vector<Vec3> positions;
+  const std::vector<std::array<std::uint32_t, 3>>& triangles;
+
+  double winding_number(const Vec3& at) const {
+    double sum = 0;
+    for (const auto& triangle : triangles) {
+      const Vec3 a = positions[triangle[0]] - at, b = positions[triangle[1]] - at,
+                 c = positions[triangle[2]] - at;
+      const Vec3 middle = (a + b + c) / 3, area = 0.5 * (b - a).cross(c - a);
+      const double squared = middle.squaredNorm();
+      if (squared > 16 * area.norm()) {  // far enough to be a dipole
+        sum += area.dot(middle) / (squared * std::sqrt(squared));
+        continue;
+      }
+      // Solid angle: Van Oosterom, Strackee 1983.
+      const double x = a.norm(), y = b.norm(), z = c.norm();
+      sum +=
+          2 * std::atan2(a.dot(b.cross(c)), x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y);
+    }
+    return sum / (4 * kPi);
+  }
+
+  bool is_outside(const Vec3& from, const Vec3& to) const {
+    return std::ranges::all_of(std::initializer_list<double>{0.5, 0.25, 0.75}, [&](double share) {
+      return std::abs(winding_number(from + share * (to - from))) < kInside;
+    });
+  }
+};
+
+}  // namespace
+
+Diagnostics reference_pose_faults(const Model& model) {
+  const Skeleton& skeleton = model.skeleton;
+  std::vector<double> moved(skeleton.names.size());  // weights of each joint
+  for (std::size_t k = 0; k < model.influence_weights.size(); ++k) {
+    moved[model.influence_joints[k]] += static_cast<double>(model.influence_weights[k]);
+  }
+  Surface surface{{}, model.triangles};
+  for (const Vec3f& position : model.positions)
+    surface.positions.push_back(position.cast<double>());
+  const double shortest = kShortBone * reference_extent(skeleton);
+  double all = 0, outside = 0, longest = 0;
+  int worst = -1, count = 0;
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int parent = skeleton.parents[at(j)];
+    if (parent < 0 || moved[at(parent)] < 1) continue;
+    const Vec3 from = skeleton.reference[at(parent)].position;
+    const Vec3 to = skeleton.reference[at(j)].position;
+    const double length = (to - from).norm();
+    if (!(length > shortest)) continue;
+    all += length;
+    if (!surface.is_outside(from, to)) continue;
+    outside += length;
+    ++count;
+    if (length > longest) {
+      longest = length;
+      worst = j;
+    }
+  }
+  if (!(outside > kSuspicious * all)) return {};
+  if (outside > kMost * all && !mesh_volume(surface.positions, model.triangles).closed) return {};
+  Diagnostic fault = make_warning(
+      "skin-reference-pose",
+      fmt::format(
+          "{} of the reference pose {} outside of the mesh, such as that from {} to {}: the "
+          "skeleton is not in the pose of the mesh, which skinning distorts",
+          count == 1 ? "a bone" : fmt::format("{} bones", count), count == 1 ? "lies" : "lie",
+          skeleton.names[at(skeleton.parents[at(worst)])], skeleton.names[at(worst)]),
+      "export the character in its bind pose, in which the mesh was attached to its joints");
+  fault.joint = skeleton.names[at(worst)];
+  return {fault};
+}
+
+namespace {
+
+constexpr double kThickness = 0.08;     // half-width of a bone, relative to its length
+constexpr double kMaxThickness = 0.03;  // relative to the skeleton's extent
+constexpr double kWaist = 0.2;          // position of the thickest point along a bone
+constexpr double kSmallest = 1e-3;      // shortest bone shown, relative to the skeleton's extent
+constexpr double kLoneSize = 0.1;       // metres
+
+// Appends an octahedron from `base` to `tip`: eight triangles without shared vertices.
+void add_bone(Model& model, int joint, const Vec3& base, const Vec3& tip, double half_width) {
+  const Quat turn = shortest_arc(Vec3::UnitY(), tip - base);
+  const Vec3 waist = base + kWaist * (tip - base);
+  std::array<Vec3, 4> ring;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 corner(i % 2 == 0 ? 1 - i : 0, 0, i % 2 == 1 ? 2 - i : 0);
+    ring[i] = waist + turn * (half_width * corner);
+  }
+  const auto add_triangle = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3f normal = (b - a).cross(c - a).normalized().cast<float>();
+    const auto first = static_cast<std::uint32_t>(model.positions.size());
+    for (const Vec3& corner : {a, b, c}) {
+      model.positions.push_back(corner.cast<float>());
+      model.normals.push_back(normal);
+      model.influence_joints.push_back(static_cast<std::uint16_t>(joint));
+      model.influence_weights.push_back(1.0f);
+    }
+    model.triangles.push_back({first, first + 1, first + 2});
+  };
+  // The ring goes +x, +z, -x, -z: clockwise seen from the tip.
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 &a = ring[i], &b = ring[(i + 1) % 4];
+    add_triangle(tip, b, a);
+    add_triangle(base, a, b);
+  }
+}
+
+}  // namespace
+
+Model bone_mesh(const Skeleton& skeleton) {
+  Model model;
+  model.skeleton = skeleton;
+  model.influences_per_vertex = 1;
+  const double size = reference_extent(skeleton);
+  for (int j = 0; j < skeleton.joint_count(); ++j) {
+    const int parent = skeleton.parents[j];
+    if (parent == Skeleton::kNoParent) continue;
+    const Vec3& base = skeleton.reference[parent].position;
+    const Vec3& tip = skeleton.reference[j].position;
+    const double length = (tip - base).norm();
+    if (!(length > kSmallest * size)) continue;
+    add_bone(model, parent, base, tip, std::min(kThickness * length, kMaxThickness * size));
+  }
+  if (model.positions.empty()) {
+    const Vec3& place = skeleton.reference[0].position;
+    add_bone(model, 0, place, place + Vec3(0, kLoneSize, 0), kThickness * kLoneSize);
+  }
+  model.parts.push_back({"bones", "bones", 0, static_cast<std::uint32_t>(model.triangles.size())});
+  return model;
 }
 
 }  // namespace krok

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "skin/morph.h"
 
 // Per-vertex key-frame animation: shapes of one mesh at key times.

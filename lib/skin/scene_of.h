@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "scene/actor.h"
+#include "scene/character.h"
 #include "scene/scene.h"
 #include "skin/skin.h"
 

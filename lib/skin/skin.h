@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/model.h"
 #include "skin/palette.h"
 
@@ -24,7 +24,7 @@
 //                    else 1: v' is v transformed by the normalised sum_i s_i w_i q_i. The blend is
 //                    rigid, so twists keep the radius. Source: Kavan, Collins, Zara, O'Sullivan,
 //                    Geometric Skinning with Approximate Dual Quaternion Blending (ACM TOG 27(4),
-//                    2008). Matrices with scale or shear are split (dual_quaternion.h): the
+//                    2008). Matrices with scale or shear are split (palette.h): the
 //                    deformations are blended linearly and applied before the rigid transforms.
 //   spherical        v' = Q (v - r) + sum_i w_i P_i r, with Q the rotation of the normalised sum_i
 //                    s_i w_i q_i, and r the rotation centre of the vertex's set of joints: that

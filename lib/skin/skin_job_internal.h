@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "skin/dual_quaternion.h"
 #include "skin/palette.h"
 #include "skin/skin.h"
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Vertex normals for meshes and shapes without normals.
 

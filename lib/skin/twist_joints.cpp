@@ -13,7 +13,6 @@
 
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "scene/model.h"
 
 namespace krok {
 

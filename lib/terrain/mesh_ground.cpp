@@ -1,4 +1,4 @@
-#include "terrain/mesh_ground.h"
+#include "terrain/shapes.h"
 
 #include <fmt/format.h>
 

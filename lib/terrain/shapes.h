@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "core/result.h"
 #include "terrain/terrain.h"
@@ -41,5 +44,41 @@ struct StairsOptions {
 // long, each `rise` above the one before, then a level landing at count * rise. At an edge the
 // upper tread counts. Code: ground-value for values outside the ranges above.
 Result<std::unique_ptr<Terrain>> stairs(const StairsOptions& options);
+
+// Heights on a grid. Seen from above with +X to the right, row 0 is at the top: columns go along
+// +X, rows along +Z. The outermost samples lie on the border.
+struct HeightField {
+  int columns = 0, rows = 0;          // at least 2 each
+  std::vector<float> heights;         // columns * rows, row by row, metres; NaN: a hole
+  double width = 0, depth = 0;        // metres along X and Z, from first sample to last, above 0
+  double centre_x = 0, centre_z = 0;  // metres
+};
+
+// The most samples that a height field may have: 256 MiB of them.
+inline constexpr std::int64_t kMaxHeights = std::int64_t{1} << 26;
+
+// Ground that is bilinear between the samples, so it is never above or below those around. There is
+// none outside the field, nor in a square of four samples of which one is a hole.
+// Codes: ground-size for a field without area, too few or too many samples or heights of another
+// count; ground-value for infinite heights; ground-empty if all of it is holes.
+Result<std::unique_ptr<Terrain>> height_field(HeightField field);
+
+// Counter-clockwise seen from the side that can be stood on; metres, world.
+using GroundTriangle = std::array<Vec3, 3>;
+
+inline constexpr std::size_t kMaxGroundTriangles = 50'000'000;
+
+// The triangles that face up as ground: others, the undersides of bridges and walls, do not carry.
+// If triangles that face down cover more than twice as much, the winding is taken to be reversed
+// and `reversed` (if given) is set. Along an edge that two triangles share there is no gap. Heights
+// are computed in doubles. Found by a tree of boxes (Embree).
+// Codes: ground-empty if nothing faces up; ground-value for corners that are not finite or farther
+// than 1e6 m from the origin; ground-size for too many triangles.
+Result<std::unique_ptr<Terrain>> mesh_ground(std::vector<GroundTriangle> triangles,
+                                             bool* reversed = nullptr);
+
+// All triangles of a ground made by mesh_ground(), those that do not carry too, to the accuracy of
+// floats; empty for other kinds.
+std::optional<std::vector<GroundTriangle>> triangles_of(const Terrain& ground);
 
 }  // namespace krok::terrain

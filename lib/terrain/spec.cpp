@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
 #include "terrain/shapes.h"
 

@@ -5,9 +5,8 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <vector>
 
-#include "terrain/mesh_ground.h"
+#include "terrain/shapes.h"
 
 namespace krok::terrain {
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <optional>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // The ground: what a walker stands on.
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "motion/sample.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 
 namespace krok::timeline {
 

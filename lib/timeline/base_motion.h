@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "roles/roles.h"
 #include "scene/skeleton.h"
 #include "timeline/played_range.h"

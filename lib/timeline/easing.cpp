@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "math/hermite.h"
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::timeline {
 

@@ -8,7 +8,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "motion/hips_root.h"
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 #include "timeline/result_keys_internal.h"
 
 namespace krok::timeline {

@@ -10,7 +10,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/sample.h"
 #include "roles/roles.h"
 #include "timeline/mix.h"

@@ -8,7 +8,6 @@
 #include "blend/time_map.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "timeline/timeline.h"
 
 namespace krok::timeline {
 

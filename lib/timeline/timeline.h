@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "blend/time_map.h"
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "scene/clip.h"
 #include "scene/motion_keys.h"
 #include "timeline/easing.h"

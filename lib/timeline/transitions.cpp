@@ -4,7 +4,6 @@
 #include <set>
 #include <vector>
 
-#include "math/euler.h"
 #include "math/hermite.h"
 #include "math/quaternion.h"
 #include "timeline/base_motion.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "math/quaternion.h"
 #include "tracks/key_reducer_internal.h"
 
 namespace krok {

@@ -6,7 +6,6 @@
 
 #include "core/index.h"
 #include "ik/two_bone.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "samples/generator/curves.h"
 #include "samples/generator/walk.h"

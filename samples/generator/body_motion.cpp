@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "ik/two_bone.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "samples/generator/gait_curves.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Smooth functions of time used by the walk. All are twice continuously differentiable.
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 
 namespace krok::samples {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/index.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "samples/generator/curves.h"
 #include "samples/generator/walk.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/index.h"
-#include "math/euler.h"
-#include "motion/ground_frame.h"
+#include "math/quaternion.h"
+#include "motion/hips_root.h"
 
 namespace krok::samples {
 

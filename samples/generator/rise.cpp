@@ -8,7 +8,6 @@
 
 #include "core/index.h"
 #include "ik/two_bone.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "samples/generator/curves.h"
 #include "samples/generator/rise_keys.h"

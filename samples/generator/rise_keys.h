@@ -3,7 +3,7 @@
 #include <array>
 #include <span>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "samples/generator/rise.h"
 
 // What a body does at moments of getting up; an actor of 1.75 m, metres and degrees.

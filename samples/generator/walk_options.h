@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "samples/generator/actor.h"
 
 namespace krok::samples {

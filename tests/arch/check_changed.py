@@ -131,20 +131,26 @@ def main():
     changed = changed_files(folder, base)
     options = Options(folder, build)
     alone_options = Options(folder, arguments.alone.resolve()) if arguments.alone else options
-    failed = []
+    failed = []  # what, and what was printed about it
 
     def judge(results):
         for what, good, output in results:
             if not good:
-                print(f"{what}:\n{output}", flush=True)
-                failed.append(what)
+                print(f"{what}: failed", flush=True)
+                failed.append((what, output))
+
+    def finish():
+        """The reasons come last: where only the end of a log is kept, it names them."""
+        for what, output in failed:
+            print(f"{what}:\n{output}")
+        sys.exit(1 if failed else 0)
 
     alone = [] if arguments.lint_only else with_benchmarks(folder, list(changed))
     with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         judge(pool.map(lambda path: compile_alone(folder, alone_options, path), alone))
         print(f"compiled alone: {len(alone)} sources and headers changed since {base[:9]}, {len(failed)} failed", flush=True)
         if arguments.syntax_only:
-            sys.exit(1 if failed else 0)
+            finish()
         units = {}
         for path in changed:
             if path.endswith(".cpp") and path in options.by_file:
@@ -165,7 +171,7 @@ def main():
     print(f"clang-tidy: {linted} sources")
     if unreached:
         print(f"NOT LINTED, no time left: {len(unreached)} sources: {' '.join(unreached)}")
-    sys.exit(1 if failed else 0)
+    finish()
 
 
 main()

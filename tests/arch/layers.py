@@ -1,8 +1,10 @@
-"""Checks the dependency rule: which folder may include which, top-level names, public headers.
+"""Checks the dependency rule: which folder may include which, top-level names, public headers, and
+that what a source uses of other libraries is included: precompiled headers hide what is forgotten.
 
 Usage: layers.py SOURCE_FOLDER. Prints what is wrong, exit code 1 if anything is.
 """
 
+import functools
 import pathlib
 import re
 import subprocess
@@ -18,7 +20,7 @@ ALLOWED = {
     "lib/roles": BASE,
     "lib/nodes": BASE,
     "lib/capture": BASE | {"lib/roles"},
-    "lib/character": BASE | {"lib/roles", "lib/capture", "lib/nodes"},
+    "lib/character": BASE | {"lib/roles", "lib/capture", "lib/nodes", "lib/retarget"},
     "lib/tracks": BASE,
     "lib/plant": BASE | {"lib/contacts", "lib/ik", "lib/motion", "lib/roles"},
     "lib/pose": BASE,
@@ -104,6 +106,10 @@ PUBLIC_THIRD_PARTY = ("Eigen/",)
 THIRD_PARTY = re.compile(
     r"^(ceres|bullet|btBullet|tiny_gltf|OpenEXR|Imf|Imath|assimp|hwy|fmt|CLI|nlohmann|fast_float|"
     r"xxhash|embree|png\.h|jpeglib|ft2build)")
+# What names a library in a source -> how its headers begin.
+USES = {r"\bfmt::": "fmt/", r"\bnlohmann::": "nlohmann/", r"\bEigen::": "Eigen/",
+        r"\b(EXPECT|ASSERT)_": ("gtest/", "gmock/")}
+NO_CODE = re.compile(r'//.*|"(\\.|[^"\\\n])*"')
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
 
@@ -113,6 +119,30 @@ def room_of(include):
     if parts[0] in ("formats", "tools", "samples", "tests"):
         return "/".join(parts[:2])
     return "lib/" + parts[0] if len(parts) > 1 else None
+
+
+@functools.cache
+def included(root, name):
+    """Headers of other libraries, files of the project."""
+    libraries, files = set(), set()
+    for kind, include in INCLUDE.findall((root / name).read_text(encoding="utf-8")):
+        if kind == "<":
+            libraries.add(include)
+        else:
+            folders = ("", "lib/", "tests/", name.rpartition("/")[0] + "/")
+            files |= set([folder + include for folder in folders if (root / (folder + include)).is_file()][:1])
+    return libraries, files
+
+
+def libraries_of(root, name):
+    """Headers of other libraries that a source includes, itself or through the project's headers."""
+    found, reached, waiting = set(), {name}, [name]
+    while waiting:
+        libraries, files = included(root, waiting.pop())
+        found |= libraries
+        waiting += files - reached
+        reached |= files
+    return found
 
 
 def main():
@@ -130,6 +160,11 @@ def main():
     checked = 0
     for name in tracked:
         path = root / name
+        if path.suffix in (".h", ".cpp"):
+            code = NO_CODE.sub("", path.read_text(encoding="utf-8"))
+            libraries = libraries_of(root, name)
+            faults += [f"{name}: uses {header} and does not include it" for use, header in USES.items()
+                       if re.search(use, code) and not any(it.startswith(header) for it in libraries)]
         if path.suffix not in (".h", ".cpp") or not name.startswith(("lib/", "formats/", "tools/")):
             continue
         room = "/".join(name.split("/")[:2])

@@ -17,7 +17,7 @@
 #include "motion/sample.h"
 #include "parametric/blended_motion.h"
 #include "parametric/measure.h"
-#include "pose/local_to_model.h"
+#include "pose/packed_pose.h"
 #include "unit/parametric/walks.h"
 
 namespace {

@@ -15,8 +15,6 @@
 #include "core/hash.h"
 #include "core/simd.h"
 #include "math/quaternion.h"
-#include "pose/blend_pose.h"
-#include "pose/local_to_model.h"
 #include "pose/packed_pose.h"
 #include "support/test_scenes.h"
 

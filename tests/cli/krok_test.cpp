@@ -120,6 +120,14 @@ TEST_F(Krok, TellsWhichVerbThereIsNot) {
   }
 }
 
+TEST_F(Krok, AConversionIsNamedByWhatIsToBeWritten) {
+  EXPECT_NE(run_tool("krok", {"convert", "a.bvh", "b.npz"}).err.find("krok export a.bvh -o b.npz"),
+            std::string::npos);
+  EXPECT_NE(
+      run_tool("krok", {"convert", "a.bvh", "b.anim"}).err.find("krok import a.bvh -o b.anim"),
+      std::string::npos);
+}
+
 // The tools stand beside the program itself, not beside a link to it.
 TEST_F(Krok, WorksThroughALink) {
   std::filesystem::create_symlink(test::tools_folder() + "/krok", path("k"));

@@ -30,7 +30,9 @@ TEST_F(Mistakes, UnknownOptionsGetTheNearestName) {
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "--mirorr", "-o", "a.anim"}), HasSubstr("--mirror"));
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "-Z", "-o", "a.anim"}),
               HasSubstr("unknown option '-Z'"));
-  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--xyzzy", "-o", "a.anim"}), HasSubstr("--help"));
+  // What is near to nothing shows what there is.
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--xyzzy", "-o", "a.anim"}),
+              AllOf(HasSubstr("--help"), HasSubstr("--mirror"), Not(HasSubstr("--jobs"))));
   EXPECT_THAT(refused("krok-skin", {"a.model", "in.bvh", "--as", "rgi", "-o", "a.glb"}),
               HasSubstr("did you mean 'rig'?"));
 }
@@ -41,6 +43,10 @@ TEST_F(Mistakes, OptionsWithoutTheirValue) {
               AllOf(HasSubstr("--from has no value"), HasSubstr("write --from TIME")));
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "--ground", "-o", "a.anim"}),
               HasSubstr("'-o' is the next option"));
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--sheet"}), HasSubstr("write --sheet OUT.png"));
+  // A file after --json would be an input.
+  EXPECT_THAT(run_here("krok-lint", {"in.bvh", "--json", "report.json"}).err,
+              HasSubstr("write --json=report.json"));
   // Numbers below zero are values.
   EXPECT_EQ(run_here("krok-edit", {"in.bvh", "--heading", "-90deg", "-o", "a.anim"}).exit_code, 0);
 }
@@ -188,6 +194,8 @@ TEST_F(Mistakes, UnknownVerbsToo) {
 // Would fail if words that are near to nothing led to something else.
 TEST_F(Mistakes, WordsOfOtherProgramsLeadOn) {
   EXPECT_THAT(refused("krok", {"convert", "in.bvh"}), HasSubstr("krok import"));
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--mirror", "x", "-o", "a.anim"}),
+              HasSubstr("Mirror left and right"));
   EXPECT_THAT(refused("krok-cam", {"in.bvh", "--follow", "hip", "-o", "a.cam"}),
               HasSubstr("did you mean 'Hips'?"));
   EXPECT_THAT(refused("krok-import", {"in.bvh", "-o", "hero.character"}),
@@ -220,7 +228,7 @@ TEST_F(Mistakes, WordsOfOtherToolsLeadOn) {
   EXPECT_THAT(refused("krok-import", {"in.bvh", "-o", "a.fbx"}), HasSubstr("krok-export writes"));
   EXPECT_THAT(refused("krok-export", {"in.bvh", "-o", "a.obj"}), HasSubstr("krok-skin writes"));
   // Not where the tool has no such option.
-  EXPECT_THAT(refused("krok-info", {"in.bvh", "--fps", "30"}), HasSubstr("krok-edit IN --rate N"));
+  EXPECT_THAT(refused("krok-info", {"in.bvh", "--fps", "30"}), HasSubstr("it prints joints"));
 }
 
 // Would fail if what no row of a table foresees were answered with "see --help" alone.
@@ -228,7 +236,12 @@ TEST_F(Mistakes, WhatOtherToolsOrOptionsTakeLeadsThere) {
   EXPECT_THAT(refused("krok-view", {"in.bvh", "--lens", "50", "-o", "a.html"}),
               HasSubstr("krok-cam has it"));
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "--hips-heights", "1m", "-o", "a.anim"}),
-              HasSubstr("krok-edit has --match-height, --height LENGTH"));
+              HasSubstr("krok-edit has --height LENGTH (Scale to this stature)"));
+  // By what the option does.
+  EXPECT_THAT(refused("krok-edit", {"in.bvh", "--stature", "2m", "-o", "a.anim"}),
+              HasSubstr("hint: krok-edit has --height LENGTH (Scale to this stature); see"));
+  EXPECT_THAT(refused("krok-plot", {"in.bvh", "--font-size", "3", "-o", "a.svg"}),
+              HasSubstr("krok-render has --size WIDTHxHEIGHT (Size in pixels, even numbers)"));
   EXPECT_THAT(refused("krok-edit", {"in.bvh", "--filter", "6", "-o", "a.anim"}),
               HasSubstr("write --filter butterworth --cutoff 6"));
   EXPECT_THAT(refused("krok-export", {"in.bvh", "-o", "a.mp4"}), HasSubstr("krok-render"));
@@ -259,6 +272,8 @@ TEST_F(Mistakes, MissingAndSwappedArgumentsLeadOn) {
   put("takes/a.bvh", capture(5));
   EXPECT_THAT(refused("krok-retarget", {"takes", "hero.character", "--out-dir", "o"}),
               AllOf(HasSubstr("give --onto IN.model"), Not(HasSubstr("'--'"))));
+  EXPECT_THAT(refused("krok-walk", {"takes", "--goal", "0m,5m", "-o", "a.anim"}),
+              HasSubstr("krok-fit takes -o OUT.steps"));
   EXPECT_THAT(refused("krok-diff", {"in.bvh"}), HasSubstr("give B;"));
   EXPECT_THAT(refused("krok-skin", {"in.bvh", "in.bvh", "-o", "a.glb"}),
               HasSubstr("the mesh comes first"));
@@ -321,6 +336,9 @@ TEST_F(Mistakes, WhatWasHardlyMeantIsSaid) {
 TEST_F(Mistakes, WrongFilesAndForeignWordsLeadOn) {
   put("face.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   put("m.c3d", std::string("\x02P\x01\0", 4));
+  put("s.blend", "BLENDER-v300");
+  put("m.anim", "animVersion 1.1;\n");
+  put("a.pkl", "\x80\x04\x95");
   ASSERT_EQ(run_here("krok-body", {"in.bvh", "-o", "a.model"}).exit_code, 0);
   ASSERT_EQ(run_here("krok-morph", {"pack", "face.obj", "face.obj", "-o", "face.exr"}).exit_code,
             0);
@@ -339,6 +357,10 @@ TEST_F(Mistakes, WrongFilesAndForeignWordsLeadOn) {
       {"krok-morph", {"info", "face.obj"}, "is an OBJ mesh (without joints), not an .exr"},
       {"krok-skin", {"face.obj", "-o", "a.glb"}, "a mesh with joints is"},
       {"krok-edit", {"in.bvh", "-ss", "1", "-o", "a.anim"}, "use --from"},
+      {"krok-import", {"s.blend", "-o", "a.anim"}, "Blender (export it as glTF)"},
+      {"krok-info", {"m.anim"}, "curves of Maya"},
+      {"krok-import", {"a.pkl", "-o", "a.anim"}, "a pickle of Python (write its arrays as .npz"},
+      {"krok-skin", {"in.bvh@Walk", "-o", "a.glb"}, "'in.bvh#Walk'"},
       {"krok-import", {"m.c3d", "-o", "a.anim"}, "solved skeleton"},
       {"krok-info", {"in.bvh", "--joints"}, "use -v"},
       {"krok-skin", {"a.model", "--correctives", "face.exr", "-o", "a.glb"}, "--morph"},
@@ -381,6 +403,15 @@ TEST_F(Mistakes, OptionsOfOtherProgramsHaveTheirName) {
       {"krok-skin", {"--clip-name", "walk"}, "walk=take_7.anim"},
       {"krok-skin", {"--clips", "Walk"}, "'IN#NAME'"},
       {"krok-edit", {"--clip", "Walk"}, "'IN#NAME'"},
+      {"krok-skin", {"--dual-quaternion"}, "use --method dual-quaternion"},
+      {"krok-skin", {"x.anim", "--compress", "draco", "-o", "a.glb"}, "--compress takes no value"},
+      {"krok-edit", {"--retime", "2s"}, "use --playback-speed"},
+      {"krok-edit", {"--start-frame", "10"}, "use --from 10f"},
+      {"krok-import", {"--pattern", "*.bvh"}, "in quotes"},
+      {"krok-lint", {"--only", "pop,flip"}, "give one at a time"},
+      {"krok-retarget", {"--onto", "in.bvh", "--reference-pose", "t-pose"}, "leave it out"},
+      {"krok-edit", {"--start", "10", "--end", "60"}, "--end: use --to TIME; 60f"},
+      {"krok-edit", {"-t", "2"}, "not how long it is"},
       {"krok-ik", {"--pin", "left_foot"}, "feet without goals stay"},
       {"krok-ik", {"--pole", "1"}, "kind pole"},
       {"krok-skin", {"--take", "Walk"}, "'IN#NAME'"},
@@ -391,7 +422,7 @@ TEST_F(Mistakes, OptionsOfOtherProgramsHaveTheirName) {
       {"krok-import", {"--output-format", "fbx"}, "krok-export others"},
       {"krok-import", {"--in", "x.bvh"}, "inputs without an option"},
       {"krok-skin", {"--simplify", "0.5"}, "--quantize"},
-      {"krok-skin", {"--max-influences", "4"}, "did you mean '--influences'?"},
+      {"krok-skin", {"--max-influences", "4"}, "use --influences"},
       {"krok-cam", {"--focal-length", "50"}, "use --lens"},
       {"krok-cam", {"--height", "1.6m"}, "use --elevation"},
       {"krok-lint", {"--config", "p.json"}, "use --profile"},

@@ -15,7 +15,6 @@
 #include "formats/cam/cam.h"
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/character/character_format.h"
-#include "formats/correctives/corrective_poses.h"
 #include "formats/correctives/correctives_format.h"
 #include "formats/csv/table.h"
 #include "formats/gltf/gltf_reader.h"

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "render/image.h"
 
 // Inspects the images that tools write.

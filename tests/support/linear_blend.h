@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/model.h"
 #include "skin/palette.h"
 #include "skin/skin_job_internal.h"

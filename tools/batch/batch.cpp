@@ -21,15 +21,12 @@
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "core/result.h"
-#include "formats/io/takes.h"
+#include "formats/io/open_motion.h"
 #include "tools/batch/journal.h"
 #include "tools/batch/list.h"
 #include "tools/batch/option_sets.h"
-#include "tools/batch/tally.h"
-#include "tools/cli/json.h"
 #include "tools/cli/paths.h"
 #include "tools/cli/report.h"
-#include "tools/cli/tool.h"
 
 namespace krok::cli::batch {
 

@@ -13,10 +13,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/open_scene.h"
-#include "tools/cli/file_name.h"
-#include "tools/cli/folder_inputs.h"
 #include "tools/cli/option_kinds.h"
-#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 
 namespace krok::cli::batch {

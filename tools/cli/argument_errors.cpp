@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 #include <iterator>
-#include <set>
 #include <string>
 #include <string_view>
 
@@ -13,6 +13,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "tools/cli/command_line.h"
+#include "tools/cli/option_search.h"
 #include "tools/cli/renamed_options.h"
 #include "tools/cli/usage.h"
 
@@ -31,69 +32,58 @@ std::string shown_list(const std::vector<std::string>& words) {
   return list + (words.size() > 3 ? " ..." : "");
 }
 
-// The words of a text that say something, in small letters and in the singular.
-std::set<std::string> words_in(std::string_view text) {
-  std::set<std::string> words;
-  std::string word;
-  const auto end_word = [&] {
-    if (word == "feet") word = "foot";
-    if (word.size() > 3 && word.ends_with('s')) word.pop_back();
-    constexpr std::string_view kEmpty = " the and for with not from out its are set use add all ";
-    if (word.size() > 2 && kEmpty.find(" " + word + " ") == std::string_view::npos) {
-      words.insert(word);
-    }
-    word.clear();
-  };
-  for (const char c : text) {
-    if (std::isalpha(static_cast<unsigned char>(c)) != 0) {
-      word += ascii_lower(c);
-    } else {
-      end_word();
-    }
-  }
-  end_word();
-  return words;
-}
-
 }  // namespace
 
 // "--match-heights" where there are --height and --match-height: up to three with a word of it.
-std::string CommandLine::options_about(const std::string& name) const {
-  const std::set<std::string> wanted = words_in(name);
-  std::vector<std::pair<std::ptrdiff_t, std::string>> found;
-  for (const OptionFacts& option : options_.facts()) {
-    if (option.positional) continue;
-    const auto words = words_in(option.names.back());
-    const auto score = std::ranges::count_if(
-        wanted, [&](const std::string& word) { return words.contains(word); });
-    if (score == 0) continue;
-    found.emplace_back(-score, option.value_name.empty()
-                                   ? option.names.back()
-                                   : option.names.back() + " " + option.value_name);
+std::string CommandLine::options_like(const std::string& name) const {
+  std::vector<ToolOption> options;
+  if (spec_.options_of_all) {
+    options = spec_.options_of_all();
+  } else {
+    for (OptionFacts& facts : options_.facts()) options.push_back({spec_.name, std::move(facts)});
   }
-  std::ranges::stable_sort(found, {}, &std::pair<std::ptrdiff_t, std::string>::first);
-  std::string list;
-  for (std::size_t i = 0; i < found.size() && i < 3; ++i)
-    list += (i == 0 ? "" : ", ") + found[i].second;
-  return list;
+  std::vector<std::string> hints;
+  for (const ToolOption& one : options_about(name, spec_.name, options, 3)) {
+    hints.push_back(fmt::format("{} has {}", one.tool, shown_option(one.facts)));
+  }
+  return fmt::format("{}", fmt::join(hints, "; "));
+}
+
+std::string CommandLine::names_of_own_options() const {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : own_options_) {
+    if (!option->get_positional()) names.push_back(option->get_name());
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// "--json report.json", where a space makes the file an input; "--json" came as "--json=-".
+std::optional<Error> CommandLine::json_file_apart(const std::vector<std::string>& arguments) const {
+  const auto at = std::ranges::find(arguments, "--json=-");
+  if (at == arguments.end() || std::next(at) == arguments.end()) return std::nullopt;
+  const std::string& file = *std::next(at);
+  if (extension(file) != ".json" || std::filesystem::exists(file)) return std::nullopt;
+  return usage(fmt::format("--json writes to standard output, and {} is an input that is missing",
+                           shown(file)),
+               fmt::format("write --json={}", file));
 }
 
 // The first option whose value would be the option after it: "--size -o x.png".
 std::optional<Error> CommandLine::option_without_value(
     const std::vector<std::string>& arguments) const {
-  for (std::size_t i = 0; i + 1 < arguments.size() && arguments[i] != "--"; ++i) {
-    const std::string& next = arguments[i + 1];
-    if (!arguments[i].starts_with('-') || !next.starts_with('-') || next == "-") continue;
+  for (std::size_t i = 0; i < arguments.size() && arguments[i] != "--"; ++i) {
+    const bool last = i + 1 == arguments.size();
+    const std::string next = last ? std::string() : arguments[i + 1];
+    if (!arguments[i].starts_with('-') || !(last || next.starts_with('-')) || next == "-") continue;
     const CLI::Option* option = app_.get_option_no_throw(arguments[i]);
-    if (option == nullptr) continue;
-    if (option->get_items_expected_min() < 1) continue;
+    if (option == nullptr || option->get_items_expected_min() < 1) continue;
     // "--fix -o fixed", of a tool without -o.
-    const bool is_option = next == "-o" || (next.starts_with("--") && next.size() > 2) ||
+    const bool is_option = last || next == "-o" || (next.starts_with("--") && next.size() > 2) ||
                            app_.get_option_no_throw(next.substr(0, next.find('='))) != nullptr;
     if (!is_option) continue;
     return usage(fmt::format("{} has no value", arguments[i]),
-                 fmt::format("write {} {}; '{}' is the next option", arguments[i],
-                             option->get_type_name(), next));
+                 fmt::format("write {} {}{}", arguments[i], option->get_type_name(),
+                             last ? "" : fmt::format("; '{}' is the next option", next)));
   }
   return std::nullopt;
 }
@@ -112,66 +102,94 @@ std::optional<Error> CommandLine::option_with_one_dash(
   return std::nullopt;
 }
 
-// The first word before "--" that looks like an option and is none.
-std::optional<Error> CommandLine::unknown_option(const std::vector<std::string>& arguments) const {
+// A word that looks like an option and is none.
+std::optional<Error> CommandLine::unknown_option(const std::string& argument) const {
   std::vector<std::string> names;
   for (const OptionFacts& option : options_.facts()) {
     names.insert(names.end(), option.names.begin(), option.names.end());
   }
+  const bool is_long = argument.starts_with("--");
+  const bool letter = argument.size() >= 2 && argument[0] == '-' &&
+                      std::isalpha(static_cast<unsigned char>(argument[1])) != 0;
+  if (!is_long && !letter) return std::nullopt;
+  const std::string name = argument.substr(0, argument.find('='));
+  if (app_.get_option_no_throw(is_long ? name : name.substr(0, 2)) != nullptr) {
+    return std::nullopt;
+  }
+  std::string dashed = name;  // as options are written here: --frame-rate for --frame_rate
+  std::ranges::replace(dashed, '_', '-');
+  const auto has = [&](const std::string& option) {
+    return app_.get_option_no_throw(option) != nullptr;
+  };
+  if (const RenamedOption* row = renamed_option(spec_.name, dashed, has)) {
+    return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
+  }
+  // "--dual-quaternion" is a value of --method.
+  for (const OptionFacts& option : options_.facts()) {
+    if (!is_long || option.positional || !std::ranges::count(option.words, dashed.substr(2))) {
+      continue;
+    }
+    return usage(fmt::format("unknown option '{}'", name),
+                 fmt::format("use {} {}", option.names.back(), dashed.substr(2)));
+  }
+  std::vector<std::string> hints;
+  if (is_long && spec_.options_of_all) {
+    auto options = spec_.options_of_all();
+    std::erase_if(options, [&](const ToolOption& one) {
+      return std::ranges::find(one.facts.names, dashed) == one.facts.names.end();
+    });
+    // Of a word with many uses it says nothing.
+    if (options.size() > 2) options.clear();
+    for (const ToolOption& one : options) {
+      hints.push_back(
+          one.tool == "krok-retarget" && has("--retarget")
+              ? "krok-retarget IN --onto CHARACTER -o OUT.anim has it; its motion "
+                "needs no --retarget here"
+              : fmt::format("{} has it: {}", one.tool, first_sentence(one.facts.description)));
+    }
+  }
+  if (is_long && hints.empty()) {
+    for (const RenamedOption& row : kRenamedOptions) {
+      if (!row.was(dashed) || row.tool.empty() || !row.now.starts_with("--")) continue;
+      hints.push_back(fmt::format("{} has {}", row.tool, row.now));
+      break;
+    }
+  }
+  const std::string near =
+      name.size() > 2 ? nearest_name(is_long ? dashed : "-" + dashed, names) : std::string();
+  if (!near.empty()) hints.push_back(fmt::format("did you mean '{}'?", near));
+  if (near.empty() && is_long) {
+    const std::string like = options_like(dashed);
+    if (!like.empty()) hints.push_back(like);
+  }
+  if (hints.empty()) hints.push_back(fmt::format("{} has {}", spec_.name, names_of_own_options()));
+  if (near.empty()) hints.push_back(fmt::format("see {} --help", spec_.name));
+  return Error("usage", fmt::format("unknown option '{}'", shown(name)),
+               fmt::format("{}", fmt::join(hints, "; ")));
+}
+
+// All words before "--" that look like options and are none, each with its hint.
+std::optional<Error> CommandLine::unknown_options(const std::vector<std::string>& arguments) const {
+  std::optional<Error> all;
+  std::vector<std::string> seen;
   for (const std::string& argument : arguments) {
     if (argument == "--") break;
-    const bool is_long = argument.starts_with("--");
-    const bool letter = argument.size() >= 2 && argument[0] == '-' &&
-                        std::isalpha(static_cast<unsigned char>(argument[1])) != 0;
-    if (!is_long && !letter) continue;
     const std::string name = argument.substr(0, argument.find('='));
-    if (app_.get_option_no_throw(is_long ? name : name.substr(0, 2)) != nullptr) continue;
-    std::string dashed = name;  // as options are written here: --frame-rate for --frame_rate
-    std::ranges::replace(dashed, '_', '-');
-    const auto has = [&](const std::string& option) {
-      return app_.get_option_no_throw(option) != nullptr;
-    };
-    if (const RenamedOption* row = renamed_option(spec_.name, dashed, has)) {
-      return usage(fmt::format("unknown option '{}'", name), fmt::format("use {}", row->now));
-    }
-    std::vector<std::string> hints;
-    if (is_long && spec_.tools_with) {
-      auto tools = spec_.tools_with(dashed);
-      // Of a word with many uses it says nothing.
-      if (tools.size() > 2) tools.clear();
-      for (const auto& [tool, does] : tools) {
-        if (tool == "krok-retarget" && has("--retarget")) {
-          hints.push_back(
-              fmt::format("krok-retarget IN --onto CHARACTER -o OUT.anim has it; its "
-                          "motion needs no --retarget here"));
-          continue;
-        }
-        // "keep: hands touch the ground; free: ..." says nothing without its second word.
-        const std::size_t end = does.find_first_of(".;:");
-        const std::string first =
-            does.substr(0, end < 20 ? does.find_first_of(".;", end + 1) : end);
-        hints.push_back(fmt::format("{} has it: {}", tool, first));
+    auto one = unknown_option(argument);
+    if (!one || std::ranges::find(seen, name) != seen.end()) continue;
+    seen.push_back(name);
+    if (!all) {
+      all = *std::move(one);
+    } else {
+      if (seen.size() == 2) {
+        all->message.insert(std::string_view("unknown option").size(), "s");
+        all->hint = seen.front() + ": " + all->hint;
       }
+      all->message += fmt::format(" and '{}'", shown(name));
+      all->hint += fmt::format("; {}: {}", shown(name), one->hint);
     }
-    if (is_long && hints.empty()) {
-      for (const RenamedOption& row : kRenamedOptions) {
-        if (!row.was(dashed) || row.tool.empty() || !row.now.starts_with("--")) continue;
-        hints.push_back(fmt::format("{} has {}", row.tool, row.now));
-        break;
-      }
-    }
-    const std::string near =
-        name.size() > 2 ? nearest_name(is_long ? dashed : "-" + dashed, names) : std::string();
-    if (!near.empty()) hints.push_back(fmt::format("did you mean '{}'?", near));
-    if (near.empty() && is_long) {
-      const std::string about = options_about(dashed);
-      if (!about.empty()) hints.push_back(fmt::format("{} has {}", spec_.name, about));
-    }
-    if (near.empty()) hints.push_back(fmt::format("see {} --help", spec_.name));
-    return Error("usage", fmt::format("unknown option '{}'", shown(name)),
-                 fmt::format("{}", fmt::join(hints, "; ")));
   }
-  return std::nullopt;
+  return all;
 }
 
 // "--mirror x": a word, and no file, after an option that takes none.
@@ -186,7 +204,8 @@ std::optional<Error> CommandLine::value_of_flag(const std::vector<std::string>& 
   const RenamedOption* meant =
       renamed_option(spec_.name, before, [](const std::string&) { return true; });
   return usage(fmt::format("{} takes no value, and '{}' is one", before, shown(word)),
-               meant != nullptr ? fmt::format("use {}", meant->now) : option->get_description());
+               meant != nullptr && !meant->tool.empty() ? fmt::format("use {}", meant->now)
+                                                        : option->get_description());
 }
 
 // "--move 1 0 0": numbers that belong together, as words of their own.
@@ -207,7 +226,7 @@ std::optional<Error> CommandLine::value_in_pieces(const std::vector<std::string>
 
 Error CommandLine::parse_error(const std::vector<std::string>& arguments,
                                const CLI::ParseError& error) const {
-  if (auto unknown = unknown_option(arguments)) return *std::move(unknown);
+  if (auto unknown = unknown_options(arguments)) return *std::move(unknown);
   auto left = app_.remaining();
   std::erase(left, "--");  // before the input of a file of a batch
   if (!left.empty()) {

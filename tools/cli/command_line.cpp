@@ -1,19 +1,18 @@
 #include "tools/cli/command_line.h"
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <iterator>
-#include <string>
 
 #include "core/glob.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/open_scene.h"
-#include "tools/cli/folder_inputs.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli {
 
@@ -126,7 +125,8 @@ void CommandLine::declare_common() {
       .group(kCommon);
   options_
       .add("--limit-time SECONDS", limit_seconds, number(kPositive),
-           "Time for reading a file by another library in a process of its own (FBX, COLLADA and "
+           "CPU time for reading a file by another library in a process of its own (FBX, COLLADA "
+           "and "
            "others, Draco) [15, and 5 per MiB]")
       .group(kCommon);
   options_
@@ -247,6 +247,7 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   fixed_positionals.clear();
   if (auto bare = option_without_value(arguments)) return *std::move(bare);
   if (auto dashed = option_with_one_dash(arguments)) return *std::move(dashed);
+  if (auto apart = json_file_apart(arguments)) return *std::move(apart);
   try {
     app_.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
@@ -256,9 +257,13 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
   } catch (const CLI::ParseError& error) {
     return parse_error(arguments, error);
   }
-  // "--quantize 16 walk.anim": the number is taken for an input.
+  // "--quantize 16 walk.anim", "hero.glb walk.anim --compress draco": taken for an input.
   for (std::size_t i = 1; i < arguments.size(); ++i) {
-    if (!parse_finite(arguments[i]) || std::filesystem::exists(arguments[i])) continue;
+    const bool word =
+        i > 2 && !arguments[i].empty() && std::ranges::all_of(arguments[i], [](char c) {
+          return std::isalnum(static_cast<unsigned char>(c)) != 0;
+        });
+    if (!(word || parse_finite(arguments[i])) || std::filesystem::exists(arguments[i])) continue;
     if (auto value = value_of_flag(arguments, arguments[i])) return *std::move(value);
   }
   if (Status status = check_use_of_batch_options(); !status) return status.error();

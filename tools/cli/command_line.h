@@ -108,8 +108,11 @@ class CommandLine {
   Status check_use_of_batch_options() const;
   std::optional<Error> option_without_value(const std::vector<std::string>& arguments) const;
   std::optional<Error> option_with_one_dash(const std::vector<std::string>& arguments) const;
-  std::optional<Error> unknown_option(const std::vector<std::string>& arguments) const;
-  std::string options_about(const std::string& name) const;
+  std::optional<Error> unknown_option(const std::string& argument) const;
+  std::optional<Error> unknown_options(const std::vector<std::string>& arguments) const;
+  std::string options_like(const std::string& name) const;
+  std::string names_of_own_options() const;
+  std::optional<Error> json_file_apart(const std::vector<std::string>& arguments) const;
   std::optional<Error> value_of_flag(const std::vector<std::string>& arguments,
                                      const std::string& word) const;
   std::optional<Error> value_in_pieces(const std::vector<std::string>& arguments) const;

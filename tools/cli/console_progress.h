@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -29,5 +31,21 @@ void write_message(Console* console, const std::string& text);
 // json: one {"progress": {"what", "done", "total"}} per line. The bar appears after half a second,
 // so that short runs print nothing. NO_COLOR is honoured.
 std::unique_ptr<Console> console_progress(ProgressStyle style);
+
+// Counts messages of many files by code, so that only those of the first few files are printed.
+class AlikeMessages {
+ public:
+  // Whether a message of a file is printed: always if it has no code.
+  bool is_shown(const std::string& code, const std::string& file);
+  // Lines that name the codes whose messages were not all printed, and in how many files.
+  std::string more() const;
+
+ private:
+  struct Said {
+    std::size_t files = 0;
+    std::string last;  // the file that was counted last
+  };
+  std::map<std::string, Said> by_code_;
+};
 
 }  // namespace krok::cli

@@ -8,8 +8,8 @@
 #include "core/text.h"
 #include "formats/io/inputs.h"
 #include "tools/cli/console_progress.h"
-#include "tools/cli/json.h"
 #include "tools/cli/paths.h"
+#include "tools/cli/report.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli {

@@ -7,9 +7,7 @@
 #include <string_view>
 
 #include "core/file.h"
-#include "core/numbers.h"
 #include "core/text.h"
-#include "tools/cli/usage.h"
 
 namespace krok::cli {
 
@@ -252,9 +250,11 @@ std::string maker_of(const std::string& ending) {
       {".html .htm", "krok-view makes pages, krok-walk with --save-page"},
       {".svg .pdf", "krok-plot draws charts"},
       {".csv .tsv", "krok-export writes tables of motions, krok-keys --table those of gait"},
-      {".bvh .npz .npy .mot .sto", "krok-export writes motions so"},
-      {".anim", "krok-import makes motions of captures"},
-      {".fbx .dae .usd .usda .usdz .blend .abc .vrm .ma .mb .c3d .trc",
+      {".bvh .npz .mot .sto", "krok-export writes motions so"},
+      {".npy .mat .h5 .pkl .parquet", "krok-export -o OUT.npz writes arrays of numpy"},
+      {".anim", "krok-import makes motions of captures, krok-retarget those of another skeleton"},
+      {".trc .c3d", "krok-export --what positions -o OUT.sto has the places of joints over time"},
+      {".fbx .dae .usd .usda .usdz .blend .abc .vrm .ma .mb",
        "no tool writes that; Blender, Maya, Unity and Unreal read .glb"},
       {".obj .pc2", "krok-skin writes meshes as .obj and .pc2"}};
   for (const auto& [endings, maker] : kMakers) {
@@ -304,7 +304,9 @@ std::string either_of(const std::vector<std::string>& words) {
 std::string not_one_of(const std::string& text, const std::vector<std::string>& words) {
   const std::string near = nearest_name(text, words);
   return fmt::format("'{}' is not {}{}", shown(text), either_of(words),
-                     near.empty() ? "" : "; did you mean '" + near + "'?");
+                     text.find(',') != std::string::npos ? "; give one at a time"
+                     : near.empty()                      ? ""
+                                                         : "; did you mean '" + near + "'?");
 }
 
 using registry::Kind;

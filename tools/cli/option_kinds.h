@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "formats/registry/registry.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/usage.h"
 
@@ -26,7 +26,7 @@ struct Range {
 inline constexpr Range kNotNegative = {.low = 0};
 inline constexpr Range kPositive = {.low = 0, .above = true};
 
-// Quantities, see core/quantity.h for their units; codes are those of there, and usage beyond the
+// Quantities, see core/numbers.h for their units; codes are those of there, and usage beyond the
 // range.
 ValueKind<double> length(Range metres = {});
 ValueKind<double> length_with_unit(Range metres = {});

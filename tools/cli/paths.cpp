@@ -1,10 +1,20 @@
 #include "tools/cli/paths.h"
 
+#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <set>
 #include <string_view>
+#include <system_error>
+
+#include "core/file.h"
+#include "core/numbers.h"
+#include "core/text.h"
+#include "formats/io/formats.h"
+#include "formats/io/inputs.h"
 
 namespace krok::cli {
 
@@ -109,6 +119,137 @@ std::string absolute_path(const std::string& path) {
   }
   const fs::path absolute = fs::absolute(path, unknown);
   return (unknown ? fs::path(path) : absolute).lexically_normal().string();
+}
+
+std::string file_name_of(const std::string& name) {
+  std::string result;
+  for (const char c : printable(to_utf8(name))) {
+    const bool odd = std::string_view("/\\:*?\"<>|{}$`'&;!").find(c) != std::string_view::npos;
+    result += odd ? '_' : c;
+  }
+  while (result.starts_with('.') || result.starts_with('-')) result[0] = '_';
+  if (result.size() > 100) {
+    std::size_t end = 100;
+    while ((static_cast<unsigned char>(result[end]) & 0xC0) == 0x80) --end;
+    result.resize(end);
+  }
+  return result;
+}
+
+std::string uri_of(const std::string& path) {
+  std::string uri;
+  for (const char c : path) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       std::string_view("-._~/").find(c) != std::string_view::npos;
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri;
+}
+
+std::string beside(const std::string& path, const std::string& ending) {
+  std::filesystem::path result = path;
+  if (!result.has_filename()) result = result.parent_path();
+  std::error_code unknown;
+  const bool folder = std::filesystem::is_directory(result, unknown);
+  if (path == "-" || !result.has_filename() || result.filename() == ".") return {};
+  return (folder ? result.string() : path_without_ending(result.string())) + ending;
+}
+
+std::string name_of_input(const std::string& path) {
+  return path == "-" ? "standard input" : base_name(path);
+}
+
+std::string path_without_ending(const std::string& path) {
+  const auto [file, animation] = io::address_of(path);
+  const std::string stem = std::filesystem::path(file).replace_extension().string();
+  return animation.empty() ? stem : stem + "_" + file_name_of(animation);
+}
+
+std::string clip_name_of(const std::string& path) {
+  const std::string animation = io::address_of(path).animation;
+  if (!animation.empty() && !parse_integer(animation)) return to_utf8(animation);
+  if (!animation.empty()) return to_utf8(base_name(path_without_ending(path)));
+  const std::string name = base_name(path);
+  const std::string stem = name.substr(0, name.size() - extension(path).size());
+  return path == "-" || stem.empty() ? "motion" : to_utf8(stem);
+}
+
+NamedPath named_path(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  std::error_code unknown;
+  const bool named = equals != std::string::npos && equals > 0 && text.find('/') > equals &&
+                     !std::filesystem::exists(text, unknown);
+  if (!named) return {{}, text};
+  return {to_utf8(text.substr(0, equals)), text.substr(equals + 1)};
+}
+
+namespace {
+
+// A capture and the .anim of its name beside it, which was made of it, are one take.
+Diagnostics keep_one_of_each_take(const std::string& folder, std::vector<std::string>& paths) {
+  const auto kind_of = [](const std::string& path) { return registry::kind_of_name(path); };
+  const auto without_ending = [](const std::string& path) {
+    return path.substr(0, path.size() - extension(path).size());
+  };
+  std::set<std::string> motions;
+  for (const std::string& path : paths) {
+    if (kind_of(path) == registry::Kind::anim) motions.insert(without_ending(path));
+  }
+  std::string first;
+  const auto count = std::erase_if(paths, [&](const std::string& path) {
+    if (kind_of(path) == registry::Kind::anim || !motions.contains(without_ending(path))) {
+      return false;
+    }
+    if (first.empty()) first = base_name(path);
+    return true;
+  });
+  if (count == 0) return {};
+  Diagnostic twice = make_warning(
+      "folder-twice",
+      fmt::format("{} left out as the .anim file of the same name beside it is read: {}{}",
+                  counted(static_cast<long long>(count), "capture"), shown(first),
+                  count > 1 ? ", ..." : ""),
+      "name the files to read both");
+  twice.where.file = folder;
+  return {std::move(twice)};
+}
+
+}  // namespace
+
+Diagnostics keep_inputs(const std::string& folder, const std::vector<std::string>& endings,
+                        std::vector<std::string>& paths) {
+  const std::size_t all = paths.size();
+  std::map<std::string, std::size_t> others;  // by ending
+  const io::Format* first_motion = nullptr;
+  std::erase_if(paths, [&](const std::string& path) {
+    const std::string ending = extension(path);
+    if (std::ranges::find(endings, ending) != endings.end()) return false;
+    const io::Format& format = io::format_of(registry::kind_of_name(path));
+    if (format.kind == registry::Kind::unknown || format.companion) return true;
+    ++others[ending];
+    if (first_motion == nullptr && format.reads_motion()) first_motion = &format;
+    return true;
+  });
+  // Where each file is a motion; a list of files or a page has all of them.
+  Diagnostics notes;
+  if (endings == io::motion_endings()) notes = keep_one_of_each_take(folder, paths);
+  if (others.empty()) return notes;
+  std::string counts;
+  std::size_t count = 0;
+  for (const auto& [ending, number] : others) {
+    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", number, ending);
+    count += number;
+  }
+  Diagnostic left_out = make_warning(
+      "folder-left-out", fmt::format("{} of {} files are left out: {}", count, all, counts));
+  if (first_motion != nullptr) {
+    left_out.hint = registry::advice(first_motion->kind, registry::Kind::anim);
+  } else {
+    left_out.severity = Severity::note;
+  }
+  left_out.where.file = folder;
+  notes.push_back(std::move(left_out));
+  return notes;
 }
 
 }  // namespace krok::cli

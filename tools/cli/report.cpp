@@ -7,9 +7,7 @@
 #include <filesystem>
 
 #include "core/file.h"
-#include "core/numbers.h"
 #include "core/text.h"
-#include "tools/cli/json.h"
 
 namespace krok::cli {
 

@@ -1,15 +1,27 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/json_internal.h"
 #include "core/numbers.h"
 #include "core/result.h"
-#include "math/types.h"
-#include "tools/cli/json.h"
+#include "math/transform.h"
 
 namespace krok::cli {
+
+// JSON of reports and journals: members keep insertion order.
+using Json = nlohmann::ordered_json;
+
+// An empty object with memory reserved for this many members; growing an object copies all its
+// members.
+inline Json object_for(std::size_t members) {
+  Json object = Json::object();
+  object.get_ref<Json::object_t&>().reserve(members);
+  return object;
+}
 
 // The report of a run, written as JSON (schema krok.report/1) for scripts. Identical for two runs
 // on the same input.

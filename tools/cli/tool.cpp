@@ -14,12 +14,10 @@
 #include <cstring>
 #include <exception>
 #include <new>
-#include <optional>
 
 #include "core/file.h"
 #include "core/text.h"
 #include "tools/cli/command_line.h"
-#include "tools/cli/console_progress.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
@@ -176,7 +174,16 @@ int run_single(const CommandLine& line) {
                        ? "a folder is given without NAME=, which names a single motion"
                        : "to process a folder, use --out-dir DIR instead of -o";
     }
+    if (error.code == "file-directory" && (spec.name == "krok-walk" || spec.name == "krok-synth")) {
+      error.hint = "krok-fit " + error.where.file + " -o OUT.steps makes a library of its steps";
+    }
     if (error.code == "file-missing") {
+      // "krok-view walk.anim page.html"
+      const std::string written = " .html .htm .svg .pdf .png .mp4 .gif .webp .glb ";
+      if (spec.has_output &&
+          written.find(" " + extension(error.where.file) + " ") < written.size()) {
+        error.hint = "check the path; a file to be written is given with -o";
+      }
       for (const OptionFacts& option : line.options()) {
         const auto has = [&](const GivenOption& given) {
           return !option.positional && option.names.back() == "--" + given.name &&

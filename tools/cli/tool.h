@@ -14,8 +14,9 @@
 #include "formats/io/inputs.h"
 #include "formats/registry/registry.h"
 #include "scene/provenance.h"
-#include "tools/cli/alike_messages.h"
 #include "tools/cli/command_options.h"
+#include "tools/cli/console_progress.h"
+#include "tools/cli/option_search.h"
 #include "tools/cli/report.h"
 
 // The framework of all tools: options, help, messages, exit codes, the report and batch mode. A
@@ -205,10 +206,8 @@ struct ToolSpec {
   // (FILE#ANIMATION), for this output. Called after the options are parsed. None: no.
   std::function<bool(const std::string& output)> each_animation;
 
-  // Tools that have an option, and what it does there, for whoever gives it to another; may be
-  // empty.
-  using ToolWithOption = std::pair<std::string, std::string>;
-  std::function<std::vector<ToolWithOption>(const std::string& option)> tools_with;
+  // The options of all tools, for whoever gives one to another; may be empty.
+  std::function<std::vector<ToolOption>()> options_of_all;
 
   // Adds the tool's own options and positionals.
   std::function<void(CommandOptions&)> declare;

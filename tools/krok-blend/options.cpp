@@ -41,7 +41,10 @@ Result<WeightedInput> parse_weighted_input(const std::string& word) {
     return input;
   }
   input.weight = parse_finite(weight);
-  if (!input.weight) return wrong(fmt::format("invalid weight '{}'", weight));
+  if (!input.weight)
+    return wrong(
+        fmt::format("invalid weight '{}'{}", weight,
+                    weight.ends_with('%') ? ", a share of 1 is written 0.3 for 30 %" : ""));
   return input;
 }
 

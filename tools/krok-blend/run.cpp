@@ -7,17 +7,16 @@
 #include <optional>
 #include <vector>
 
-#include "blend/long_take.h"
+#include "blend/blend_clips.h"
 #include "blend/warp_by_shape.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/io/open_motion.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
-#include "tools/shared/keys_of_take.h"
+#include "tools/shared/keys_sidecar.h"
 #include "tools/shared/planting.h"
 
 namespace krok::cli::blend {

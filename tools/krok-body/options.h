@@ -5,7 +5,7 @@
 #include "body/body.h"
 #include "formats/container/packed_orientation.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/twist_joints.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::body {
 

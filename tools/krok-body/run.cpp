@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "body/long_take.h"
+#include "body/body.h"
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"

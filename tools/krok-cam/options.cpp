@@ -9,7 +9,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::cam {
 

@@ -23,7 +23,7 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "nodes/animation_choice.h"
 #include "nodes/evaluate.h"
 #include "scene/camera_track.h"
@@ -32,7 +32,6 @@
 #include "tools/cli/output_set.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/camera_choice.h"
-#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::cam {
 
@@ -401,7 +400,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (!format) return format.error();
   if (*format == Format::cam && options.given("--aspect") && !film_of(options)) {
     return Error("usage",
-                 "--aspect is for glTF and for filming a motion; a .cam file does not store it");
+                 "--aspect is for glTF and for filming a motion; a .cam file does not store it",
+                 "leave it out; krok-render --size WIDTHxHEIGHT gives the picture its shape");
   }
   auto shot = make_shot(options, context);
   if (!shot) return shot.error();

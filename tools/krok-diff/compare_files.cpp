@@ -6,7 +6,6 @@
 #include "compare/clip_difference.h"
 #include "compare/model_difference.h"
 #include "core/numbers.h"
-#include "core/text.h"
 #include "formats/cam/cam.h"
 #include "formats/io/formats.h"
 #include "formats/io/open_character.h"

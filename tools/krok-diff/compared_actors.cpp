@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "compare/matching.h"
-#include "compare/skeleton_match.h"
 #include "core/index.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "roles/body_frame.h"
 #include "roles/roles.h"
 #include "tools/krok-diff/difference_sheet.h"

@@ -140,6 +140,7 @@ Json to_json(const Row& row, const PlaceNames& names) {
     return row.unit == Unit::angle ? to_degrees(value) : value;
   };
   entry["largest"] = reported(measure.largest);
+  entry["mean"] = reported(measure.mean());
   entry["rms"] = reported(measure.rms());
   entry["percentile_95"] = reported(measure.percentile(0.95));
   entry["tolerance"] = reported(measure.tolerance);
@@ -255,6 +256,25 @@ std::string tolerances(const Outcome& outcome, const compare::Tolerance& toleran
   return text;
 }
 
+// The option that sets the tolerance of what is beyond it, if that is none of lengths, for which
+// users look first: "--angle sets the tolerance of orientations". Empty otherwise.
+std::string option_for(const Outcome& outcome, const compare::Tolerance& tolerance) {
+  const Row* const worst = worst_row(outcome);
+  if (worst == nullptr || worst->unit == Unit::side) return {};
+  const bool lengths = std::ranges::any_of(outcome.rows, [](const Row& row) {
+    return row.unit == Unit::length && !row.measure.within();
+  });
+  if (lengths) return {};
+  const auto option = [&] {
+    if (worst->unit == Unit::ratio) return "--ratio";
+    if (worst->unit == Unit::time) return "--times";
+    if (tolerance.normals && worst->what == "normals") return "--normals";
+    const bool joints = tolerance.joint_orientations && worst->what.ends_with("orientations");
+    return joints ? "--joint-tolerance" : "--angle";
+  };
+  return fmt::format("; {} sets the tolerance of {}", option(), worst->what);
+}
+
 }  // namespace
 
 void Outcome::add_row(std::string what, Unit unit, const compare::Measure& measure) {
@@ -307,7 +327,8 @@ std::string to_text(const Outcome& outcome, const compare::Tolerance& tolerance)
   if (outcome.same) {
     text += fmt::format("the same within {}\n", tolerances(outcome, tolerance));
   } else if (measured_over) {
-    text += fmt::format("beyond tolerance ({})\n", tolerances(outcome, tolerance));
+    text += fmt::format("beyond tolerance ({}){}\n", tolerances(outcome, tolerance),
+                        option_for(outcome, tolerance));
   } else {
     text += "not the same\n";
   }

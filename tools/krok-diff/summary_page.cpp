@@ -10,7 +10,6 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
 #include "tools/cli/paths.h"
 #include "tools/krok-diff/options.h"

@@ -8,8 +8,9 @@
 
 #include "core/numbers.h"
 #include "core/text.h"
-#include "motion/cut.h"
 #include "motion/loop.h"
+#include "motion/sample.h"
+#include "motion/travel.h"
 
 namespace krok::cli::edit {
 
@@ -113,6 +114,18 @@ Result<Cycle> best_cycle(const Clip& clip, int carrier, std::span<const Keytime>
   std::erase_if(cycles, [&](const Cycle& cycle) {
     return length(cycle) > kOddLength * usual || length(cycle) * kOddLength < usual;
   });
+  // Takes that were put together jump from one part to the next.
+  std::vector<Vec3f> track;
+  for (int f = first; f <= last; ++f) {
+    track.push_back(clip.frame_positions(f)[static_cast<std::size_t>(carrier)]);
+  }
+  const std::vector<Jump> jumps = jumps_of(track, clip.rate);
+  std::erase_if(cycles, [&](const Cycle& cycle) {
+    return std::ranges::any_of(jumps, [&](const Jump& jump) {
+      return first + jump.frame > cycle.first && first + jump.frame <= cycle.last;
+    });
+  });
+  if (cycles.empty()) return none("the hips jump in each cycle");
   // A walk is looped along a straight way where there is one: a stride that turns has legs that
   // step aside, and its loop walks in a circle.
   std::optional<Cycle> best;

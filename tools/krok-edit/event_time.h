@@ -32,7 +32,7 @@ struct Cycle {
 
 // The cycle between frames `first` and `last` whose ends match best in pose and velocity, of those
 // that are straight if there are any. Cycles far from the usual length, where a strike was missed,
-// do not count. Code edit-cycle if there is none.
+// and those in which the hips jump do not count. Code edit-cycle if there is none.
 Result<Cycle> best_cycle(const Clip& clip, int carrier, std::span<const Keytime> keytimes,
                          CycleFoot foot, int first, int last);
 

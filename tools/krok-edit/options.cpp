@@ -2,10 +2,8 @@
 
 #include <memory>
 
-#include "core/numbers.h"
 #include "formats/io/formats.h"
 #include "tools/krok-edit/event_time.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::edit {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "filter/smooth_clip.h"
 #include "formats/container/packed_orientation.h"

@@ -6,15 +6,13 @@
 
 #include "character/space.h"
 #include "contacts/loop_steps.h"
-#include "contacts/slide_speed.h"
+#include "contacts/sole_points.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "motion/ground_frame.h"
-#include "motion/place.h"
+#include "motion/hips_root.h"
 #include "motion/travel.h"
 #include "roles/body_frame.h"
-#include "roles/stature.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 #include "settle/settle.h"
 #include "tools/krok-edit/steps.h"
 
@@ -70,6 +68,33 @@ double height_of(const Skeleton& skeleton) {
   const RoleMap roles = find_roles(skeleton);
   const auto stature = roles.humanoid ? stature_of(skeleton, roles) : std::nullopt;
   return stature ? stature->metres : reference_height(skeleton);
+}
+
+// Warns of hips that jump, which neither planted feet nor a velocity that is taken out allows for.
+Status warn_of_jumps(const Options& options, const Edit& edit, ToolContext& context) {
+  std::vector<Vec3f> track;
+  const FrameSource source = edit.source();
+  track.reserve(static_cast<std::size_t>(source.frame_count));
+  const auto look = [&](int, const Clip& part) {
+    for (int f = 0; f < part.frame_count(); ++f) {
+      track.push_back(part.frame_positions(f)[static_cast<std::size_t>(edit.carrier)]);
+    }
+    return Status();
+  };
+  if (Status status = for_each_block(source, 1, look); !status) return status;
+  const std::vector<Jump> jumps = jumps_of(track, source.rate);
+  if (jumps.empty()) return {};
+  const Jump& first = jumps.front();
+  context.warn(
+      "edit-jump",
+      fmt::format("the hips jump by {} m at {} s (frame {} of the cut take){}: {}",
+                  readable(first.distance, 3), readable(first.frame / source.rate, 3), first.frame,
+                  jumps.size() > 1 ? fmt::format(", and {} more times", jumps.size() - 1) : "",
+                  options.in_place || options.treadmill
+                      ? "the velocity that is taken out includes it"
+                      : "no foot is planted across that"),
+      "cut the parts with --from and --to; krok-lint lists jumps");
+  return {};
 }
 
 // Warns of slopes and stairs that the motion never comes to.
@@ -133,6 +158,9 @@ void complete_game_loop(Options& options, Edit& edit) {
 }
 
 Status take_out_travel(const Options& options, ToolContext& context, Edit& edit) {
+  if (options.plant || options.in_place || options.treadmill) {
+    if (Status status = warn_of_jumps(options, edit, context); !status) return status;
+  }
   if (!options.in_place && !options.treadmill) return {};
   const Travel removed = options.in_place ? Travel::all : Travel::trend;
   const FrameSource source = edit.source();
@@ -223,7 +251,7 @@ Status change_place(const Options& options, ToolContext& context, Edit& edit) {
   if (options.at_origin) apply(to_origin(clip, edit.carrier), "starts above the origin");
   auto& root_motion = clip.provenance.removed_root_motion;
   if (options.game_loop && !edit.kept_loop && !options.heading && !options.re_orient) {
-    const double turn = -forward(edit);
+    const double turn = std::remainder(-forward(edit), 2 * kPi);
     apply(turned_about_start(clip, edit.carrier, turn),
           fmt::format("turned by {} deg to +Z", degrees(turn)));
   }

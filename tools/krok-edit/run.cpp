@@ -15,13 +15,13 @@
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/sequences/sequences.h"
-#include "motion/ground_frame.h"
-#include "scene/frame_blocks.h"
-#include "tools/cli/file_name.h"
+#include "motion/hips_root.h"
+#include "scene/frame_source.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/steps.h"
-#include "tools/shared/keys_of_take.h"
+#include "tools/shared/keys_sidecar.h"
 #include "tools/shared/planting.h"
 
 namespace krok::cli::edit {

@@ -6,12 +6,11 @@
 #include "contacts/loop_steps.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "motion/cut.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/join.h"
 #include "motion/mirror.h"
-#include "motion/retime.h"
-#include "scene/frame_blocks.h"
+#include "motion/sample.h"
+#include "scene/frame_source.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-edit/event_time.h"
@@ -321,6 +320,10 @@ Status change_timing(const Options& options, ToolContext& context, Edit& edit) {
   return {};
 }
 
+// Degrees that poses differ by where motions meet; walks in step differ by up to 27, those half a
+// cycle apart by 37 to 71.
+constexpr double kPoorJoin = 35;
+
 Status append_motions(const Options& options, ToolContext& context, Edit& edit) {
   for (std::size_t i = 0; i < edit.appended.size(); ++i) {
     const std::string& path = options.append[i];
@@ -351,6 +354,15 @@ Status append_motions(const Options& options, ToolContext& context, Edit& edit) 
       line += fmt::format(", resampled from {} fps", readable(next.rate));
     }
     edit.note("append", std::move(metrics), std::move(line));
+    if (to_degrees(joined->largest_angle) > kPoorJoin) {
+      context.warn("edit-join",
+                   fmt::format("poses where {} is appended differ by up to {} ({}), so feet may "
+                               "slide there",
+                               base_name(path), in_degrees(joined->largest_angle),
+                               joint_name(edit, joined->largest_joint)),
+                   "cut both where their poses are alike (--from, --to), or use krok-mix, which "
+                   "keeps walks in step");
+    }
   }
   return {};
 }

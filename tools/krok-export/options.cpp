@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "formats/io/formats.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/paths.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::exporting {
@@ -53,6 +53,11 @@ ValueKind<What> series_kind() {
           "quaternions has rotations in the world, local relative to the parent, angles those of "
           "hips, knees and others in degrees; -o OUT.bvh has Euler angles of all joints";
     }
+    if (text.find(',') != std::string::npos) error.hint = "a table has one of them: write several";
+    if (text.starts_with("accel")) error.hint = "velocities has what to differentiate";
+    if (text == "com" || text.starts_with("center") || text.starts_with("centre")) {
+      error.hint = "no centre of mass is computed; positions has the hips, which are near it";
+    }
     if (text == "events") error.hint = "krok-keys -o NAME.keys.json has gait events";
     return error;
   };
@@ -85,7 +90,8 @@ Result<ExportFormat> format_of(const Options& options, const std::string& output
 Status check_for(ExportFormat format, const Options& options) {
   using enum ExportFormat;
   const bool opensim = format == mot || format == sto;
-  const char* const for_bvh = "--digits, --order and --root-offset are for BVH";
+  const char* const for_bvh =
+      "--digits, --order and --root-offset are for BVH; tables have quaternions qx, qy, qz, qw";
   const char* const for_tables = "--what is for tables: .csv, .mot and .sto";
   const struct {
     const char* option;

@@ -10,7 +10,6 @@
 #include "capture/conventions.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "core/quantity.h"
 #include "core/result.h"
 #include "core/text.h"
 #include "draw/joint_angles.h"
@@ -19,6 +18,7 @@
 #include "formats/gltf/gltf_writer.h"
 #include "formats/gltf/joint_tracks.h"
 #include "formats/io/formats.h"
+#include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "formats/npy/npz_motion.h"
 #include "formats/opensim/storage_writer.h"
@@ -26,13 +26,13 @@
 #include "retarget/stance.h"
 #include "roles/roles.h"
 #include "scene/clip.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 #include "scene/motion_keys.h"
 #include "skin/bind.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
-#include "tools/shared/keys_of_take.h"
+#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::exporting {
 
@@ -299,6 +299,19 @@ Result<io::MotionSummary> export_gltf(bool binary, const Options& options, ToolC
     }
   }
   if (Status status = outputs->finish(); !status) return status.error();
+  if (io::format_of(*input).read_scene != nullptr) {
+    const auto actor =
+        io::open_actor(*input, context, {.with_materials = false, .with_motions = false});
+    // What this tool wrote has a mesh of its bones.
+    const bool made =
+        actor && actor->model.vertex_count() == bone_mesh(facts->skeleton).vertex_count();
+    if (actor && actor->has_mesh() && !made) {
+      context.diagnose_in(
+          options.input(),
+          {make_warning("export-mesh", "its mesh is not in the result",
+                        "krok-skin CHARACTER CHARACTER -o OUT.glb keeps the mesh")});
+    }
+  }
   return facts;
 }
 
@@ -550,8 +563,8 @@ Result<int> run(const Options& options, ToolContext& context) {
   if (options.inputs.size() > 1 || context.of_folder) {
     if (*format == ExportFormat::csv) return export_table_of_all(options, context);
     return usage("several motions are given for one file",
-                 "-o OUT.csv is one table of all; --out-dir DIR writes a file of each; krok-skin "
-                 "puts many clips into one .glb");
+                 "-o OUT.csv is one table of all; --format FORMAT --out-dir DIR writes a file of "
+                 "each; krok-skin puts many clips into one .glb");
   }
   const bool is_glb = *format == ExportFormat::glb;
   std::optional<Reduction> reduction;

@@ -13,7 +13,6 @@
 #include "core/path_inside.h"
 #include "core/text.h"
 #include "correctives/fit_correctives.h"
-#include "formats/correctives/corrective_poses.h"
 #include "formats/correctives/correctives_format.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"

@@ -11,7 +11,7 @@
 #include "core/glob.h"
 #include "core/numbers.h"
 #include "formats/io/open_motion.h"
-#include "motion/cut.h"
+#include "motion/sample.h"
 #include "parametric/library.h"
 #include "tools/cli/paths.h"
 #include "tools/shared/keys_sidecar.h"

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "fit/polish.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "parametric/bounds.h"
 #include "rbf/weight_solver.h"
 

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "core/numbers.h"
-#include "tools/krok-fit/fit_library.h"
 
 namespace krok::cli::fit {
 

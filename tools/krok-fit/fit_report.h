@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "parametric/parameter.h"
 #include "tools/cli/report.h"
 #include "tools/cli/tool.h"

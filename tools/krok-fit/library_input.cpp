@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "formats/io/formats.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "parametric/thin_out.h"
 #include "rbf/weight_function.h"
 #include "tools/cli/usage.h"

@@ -8,7 +8,6 @@
 #include "core/text.h"
 #include "formats/chart/chart_writer.h"
 #include "formats/io/formats.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::ik {
 

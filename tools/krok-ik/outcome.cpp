@@ -12,7 +12,7 @@
 #include "core/text.h"
 #include "ik/limits.h"
 #include "ik/whole_body.h"
-#include "scene/frame_blocks.h"
+#include "scene/frame_source.h"
 #include "tools/cli/option_kinds.h"
 
 namespace krok::cli::ik {

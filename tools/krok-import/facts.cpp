@@ -8,8 +8,8 @@
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "tools/cli/file_name.h"
-#include "tools/cli/json.h"
+#include "tools/cli/paths.h"
+#include "tools/cli/report.h"
 #include "tools/shared/role_report.h"
 
 namespace krok::cli::import {

@@ -7,7 +7,7 @@
 #include "formats/io/open_capture.h"
 #include "nodes/animation_choice.h"
 #include "nodes/scene.h"
-#include "roles/stature.h"
+#include "roles/body_frame.h"
 #include "scene/frame_source.h"
 #include "tools/cli/tool.h"
 

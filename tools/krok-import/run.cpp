@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "character/space.h"
+#include "contacts/long_take.h"
 #include "core/file.h"
 #include "core/numbers.h"
 #include "core/result.h"
@@ -26,6 +27,7 @@
 #include "tools/cli/tool.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-import/facts.h"
+#include "tools/krok-import/repeats.h"
 #include "tools/krok-import/scene_importer.h"
 #include "tools/shared/keys_sidecar.h"
 
@@ -152,9 +154,15 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
                     readable(options.resample)));
     frames = frames_of(*resampled);
   }
+  Repeats repeats;
+  frames = repeats.watched(frames);
   // The diagnostics and the checksum are complete once all frames were read.
   Provenance provenance;
   const auto complete = [&] {
+    if (auto warning = repeats.warning()) {
+      warning->where.file = input.path();
+      capture.diagnostics.push_back(*std::move(warning));
+    }
     context.diagnose(capture.diagnostics);
     context.note_checksum(input);
     provenance = context.provenance();
@@ -177,6 +185,12 @@ Status write_capture(const io::OpenedCapture& opened, const InputFile& input,
     return model::write(model, {.orientation = options.orientation}, file);
   });
   if (status) {
+    // What reads keytimes beside a motion would take a file of contacts alone for one without
+    // steps.
+    if (capture.keys.keytimes.empty() && !capture.keys.contacts.empty()) {
+      auto found = find_in_long_take(frames, capture.roles, context.jobs, context.progress);
+      if (found) capture.keys.keytimes = std::move(found->keys.keytimes);
+    }
     status = add_keys(capture.keys, frames.skeleton, frames.duration(), output, outputs);
   }
   if (status) status = outputs.finish();

@@ -7,7 +7,6 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "nodes/animation_choice.h"
-#include "tools/krok-import/facts.h"
 #include "tools/shared/camera_choice.h"
 #include "tools/shared/role_report.h"
 

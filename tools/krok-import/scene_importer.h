@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "character/mesh.h"
-#include "character/scene_motion.h"
+#include "character/motion.h"
 #include "character/space.h"
 #include "core/file.h"
 #include "core/result.h"

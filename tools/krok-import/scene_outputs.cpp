@@ -14,7 +14,6 @@
 #include "core/file.h"
 #include "core/index.h"
 #include "core/numbers.h"
-#include "core/path_inside.h"
 #include "core/text.h"
 #include "formats/anim/anim.h"
 #include "formats/cam/cam.h"
@@ -29,10 +28,11 @@
 #include "roles/roles.h"
 #include "scene/character.h"
 #include "scene/encoded_image.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/krok-import/facts.h"
+#include "tools/krok-import/repeats.h"
 #include "tools/krok-import/scene_importer.h"
 
 // Outputs of a scene import: the actor, its motions, a camera.
@@ -404,6 +404,7 @@ Status SceneImporter::add_clip(const ChosenClip& chosen) {
                                context_.jobs, context_.progress, found, &stretches);
     if (!clip) return clip.error();
     context_.diagnose_in(path_, std::exchange(found, {}));
+    if (const auto repeats = Repeats::in(*clip)) context_.diagnose_in(path_, {*repeats});
     report_sampling(chosen, animation, sampling->sampling, facts);
     auto conversions = std::move(clip->provenance.conversions);
     clip->provenance = context_.provenance();

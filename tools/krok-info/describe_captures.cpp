@@ -6,8 +6,6 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "core/parallel.h"
-#include "core/text.h"
 #include "describe.h"
 #include "formats/bvh/bvh_reader.h"
 #include "formats/io/open_capture.h"

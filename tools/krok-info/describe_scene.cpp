@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "character/scene_motion.h"
+#include "character/motion.h"
 #include "character/space.h"
 #include "core/numbers.h"
 #include "formats/io/open_scene.h"

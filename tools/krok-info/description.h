@@ -8,7 +8,7 @@
 
 #include "capture/convention_choice.h"
 #include "core/numbers.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "scene/mesh_volume.h"
 #include "scene/provenance.h"
 #include "tools/cli/report.h"

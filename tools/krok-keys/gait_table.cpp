@@ -9,14 +9,15 @@
 #include <tuple>
 
 #include "contacts/loop_steps.h"
-#include "contacts/slide_speed.h"
+#include "contacts/sole_points.h"
 #include "core/numbers.h"
 #include "core/text.h"
-#include "formats/csv/field.h"
+#include "formats/csv/csv_writer.h"
 #include "formats/io/open_motion.h"
-#include "tools/cli/file_name.h"
+#include "motion/travel.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::keys {
@@ -62,7 +63,18 @@ Result<std::string> gait_row(const std::string& path, const io::FindRoles& find_
   if (!keys) return keys.error();
   const MotionKeys none;
   const MotionKeys& found = *keys ? **keys : none;
-  return row_of(path, clip->duration(), gait_facts(*clip, *roles, found.keytimes));
+  const GaitFacts facts = gait_facts(*clip, *roles, found.keytimes);
+  if (facts.gait.cycles == 0 && !found.keytimes.empty()) {
+    const bool no_step = facts.steps.steps == 0;
+    context.diagnose_in(
+        path, {make_warning("keys-no-cycle",
+                            fmt::format("no foot makes a whole cycle, from strike to strike{}: "
+                                        "{}cadence, stance and double support are blank",
+                                        no_step ? ", and there are no three stances in turn" : "",
+                                        no_step ? "speed, lengths, width, " : ""))});
+  }
+  context.diagnose_in(path, doubts_of_gait(*clip, *roles));
+  return row_of(path, clip->duration(), facts);
 }
 
 Result<std::string> event_rows(const std::string& path, const io::FindRoles& find_roles,
@@ -133,6 +145,23 @@ GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<K
   facts.gait.cycles = std::min(facts.gait.cycles, static_cast<int>(strikes));
   facts.steps.steps = std::min(facts.steps.steps, static_cast<int>(strikes));
   return facts;
+}
+
+Diagnostics doubts_of_gait(const Clip& clip, const RoleMap& roles) {
+  const int hips = roles.joint(Role::hips);
+  std::vector<Jump> jumps = hips < 0 ? std::vector<Jump>() : jumps_of(clip, hips);
+  // Out of a rest pose in the first frame, of which readers warn.
+  std::erase_if(jumps, [](const Jump& jump) { return jump.frame == 1; });
+  if (jumps.empty()) return {};
+  const Jump& first = jumps.front();
+  return {make_warning(
+      "keys-jump",
+      fmt::format(
+          "the hips jump by {} m at {} s{}: no stride is measured across that, steps beside "
+          "it may be wrong",
+          readable(first.distance, 3), readable(first.frame / clip.rate, 3),
+          jumps.size() > 1 ? fmt::format(", and {} more times", jumps.size() - 1) : ""),
+      "cut the parts with krok-edit --from and --to")};
 }
 
 Result<int> write_gait_table(const Options& options, ToolContext& context) {

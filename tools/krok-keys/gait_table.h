@@ -26,10 +26,15 @@ struct GaitFacts {
     if (!steps.are_steady()) return "unsteady";
     // Feet that are down for half of a cycle and more do not fly.
     if (is_run() && gait.stance[0] + gait.stance[1] >= 1) return "";
+    // A flight without progress is a kick or a jump on the spot.
+    constexpr double kSlowestRun = 0.8;  // metres per second
+    if (is_run() && steps.speed.value_or(0) < kSlowestRun) return "";
     return !steps.are_gait() ? "" : is_run() ? "run" : "walk";
   }
 };
 GaitFacts gait_facts(const Clip& clip, const RoleMap& roles, const std::vector<Keytime>& keytimes);
+// What makes them doubtful: hips that jump (keys-jump), as where a path goes back to its start.
+Diagnostics doubts_of_gait(const Clip& clip, const RoleMap& roles);
 
 // Writes --table: a row for each motion, with keytimes of its sidecar or detected. Motions that
 // cannot be read are reported and left out; the exit code then is kExitPartly.

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"

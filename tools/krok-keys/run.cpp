@@ -13,14 +13,13 @@
 #include "contacts/loop_steps.h"
 #include "core/numbers.h"
 #include "core/result.h"
-#include "core/text.h"
 #include "draw/plot.h"
 #include "formats/chart/chart_writer.h"
 #include "formats/io/open_motion.h"
 #include "formats/keys/keys.h"
 #include "scene/clip.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-keys/gait_table.h"
 #include "tools/shared/keys_sidecar.h"
@@ -239,9 +238,11 @@ Json as_json(const krok::keys::Sidecar& sidecar, const Skeleton& skeleton) {
 std::string gait_text(const GaitFacts& facts) {
   const auto& [gait, steps, slide] = facts;
   if (gait.cycles == 0) return {};
-  std::string text =
-      fmt::format("; {:.0f} steps per minute, stance {:.0f} % and {:.0f} % of a cycle",
-                  gait.cadence, 100 * gait.stance[0], 100 * gait.stance[1]);
+  const auto stance = [&](double share) {
+    return share > 0 ? fmt::format("{:.0f} %", 100 * share) : std::string("an unknown part");
+  };
+  std::string text = fmt::format("; {:.0f} steps per minute, stance {} and {} of a cycle",
+                                 gait.cadence, stance(gait.stance[0]), stance(gait.stance[1]));
   if (steps.speed) {
     text += fmt::format(", {} m/s, strides of {} m", readable(*steps.speed, 3),
                         readable(*steps.stride_length, 3));
@@ -384,6 +385,7 @@ Result<int> run(const Options& options, ToolContext& context) {
                                       std::move(contacts), sidecar, context);
   if (!status) return status.error();
 
+  context.diagnose_in(options.input(), doubts_of_gait(*clip, *roles));
   report(options, sidecar, clip->skeleton, gait_facts(*clip, *roles, sidecar.keys.keytimes),
          *finding, context);
   return options.find == Find::steps && sidecar.keys.keytimes.empty() ? kExitNo : kExitDone;

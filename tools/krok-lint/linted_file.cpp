@@ -14,17 +14,14 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "formats/io/open_character.h"
-#include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
-#include "lint/long_take.h"
 #include "lint/mesh_rules.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/travel.h"
 #include "nodes/evaluate.h"
 #include "ragdoll/overlaps.h"
-#include "tools/cli/file_name.h"
-#include "tools/shared/keys_sidecar.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli::lint {
 

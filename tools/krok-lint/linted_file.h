@@ -10,10 +10,9 @@
 #include "core/result.h"
 #include "formats/io/open_motion.h"
 #include "formats/lint/lint.h"
-#include "lint/duplicates.h"
 #include "lint/lint.h"
 #include "terrain/terrain.h"
-#include "tools/cli/json.h"
+#include "tools/cli/report.h"
 #include "tools/krok-lint/options.h"
 
 namespace krok::cli::lint {

@@ -10,7 +10,6 @@
 #include "formats/io/formats.h"
 #include "formats/registry/registry.h"
 #include "lint/rules.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::lint {
 
@@ -86,6 +85,10 @@ Status check_options(const Options& o) {
   }
   if (!o.save_pages.empty() && o.html.empty()) {
     return usage("--save-pages is for pages that --html leads to", "give --html faults.html, too");
+  }
+  if (o.list_rules && !o.inputs.empty()) {
+    return usage("--rules prints the rules, and checks nothing",
+                 "krok-lint IN... --only RULE checks for one; leave the inputs out for the list");
   }
   if (o.inputs.empty() && !o.list_rules) return usage("no input given", "see krok-lint --help");
   return {};

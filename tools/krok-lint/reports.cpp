@@ -1,4 +1,3 @@
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,14 +5,13 @@
 #include <filesystem>
 
 #include "core/numbers.h"
-#include "core/parallel.h"
 #include "core/text.h"
 #include "draw/viewer_page.h"
-#include "formats/csv/field.h"
+#include "formats/csv/csv_writer.h"
 #include "formats/io/open_character.h"
 #include "render/image.h"
 #include "render/sheet.h"
-#include "tools/cli/file_name.h"
+#include "tools/cli/paths.h"
 #include "tools/krok-lint/linted_file.h"
 #include "tools/shared/moving_actor.h"
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <tuple>
 #include <vector>
@@ -16,8 +15,8 @@
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
 #include "plant/plant_feet.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/krok-lint/linted_file.h"
 
 namespace krok::cli::lint {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "core/text.h"
-#include "face/mix.h"
+#include "face/visemes.h"
 #include "formats/textgrid/textgrid.h"
 #include "formats/weights/weights.h"
 #include "tools/cli/paths.h"

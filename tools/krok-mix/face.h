@@ -7,7 +7,7 @@
 #include "formats/timeline/timeline_file.h"
 #include "ik/gaze.h"
 #include "roles/roles.h"
-#include "scene/actor.h"
+#include "scene/character.h"
 #include "scene/clip.h"
 #include "scene/morph_set.h"
 #include "tools/cli/tool.h"

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/numbers.h"
 #include "formats/weights/weights.h"
 #include "skin/morph.h"

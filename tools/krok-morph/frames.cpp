@@ -11,7 +11,6 @@
 #include "capture/unique_names.h"
 #include "core/numbers.h"
 #include "core/path_inside.h"
-#include "core/quantity.h"
 #include "core/result.h"
 #include "core/text.h"
 #include "formats/csv/csv_writer.h"

@@ -4,7 +4,6 @@
 
 #include <memory>
 
-#include "core/numbers.h"
 #include "tools/shared/shared_options.h"
 
 namespace krok::cli::morph {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "capture/conventions.h"
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"

@@ -13,8 +13,8 @@
 #include "formats/obj/obj_writer.h"
 #include "formats/registry/registry.h"
 #include "skin/surface_normals.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/krok-morph/options.h"
 #include "tools/krok-morph/shape_file.h"
 
@@ -83,7 +83,9 @@ Json report_targets(const ShapeFile& base, const MorphSet& morphs, ToolContext& 
 Result<int> pack(const Options& options, ToolContext& context) {
   const std::string end = extension(context.output);
   if (end != ".exr" && context.output != "-") {
-    return Error("morph-format", "pack writes .exr files").in_file(context.output);
+    return Error("morph-format", "pack writes .exr files",
+                 "write -o OUT.exr; krok-skin --morph reads it")
+        .in_file(context.output);
   }
   const bool alone = options.files.size() == 1;
   auto base = read_shape(options.files[0], options, context, true);

@@ -14,10 +14,10 @@
 #include "core/text.h"
 #include "draw/difference_chart.h"
 #include "formats/io/open_motion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/joint_selection.h"
 #include "terrain/shapes.h"
-#include "tools/cli/file_name.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 #include "tools/shared/keys_sidecar.h"
 #include "tools/shared/shown_ground.h"
@@ -176,6 +176,15 @@ class MotionChart {
                                 cycles.runs, all),
                     "give walks or runs alone; krok keys IN... --table OUT.csv names the gait of "
                     "each file");
+    }
+    // The mean is of cycles, so that a long take counts for more than a short one.
+    if (2 * cycles.max_cycles > all && 2 * cycles.max_cycles * cycles.motions > 3 * all) {
+      context_.warn(
+          "plot-cycles",
+          fmt::format("{} of {} gait cycles are of one of {} motions, {}: the mean is mostly its",
+                      cycles.max_cycles, all, cycles.motions,
+                      motions_.files[static_cast<std::size_t>(cycles.max_cycles_of)].path),
+          "krok-edit --from, --to shortens it");
     }
     append(chart_.panels, std::move(cycles.panels));
     chart_.title =

@@ -3,17 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <string_view>
 
 #include "core/file.h"
-#include "core/numbers.h"
 #include "core/text.h"
 #include "formats/chart/chart_writer.h"
 #include "formats/io/formats.h"
-#include "tools/cli/file_name.h"
-#include "tools/shared/shared_options.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli::plot {
 
@@ -29,6 +26,8 @@ Error with_home(Error error, const std::string& text) {
       {"hip hips knee knees ankle ankles shoulder elbow joint joints",
        "angles draws hips, knees, ankles, shoulders and elbows, cycles their mean over the gait "
        "cycle; --joint NAME another joint; krok-export --what angles is a table"},
+      {"emg force forces moment moments torque power grf com",
+       "none of a motion's charts; krok-plot TABLE.csv draws columns of a table"},
       {"sheet poses actor", "--sheet OUT.png shows the actors"}};
   const std::string word = text.substr(0, text.find('_'));  // of hip_flexion_l, knee_angle_r
   for (const auto& [words, home] : kHomes) {
@@ -134,9 +133,10 @@ void declare_motions(CommandOptions& command, MotionOptions& o) {
 void declare_tables(CommandOptions& command, Options& o) {
   TableOptions& table = o.columns_of_table;
   command.group("Tables");
-  command.add_flag("--as-table", o.table,
-                   "The inputs are tables (CSV); implied for .csv and .tsv files. Units are read "
-                   "from column names: time [s], time (s), time_s");
+  command.add_flag(
+      "--as-table", o.table,
+      "The inputs are tables (CSV); implied for .csv, .tsv, .mot and .sto files. Units are read "
+      "from column names: time [s], time (s), time_s");
   command.add_option("--x COLUMN", table.x, "The x column; default: the time column, or the first");
   command
       .add_option("--y COLUMNS", table.y,
@@ -145,7 +145,7 @@ void declare_tables(CommandOptions& command, Options& o) {
       .one_each_time();
   command.add_option(
       "--by COLUMN", table.by,
-      "Draw a line per value of this column; default: the only text column, if there is one");
+      "Draw a line per value of this column; default: the columns of text, such as joint and file");
   command.add("--where", table.where,
               ValueKind<std::pair<std::string, std::string>>{
                   "condition", "COLUMN=VALUE", parse_condition, {}},
@@ -161,7 +161,7 @@ void declare_tables(CommandOptions& command, Options& o) {
 
 bool is_table(const std::string& path) {
   const std::string ending = extension(path);
-  return ending == ".csv" || ending == ".tsv";
+  return ending == ".csv" || ending == ".tsv" || ending == ".mot" || ending == ".sto";
 }
 
 void declare(CommandOptions& command, Options& o) {

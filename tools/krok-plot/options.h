@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "draw/plot.h"
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "tools/cli/command_options.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-plot/sheet.h"

@@ -9,8 +9,8 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/chart/chart_writer.h"
-#include "tools/cli/file_name.h"
 #include "tools/cli/output_set.h"
+#include "tools/cli/paths.h"
 #include "tools/krok-plot/charts.h"
 
 namespace krok::cli::plot {

@@ -8,9 +8,7 @@
 
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "render/strip.h"
-#include "tools/shared/shared_options.h"
-#include "tools/shared/sheet_ground.h"
+#include "render/sheet.h"
 #include "tools/shared/shown_ground.h"
 
 namespace krok::cli::plot {

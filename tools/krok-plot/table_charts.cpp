@@ -10,7 +10,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "tools/cli/file_name.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli::plot {
 
@@ -26,7 +26,7 @@ constexpr std::size_t kMaxNames = 30;  // in a hint
 struct Choice {
   std::optional<std::size_t> x;                  // empty for the row number
   std::vector<std::vector<std::size_t>> panels;  // columns
-  std::optional<std::size_t> by;
+  std::vector<std::size_t> by;
 };
 
 // Whether a column is a frame or time counter rather than data.
@@ -139,10 +139,16 @@ Result<Choice> choose(const Table& table, const TableOptions& options) {
   if (!options.by.empty()) {
     const auto by = table.find(options.by);
     if (!by) return by.error();
-    choice.by = *by;
-  } else if (std::count(table.numeric().begin(), table.numeric().end(), 0) == 1) {
-    const auto words = std::find(table.numeric().begin(), table.numeric().end(), 0);
-    choice.by = static_cast<std::size_t>(words - table.numeric().begin());
+    choice.by = {*by};
+    return choice;
+  }
+  const bool alone = std::ranges::count(table.numeric(), 0) == 1;
+  for (std::size_t c = 0; c < table.columns().size(); ++c) {
+    if (table.numeric()[c] != 0) continue;
+    const auto cells = table.texts(c);
+    // Words that differ from row to row name no lines.
+    const std::set<std::string> values(cells.begin(), cells.end());
+    if (alone || 2 * values.size() <= cells.size()) choice.by.push_back(c);
   }
   return choice;
 }
@@ -183,27 +189,38 @@ Result<std::vector<std::size_t>> chosen_rows(const Table& table, const TableOpti
   return error;
 }
 
-// The rows of one line: those with the same value in the column `by`, in order of appearance.
+// The rows of one line: those with the same values in the columns `by`, in order of appearance.
+// Columns of one value are not in the name.
 struct Group {
   std::string name;
   std::vector<std::size_t> rows;
 };
 
 Result<std::vector<Group>> group(const Table& table, const std::vector<std::size_t>& rows,
-                                 std::optional<std::size_t> by) {
-  if (!by) return std::vector<Group>{{"", rows}};
-  const auto cells = table.texts(*by);
+                                 const std::vector<std::size_t>& by) {
+  std::vector<std::string> names(rows.size());
+  std::string columns;
+  for (const std::size_t column : by) {
+    const auto cells = table.texts(column);
+    const auto value = [&](std::size_t row) -> const std::string& { return cells[row]; };
+    const bool same = std::ranges::all_of(
+        rows, [&](std::size_t row) { return value(row) == value(rows.front()); });
+    if (same && by.size() > 1) continue;
+    columns += (columns.empty() ? "" : ", ") + shown(table.columns()[column].header);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      names[i] += (names[i].empty() ? "" : " ") + value(rows[i]);
+    }
+  }
   std::vector<Group> groups;
   std::map<std::string, std::size_t> places;
-  for (const std::size_t row : rows) {
-    const auto [found, is_new] = places.emplace(cells[row], groups.size());
-    if (is_new) groups.push_back({cells[row], {}});
-    groups[found->second].rows.push_back(row);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto [found, is_new] = places.emplace(names[i], groups.size());
+    if (is_new) groups.push_back({names[i], {}});
+    groups[found->second].rows.push_back(rows[i]);
     if (groups.size() > kMaxLines) {
       return Error("plot-lines",
-                   fmt::format("the column '{}' has more than {} values, each of which would be a "
-                               "line",
-                               shown(table.columns()[*by].header), kMaxLines),
+                   fmt::format("'{}' has more than {} values, each of which would be a line",
+                               columns, kMaxLines),
                    "--where COLUMN=VALUE selects rows; --by selects another column");
     }
   }
@@ -306,8 +323,10 @@ void report_choice(const Table& table, const Choice& choice, const TableOptions&
     add(choice.x ? fmt::format("x is '{}'", shown(table.columns()[*choice.x].header))
                  : "x is the row number");
   }
-  if (options.by.empty() && choice.by) {
-    add(fmt::format("one line per '{}'", shown(table.columns()[*choice.by].header)));
+  for (const std::size_t column : choice.by) {
+    if (options.by.empty()) {
+      add(fmt::format("one line per '{}'", shown(table.columns()[column].header)));
+    }
   }
   if (options.y.empty()) add("all numeric columns are drawn");
   if (chosen.empty()) return;

@@ -9,7 +9,7 @@
 #include "ragdoll/get_up.h"
 #include "ragdoll/simulate.h"
 #include "terrain/terrain.h"
-#include "tools/cli/json.h"
+#include "tools/cli/report.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/options.h"
 

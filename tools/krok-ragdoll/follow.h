@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "ragdoll/simulate.h"
 #include "roles/roles.h"

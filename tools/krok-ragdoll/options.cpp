@@ -6,7 +6,6 @@
 
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::ragdoll {
 

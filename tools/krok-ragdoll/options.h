@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-ragdoll/follow.h"
 #include "tools/shared/shared_options.h"

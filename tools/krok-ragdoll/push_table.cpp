@@ -11,7 +11,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "tools/cli/file_name.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli::ragdoll {
 

@@ -1,4 +1,5 @@
 #include "tools/krok-ragdoll/fall.h"
+#include "tools/krok-ragdoll/follow.h"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,7 @@
 #include "ragdoll/bodies.h"
 #include "retarget/stance.h"
 #include "skin/bind.h"
-#include "tools/cli/file_name.h"
-#include "tools/krok-ragdoll/follow.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli::ragdoll {
 

@@ -200,6 +200,14 @@ Status Run::plan_falls() {
   }
   for (const PushAt& push : options_.pushes) {
     if (Status status = add_push(push, plan); !status) return status;
+    constexpr double kSoon = 0.3;  // seconds
+    const double after = plan.fall.pushes.back().time - plan.fall.at;
+    if (after < kSoon || options_.follow.any()) continue;
+    context_.warn("ragdoll-late-push",
+                  fmt::format("the push at {} comes {} s after the body has gone limp",
+                              shown(push.joint), readable(after, 3)),
+                  fmt::format("--at {} lets the motion play until then, --powered 1 follows it",
+                              written(push.time)));
   }
   if (Status status = read_ground(plan); !status) return status;
   plans_.push_back(std::move(plan));

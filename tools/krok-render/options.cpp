@@ -9,8 +9,7 @@
 #include "core/numbers.h"
 #include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/cli/file_name.h"
-#include "tools/shared/shared_options.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli::film {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "camera/spring.h"
+#include "camera/look_at.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "math/quaternion.h"

@@ -9,7 +9,7 @@
 #include "scene/camera_track.h"
 #include "tools/krok-render/options.h"
 #include "tools/shared/moving_actor.h"
-#include "tools/shared/sheet_ground.h"
+#include "tools/shared/shown_ground.h"
 
 // What a film shows: actors, views with their cameras, and each frame.
 

@@ -7,7 +7,6 @@
 #include "core/text.h"
 #include "formats/io/formats.h"
 #include "terrain/spec.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::retarget {
 
@@ -20,7 +19,7 @@ Result<MatchingPose> parse_pose(const std::string& text) {
   const auto frame = whole(0, 2'000'000'000).read(of_file ? text.substr(colon + 1) : text);
   if (frame) return MatchingPose{of_file ? text.substr(0, colon) : "", static_cast<int>(*frame)};
   return usage(fmt::format("'{}' is not auto, a frame number or FILE:FRAME", shown(text)),
-               "frames are numbered from 0");
+               "leave it out: auto finds the T-pose; a number is the frame, from 0, that shows it");
 }
 
 void declare(CommandOptions& command, Options& o) {

@@ -5,10 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/numbers.h"
-#include "core/text.h"
 #include "formats/io/formats.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::skin {
 

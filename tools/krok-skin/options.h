@@ -5,13 +5,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/quantity.h"
+#include "core/numbers.h"
 #include "core/result.h"
 #include "formats/pc2/pc2.h"
 #include "scene/clip.h"
 #include "skin/skin.h"
 #include "tools/cli/tool.h"
-#include "tools/shared/twist_joints.h"
+#include "tools/shared/shared_options.h"
 
 namespace krok::cli::skin {
 

@@ -6,19 +6,14 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <vector>
 
 #include "core/numbers.h"
-#include "formats/gltf/gltf_writer.h"
 #include "formats/obj/obj_writer.h"
 #include "formats/pc2/pc2.h"
 #include "motion/sample.h"
 #include "skin/morph.h"
-#include "skin/skin.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/output_set.h"
-#include "tools/krok-skin/subject.h"
 
 namespace krok::cli::skin {
 

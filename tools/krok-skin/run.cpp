@@ -12,11 +12,10 @@
 #include "formats/io/open_motion.h"
 #include "formats/io/open_scene.h"
 #include "formats/registry/registry.h"
-#include "tools/cli/file_name.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 #include "tools/krok-skin/outputs.h"
 #include "tools/krok-skin/subject.h"
-#include "tools/shared/keys_sidecar.h"
 
 namespace krok::cli::skin {
 

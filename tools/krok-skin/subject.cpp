@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <optional>
 
 #include "capture/unique_names.h"
 #include "core/numbers.h"
@@ -20,14 +19,13 @@
 #include "formats/morph_exr/morph_exr.h"
 #include "formats/obj/obj_reader.h"
 #include "formats/weights/weights.h"
-#include "motion/cut.h"
+#include "motion/sample.h"
 #include "retarget/limb_ends.h"
 #include "retarget/retarget.h"
 #include "roles/roles.h"
-#include "scene/frame_blocks.h"
 #include "skin/bind.h"
 #include "skin/twist_joints.h"
-#include "tools/cli/file_name.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 #include "tools/shared/retarget_outcome.h"
 

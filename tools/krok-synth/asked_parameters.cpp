@@ -6,10 +6,9 @@
 #include <optional>
 
 #include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
 #include "formats/csv/table.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "motion/sample.h"
 #include "parametric/bounds.h"
 #include "timeline/mix.h"

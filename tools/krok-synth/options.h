@@ -6,7 +6,7 @@
 
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "tools/cli/tool.h"
 
 namespace krok::cli::synth {

@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "formats/io/open_motion.h"
 #include "formats/steps/steps.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "parametric/synthesise.h"
 #include "roles/roles.h"
 #include "tools/cli/output_set.h"

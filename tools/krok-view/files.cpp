@@ -7,16 +7,12 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "body/body.h"
 #include "character/sampling.h"
 #include "core/index.h"
-#include "core/result.h"
 #include "core/text.h"
-#include "draw/viewer_page.h"
 #include "formats/gltf/gltf_reader.h"
 #include "formats/io/open_character.h"
 #include "formats/io/open_motion.h"
@@ -28,8 +24,7 @@
 #include "ragdoll/bodies.h"
 #include "roles/body_frame.h"
 #include "roles/roles.h"
-#include "tools/cli/file_name.h"
-#include "tools/cli/tool.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 #include "tools/shared/goal_input.h"
 #include "tools/shared/keys_sidecar.h"

@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 #include "draw/viewer_page.h"
-#include "scene/actor.h"
+#include "scene/character.h"
 #include "tools/cli/tool.h"
 #include "tools/krok-view/options.h"
 

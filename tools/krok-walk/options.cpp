@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "terrain/spec.h"
-#include "tools/shared/shared_options.h"
 
 namespace krok::cli::walk {
 

@@ -8,7 +8,7 @@
 #include "contacts/sole_points.h"
 #include "core/result.h"
 #include "formats/container/packed_orientation.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/shared_options.h"
 

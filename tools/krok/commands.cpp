@@ -55,28 +55,23 @@ const Command* find_command(std::string_view verb) {
   return found == commands().end() ? nullptr : &*found;
 }
 
-namespace {
-
-std::vector<ToolSpec::ToolWithOption> tools_with(const std::string& option) {
-  std::vector<ToolSpec::ToolWithOption> tools;
+std::vector<ToolOption> options_of_all_tools() {
+  std::vector<ToolOption> options;
   for (const Command& command : commands()) {
     const ToolSpec spec = command.make_spec();
-    for (const OptionFacts& facts : CommandLine(spec, CommandLine::Form::single).options()) {
-      if (std::ranges::find(facts.names, option) == facts.names.end()) continue;
-      tools.emplace_back(spec.name, facts.description);
+    for (OptionFacts& facts : CommandLine(spec, CommandLine::Form::single).options()) {
+      options.push_back({spec.name, std::move(facts)});
     }
   }
-  return tools;
+  return options;
 }
-
-}  // namespace
 
 int run_program(const char* verb, int argc, char** argv) {
   const Command* command = find_command(verb);
   if (command == nullptr) return run_krok(argc, argv);
   const auto make_spec = [command] {
     ToolSpec spec = command->make_spec();
-    spec.tools_with = tools_with;
+    spec.options_of_all = options_of_all_tools;
     return spec;
   };
   return batch::run_tool(make_spec, argc, argv);

@@ -8,15 +8,11 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <string>
-#include <string_view>
-#include <vector>
 
 #include "core/file.h"
 #include "core/text.h"
 #include "tools/cli/command_line.h"
 #include "tools/cli/report.h"
-#include "tools/cli/tool.h"
 #include "tools/krok/program.h"
 
 namespace krok::cli {
@@ -68,7 +64,7 @@ std::string hint_for(const std::string& verb) {
        "krok import reads captures and characters, krok export writes BVH, glTF and tables"},
       {" compare cmp test regress ", "krok diff compares files and folders"},
       {" sheet contact-sheet strip thumbnails ", "krok plot IN... --sheet OUT.png"},
-      {" gait table events steps contacts stats statistics ",
+      {" gait table events steps contacts stats statistics label strikes ",
        "krok keys FOLDER --table OUT.csv, or -o OUT.csv for events"},
       {" angles chart charts graph curves ",
        "krok plot IN... --show angles, or cycles for mean and deviation; krok export IN --what "
@@ -77,18 +73,35 @@ std::string hint_for(const std::string& verb) {
       {" show open watch viewer play page ", "krok view IN"},
       {" check validate verify qa ", "krok lint IN..."},
       {" batch folder ", "most verbs take folders and patterns; see krok VERB --help"},
-      {" trim cut crop clip resample filter smooth mirror loop clean scale rotate ",
-       "krok edit IN with an option; see krok edit --help"},
-      {" plant unskate skate ", "krok edit IN --plant -o OUT.anim"},
+      {" trim cut crop clip slice split segment ",
+       "krok edit IN --from TIME --to TIME -o OUT.anim"},
+      {" resample downsample upsample decimate fps ", "krok edit IN --rate N -o OUT.anim"},
+      {" filter smooth clean denoise despike ", "krok edit IN --filter auto -o OUT.anim"},
+      {" mirror flip ", "krok edit IN --mirror -o OUT.anim"},
+      {" loop cycle ", "krok edit IN --cycle auto -o OUT.anim, or --game-loop for an engine"},
+      {" scale resize ", "krok edit IN --scale FACTOR or --height LENGTH -o OUT.anim"},
+      {" rotate turn orient ", "krok edit IN --turn ANGLE or --re-orient -o OUT.anim"},
+      {" move translate offset ", "krok edit IN --move X,Y,Z or --at-origin -o OUT.anim"},
+      {" retime speed slow reverse ", "krok edit IN --playback-speed FACTOR -o OUT.anim"},
+      {" plant unskate skate foot-lock footlock fix-feet ", "krok edit IN --plant -o OUT.anim"},
+      {" rename name ",
+       "krok skin MESH NAME=IN.anim -o OUT.glb names clips; files are named by -o"},
+      {" pose snapshot ", "krok skin MESH IN --as pose --time 1s -o OUT.obj; krok plot --strip"},
+      {" version ", "krok --version"},
       {" rig bake attach animate merge-clips character ",
        "krok skin hero.character IN... -o OUT.glb"},
-      {" join concat append sequence layer ",
-       "krok mix TIMELINE.json, or krok edit IN --append NEXT.anim"},
+      {" join concat append sequence layer merge combine ",
+       "krok edit IN --append NEXT.anim, krok mix TIMELINE.json, or krok skin MESH IN... for clips "
+       "in "
+       "one file"},
+      {" list tree inspect describe ls ", "krok info IN..."},
+      {" optimize optimise compress quantize reduce shrink minify pack ",
+       "krok skin IN.glb IN.glb -o OUT.glb --compress; krok export --reduce for motions"},
       {" reach look gaze eyes ", "krok ik IN --reach or --look-at"},
       {" talk speak speech lipsync visemes face ", "krok mix TIMELINE.json"},
       {" camera follow orbit ", "krok cam IN --follow hips"},
       {" remap map ", "krok retarget IN --onto hero.character"},
-      {" fall push shove physics ", "krok ragdoll IN"}};
+      {" fall push shove physics simulate dynamics ", "krok ragdoll IN"}};
   const auto is_word = [&](const auto& row) {
     return row.first.find(fmt::format(" {} ", verb)) != std::string_view::npos;
   };
@@ -97,7 +110,13 @@ std::string hint_for(const std::string& verb) {
     return std::string(row->second);
   }
   const std::string near = verb.empty() ? "" : nearest_name(verb, verb_names());
-  return near.empty() ? "see krok --help" : fmt::format("did you mean '{}'?", near);
+  if (!near.empty()) return fmt::format("did you mean '{}'?", near);
+  if (verb.find('/') != std::string::npos) return "see krok --help";  // a path
+  std::string hint;
+  for (const ToolOption& one : options_about(verb, "", options_of_all_tools(), 3)) {
+    hint += fmt::format("{} has {}; ", one.tool, shown_option(one.facts));
+  }
+  return hint + "see krok --help";
 }
 
 // Where --json asks for a report: a path, "-", or empty.
@@ -124,10 +143,30 @@ Status write_report(const std::string& path, const std::string& text) {
 }
 
 // A script that asked for a report gets it from here, too.
+// "krok convert walk.bvh walk.npz" with the verb that writes such a file.
+std::string hint_for_conversion(const std::string& in, const std::string& out) {
+  const std::string ending = extension(out);
+  const std::string words = fmt::format("{} -o {}", shown(in), shown(out));
+  if (ending == ".anim") return "krok import " + words;
+  for (const std::string_view one : {".bvh", ".glb", ".gltf", ".csv", ".npz", ".mot", ".sto"}) {
+    if (ending != one) continue;
+    const std::string from = extension(in);
+    const bool mesh = ending.starts_with(".gl") && (from.starts_with(".gl") || from == ".fbx");
+    return "krok export " + words +
+           (mesh ? fmt::format("; with its mesh krok skin {} {}", shown(in), words) : "");
+  }
+  return {};
+}
+
 int refuse_verb(const std::string& verb, int argc, char** argv) {
   const std::string message =
       verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb);
-  const std::string hint = hint_for(verb);
+  std::string hint = hint_for(verb);
+  if (verb == "convert" && argc > 3) {
+    if (std::string wanted = hint_for_conversion(argv[2], argv[argc - 1]); !wanted.empty()) {
+      hint = std::move(wanted);
+    }
+  }
   if (const std::string path = report_path(argc, argv); !path.empty()) {
     Report report;
     report.tool = "krok";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tools/cli/command_options.h"
+#include "tools/cli/option_search.h"
 #include "tools/cli/tool.h"
 
 // The table of commands, and what krok alone does: completion in shells, git.
@@ -27,6 +28,8 @@ std::span<const Command> commands();
 
 // Null if there is none.
 const Command* find_command(std::string_view verb);
+
+std::vector<ToolOption> options_of_all_tools();
 
 // The main of krok: `krok VERB ...` is `krok-VERB ...`. Returns the exit code.
 int run_krok(int argc, char** argv);

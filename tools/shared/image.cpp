@@ -9,10 +9,8 @@
 
 #include "core/file.h"
 #include "core/numbers.h"
-#include "core/quantity.h"
 #include "core/text.h"
 #include "render/image.h"
-#include "tools/cli/output_set.h"
 
 namespace krok::cli {
 

@@ -7,12 +7,12 @@
 #include <filesystem>
 #include <utility>
 
+#include "contacts/long_take.h"
 #include "contacts/loop_steps.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
 #include "formats/anim/anim.h"
-#include "formats/io/open_motion.h"
-#include "tools/cli/file_name.h"
+#include "tools/cli/paths.h"
 
 namespace krok::cli {
 
@@ -180,6 +180,40 @@ Status add_motion(const Clip& clip, const MotionKeys& keys, OrientationEncoding 
     return anim::write(clip, {.orientation = orientation, .jobs = thread_count(jobs)}, file);
   });
   return status ? add_keys(keys, clip.skeleton, clip.duration(), path, outputs) : status;
+}
+
+Result<std::optional<MotionKeys>> choose_keys(KeysChoice choice, const std::string& path,
+                                              std::size_t bytes, const FrameSource& frames,
+                                              const Provenance& provenance,
+                                              const io::FindRoles& find_roles, ToolContext& context,
+                                              bool contacts_alone) {
+  const std::optional<MotionKeys> none;
+  if (choice == KeysChoice::none) return none;
+  const std::string name = name_of_input(path);
+  if (bytes < kLongTake || provenance.removed_root_motion) {
+    auto clip = load(frames, context.jobs);
+    if (!clip) return clip.error();
+    clip->provenance = provenance;
+    return choose_keys(choice, path, name, *clip, find_roles, context);
+  }
+  auto beside = read_keys_beside(path, frames, context);
+  if (!beside) return beside.error();
+  if (*beside) return std::optional(std::move((*beside)->keys));
+  if (choice == KeysChoice::sidecar) {  // the error for a file that is missing
+    const Clip empty{frames.skeleton, frames.rate, {}, {}, {}};
+    return choose_keys(choice, path, name, empty, find_roles, context);
+  }
+  const auto roles = find_roles(frames.skeleton);
+  if (!roles) return roles.error();
+  auto take = find_in_long_take(frames, *roles, context.jobs, context.progress,
+                                {.contacts_alone = contacts_alone});
+  if (!take && take.error().code != "contacts-feet") return take.error();
+  if (!take) {
+    context.warn("keys-none", fmt::format("{}: {}", name, take.error().message));
+    return none;
+  }
+  context.diagnose_in(path, take->warnings);
+  return std::optional(std::move(take->keys));
 }
 
 }  // namespace krok::cli

@@ -11,7 +11,7 @@
 #include "contacts/contacts.h"
 #include "core/numbers.h"
 #include "core/parallel.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/travel.h"
 #include "tools/shared/keys_sidecar.h"
 

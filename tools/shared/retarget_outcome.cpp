@@ -8,7 +8,7 @@
 #include "core/index.h"
 #include "core/numbers.h"
 #include "retarget/stance.h"
-#include "roles/stature.h"
+#include "roles/body_frame.h"
 
 namespace krok::cli {
 
@@ -200,6 +200,7 @@ Json to_json(const Outcome& outcome) {
   json["largest_drop_of_hips"] = report.largest_drop;
   json["largest_shift_of_hips"] = report.largest_shift;
   json["largest_turn_of_trunk"] = to_degrees(report.largest_turn);
+  json["largest_depth_of_hands_and_head"] = report.largest_depth;
   json["contacts"] = Json::array();
   for (const auto& contact : report.contacts) json["contacts"].push_back(contact_json(contact));
   json["feet"] = {{"left", foot_json(report.left_foot)}, {"right", foot_json(report.right_foot)}};
@@ -207,6 +208,59 @@ Json to_json(const Outcome& outcome) {
 }
 
 namespace {
+
+// What makes limbs of a part too long or too short for a contact; empty if nothing that is measured
+// does.
+std::string why_missed(const Outcome& outcome, const std::string& part) {
+  constexpr double kUnlike = 0.05;  // of a ratio of lengths
+  const auto ratio = [&](std::span<const Role> chain) {
+    const auto length = [&](const Skeleton& skeleton, const RoleMap& roles) {
+      double sum = 0;
+      for (std::size_t i = 1; i < chain.size(); ++i) {
+        const int from = roles.joint(chain[i - 1]), to = roles.joint(chain[i]);
+        if (from < 0 || to < 0) return 0.0;
+        sum += (skeleton.reference[at(to)].position - skeleton.reference[at(from)].position).norm();
+      }
+      return sum;
+    };
+    const double source = length(outcome.source, outcome.source_roles);
+    const double target = length(outcome.target, outcome.target_roles);
+    return source > 0 && target > 0 ? target / source : 0;
+  };
+  const bool is_left = !part.starts_with("right");
+  const ArmRoles& arm = kArmRoles[is_left ? 0 : 1];
+  const LegRoles& leg = kLegRoles[is_left ? 0 : 1];
+  const double legs = ratio(std::array{leg.upper, leg.lower, leg.foot});
+  if (legs == 0) return {};
+  const double scale = outcome.report.scale;
+  if (std::abs(scale / legs - 1) > kUnlike) {
+    return fmt::format("lengths are scaled by {}, legs are {} of the input's; ", readable(scale, 3),
+                       readable(legs, 3));
+  }
+  struct Bone {
+    const char* name;
+    double ratio;
+  };
+  std::vector<Bone> bones;
+  if (part.ends_with("hand") || part.ends_with("elbow")) {
+    bones = {{"upper arm", ratio(std::array{arm.upper, arm.lower})},
+             {"forearm", ratio(std::array{arm.lower, arm.hand})},
+             {"trunk", ratio(std::array{Role::hips, Role::neck})}};
+  } else {
+    bones = {{"thigh", ratio(std::array{leg.upper, leg.lower})},
+             {"shank", ratio(std::array{leg.lower, leg.foot})},
+             {"foot", ratio(std::array{leg.foot, leg.toes})}};
+  }
+  const auto unlike = [&](const Bone& bone) {
+    return bone.ratio == 0 ? 0 : std::abs(std::log(bone.ratio / legs));
+  };
+  const Bone& most = *std::ranges::max_element(bones, {}, unlike);
+  if (unlike(most) < kUnlike) return {};
+  return fmt::format(
+      "other proportions: for its legs the target's {} is {:.0f} % {} than the "
+      "input's; ",
+      most.name, 100 * std::abs(most.ratio / legs - 1), most.ratio > legs ? "longer" : "shorter");
+}
 
 // Contacts of the input that the result misses, as where an arm is too short for them. Distances
 // count by the target's size.
@@ -217,24 +271,26 @@ std::optional<Diagnostic> missed_contacts(const Outcome& outcome) {
   const double size = stature ? stature->metres / kUsualStature : 1;
   constexpr double kHigh = 0.05, kFast = 0.2, kLong = 0.05;  // metres, metres per second, seconds
   int missed = 0;
+  double most = 0;  // times the limit
   const krok::retarget::ContactReport* worst = nullptr;
   for (const krok::retarget::ContactReport& contact : report.contacts) {
     const double faster = contact.slide - report.path_scale * contact.source_slide;
-    if (contact.end - contact.start < kLong ||
-        (contact.height < size * kHigh && faster < size * kFast))
-      continue;
+    const double off = std::max(contact.height / kHigh, faster / kFast) / size;
+    if (contact.end - contact.start < kLong || off < 1) continue;
     ++missed;
-    if (worst == nullptr || contact.height > worst->height) worst = &contact;
+    if (off > most) most = off, worst = &contact;
   }
   if (worst == nullptr) return std::nullopt;
   return make_warning(
       "retarget-contact",
-      fmt::format("{} of {} missed; worst: {} on {} from {} to {} s, height off by {} mm, slides "
-                  "{} mm/s",
-                  missed, counted(report.contacts.size(), "contact"), worst->part, worst->on,
-                  readable(worst->start, 3), readable(worst->end, 3),
-                  readable(1e3 * worst->height, 3), readable(1e3 * worst->slide, 3)),
-      "other proportions, or --scale, leave limbs too short; krok-retarget -v lists all contacts");
+      fmt::format("{} of {} missed; worst: {} ({}) on {} from {} to {} s, height off by {} mm, "
+                  "slides {} mm/s (the input's, scaled: {} mm/s)",
+                  missed, counted(report.contacts.size(), "contact"), worst->part,
+                  outcome.target.names[at(worst->joint)], worst->on, readable(worst->start, 3),
+                  readable(worst->end, 3), readable(1e3 * worst->height, 3),
+                  readable(1e3 * worst->slide, 3),
+                  readable(1e3 * report.path_scale * worst->source_slide, 3)),
+      why_missed(outcome, worst->part) + "krok-retarget -v lists all contacts");
 }
 
 // Feet that go deeper into the ground than the input's.
@@ -254,6 +310,19 @@ std::optional<Diagnostic> sunk_foot(const Outcome& outcome) {
                   millimetres(worst->largest_depth), readable(worst->largest_depth_time, 3)),
       "feet that lie or kneel are placed as a whole; krok-edit --settle lays a "
       "motion on the ground");
+}
+
+// Likewise of hands and head.
+std::optional<Diagnostic> sunk_hand_or_head(const Outcome& outcome) {
+  constexpr double kDeep = 0.03;  // metres; tips of fingers are no more exact
+  const krok::retarget::Report& report = outcome.report;
+  if (report.largest_depth < kDeep) return std::nullopt;
+  return make_warning(
+      "retarget-sunk",
+      fmt::format("{} goes {} deeper into the ground at {} s than the input's",
+                  outcome.target.names[at(report.largest_depth_joint)],
+                  millimetres(report.largest_depth), readable(report.largest_depth_time, 3)),
+      "only hands that touch the ground are placed on it; krok-ik moves a hand");
 }
 
 // Legs that straighten and still miss a place of the input's foot.
@@ -335,6 +404,7 @@ Diagnostics choices_of(const Outcome& outcome, bool pose_is_given) {
   }
   if (auto reach = short_legs(report)) choices.push_back(*std::move(reach));
   if (auto sunk = sunk_foot(outcome)) choices.push_back(*std::move(sunk));
+  if (auto sunk = sunk_hand_or_head(outcome)) choices.push_back(*std::move(sunk));
   if (auto missed = missed_contacts(outcome)) choices.push_back(*std::move(missed));
   if (report.left_fingers_at_rest || report.right_fingers_at_rest) {
     note("retarget-fingers",

@@ -7,7 +7,6 @@
 
 #include "core/index.h"
 #include "core/numbers.h"
-#include "tools/cli/json.h"
 
 namespace krok::cli {
 

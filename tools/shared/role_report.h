@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "roles/body_frame.h"
 #include "roles/roles.h"
-#include "roles/stature.h"
 #include "scene/skeleton.h"
 #include "tools/cli/report.h"
 

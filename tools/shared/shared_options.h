@@ -2,12 +2,16 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "body/body.h"
 #include "capture/conventions.h"
+#include "core/result.h"
 #include "formats/container/packed_orientation.h"
 #include "formats/io/open_terrain.h"
+#include "scene/model.h"
 #include "skin/skin.h"
+#include "tools/cli/command_options.h"
 #include "tools/cli/option_kinds.h"
 #include "tools/cli/tool.h"
 #include "tools/shared/keys_sidecar.h"
@@ -136,5 +140,21 @@ CommandOption add_clip_option(CommandOptions& command, std::string& clip,
 
 // --plant, of the tools that blend.
 CommandOption add_plant_flag(CommandOptions& command, bool& plant);
+
+// The kinds of bones of --twist-joints, and how many joints each gets.
+struct TwistJoints {
+  struct Bones {
+    std::string name;  // upper_arm, forearm, thigh or shin
+    int count = 1;
+  };
+  std::vector<Bones> bones;  // each once; none: no twist joints
+};
+
+// --twist-joints LIST.
+void add_twist_joints_option(CommandOptions& command, TwistJoints& twist);
+
+// Adds them to both sides of a model whose joints' roles are found by their names. An Error (code
+// twist-joints) for a bone that neither side has, and those of krok::add_twist_joints().
+Status add_twist_joints(const TwistJoints& twist, Model& model);
 
 }  // namespace krok::cli

@@ -3,7 +3,7 @@
 #include "ik/two_bone.h"
 #include "math/quaternion.h"
 #include "methods.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "support/foot_skate.h"
 
 namespace krok::bench {

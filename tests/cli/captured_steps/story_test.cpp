@@ -10,7 +10,7 @@
 #include "core/file.h"
 #include "core/index.h"
 #include "formats/anim/anim.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 
 namespace krok::test {
 namespace {

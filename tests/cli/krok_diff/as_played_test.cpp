@@ -8,7 +8,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "support/folder_test.h"
 #include "support/glb_builder.h"
 #include "support/run_tool.h"

@@ -290,6 +290,10 @@ TEST_F(KrokDiffMatching, JointsAndNormalsHaveTolerancesOfTheirOwn) {
   EXPECT_THAT(done.out, HasSubstr("joints beyond tolerance, 2 of 3:\n    joint Head: positions up "
                                   "to 0.2 mm, RMS 0.2 mm, 95 % 0.2 mm\n    joint Spine: "
                                   "orientations up to 0.101 deg, RMS 0.1 deg"));
+  // Would fail if whoever gives a length were not shown the option for the angles that are left.
+  EXPECT_THAT(done.out, HasSubstr("beyond tolerance (0.01 mm, 0.01 deg)\n"));
+  EXPECT_THAT(diff({"a.anim", "b.anim", "--tolerance", "100mm"}).out,
+              HasSubstr("(100 mm, 0.01 deg); --angle sets the tolerance of orientations\n"));
   EXPECT_EQ(diff({"a.anim", "b.anim", "--joint-tolerance", "0.3mm"}).exit_code, 1);
   const auto wide = diff({"a.anim", "b.anim", "--joint-tolerance", "0.3mm,0.2deg"});
   EXPECT_EQ(wide.exit_code, 0);

@@ -9,7 +9,7 @@
 
 #include "cli/hero_character.h"
 #include "cli/krok_diff/target_a_frame.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "support/glb_builder.h"
 
 namespace krok::test {

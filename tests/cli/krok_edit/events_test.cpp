@@ -1,5 +1,7 @@
 // Cutting by gait events. Would fail if a cut did not begin and end at the keytimes, or if the
 // cycle that --cycle chooses did not repeat.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "cli/motion_fixture.h"
@@ -107,6 +109,66 @@ TEST_F(EditEvents, EndsThatAreFarApartAreTold) {
   EXPECT_TRUE(has_code(far.err, "edit-seam")) << far.err;
   const ToolRun whole = run_here("krok-edit", {"walk.anim", "--cycle", "auto", "-o", "out.anim"});
   EXPECT_FALSE(has_code(whole.err, "edit-seam")) << whole.err;
+}
+
+// A walk put together of two, whose hips jump back by 1.5 m. Would fail if the loop were cut
+// through the jump, and its speed pointed backwards.
+TEST_F(EditEvents, CyclesWithAJumpAreNotLooped) {
+  Clip walk = read("walk.anim");
+  const int jump = frame_of("left_strike", 2) + 20;
+  for (int f = jump; f < walk.frame_count(); ++f) {
+    for (Vec3f& place : walk.frame_positions(f)) place.z() -= 1.5F;
+  }
+  write("jumps.anim", walk);
+  std::filesystem::copy_file(path("walk.keys.json"), path("jumps.keys.json"));
+  ASSERT_EQ(run_here("krok-edit", {"jumps.anim", "--cycle", "left", "--loop", "-o", "out.anim"})
+                .exit_code,
+            0);
+  const Clip loop = read("out.anim");
+  for (int f = 1; f < loop.frame_count(); ++f) {
+    EXPECT_LT((loop.frame_positions(f)[0] - loop.frame_positions(f - 1)[0]).norm(), 0.2F) << f;
+  }
+}
+
+// Would fail if a take that jumps became a treadmill, or had its feet planted, without a word.
+TEST_F(EditEvents, JumpsOfTheHipsAreWarnedOf) {
+  Clip walk = read("walk.anim");
+  const int jump = walk.frame_count() / 2;
+  for (int f = jump; f < walk.frame_count(); ++f) {
+    for (Vec3f& place : walk.frame_positions(f)) place.z() -= 1.5F;
+  }
+  write("jumps.anim", walk);
+  const auto edit = [&](const std::string& input, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {input, "-o", "out.anim"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_here("krok-edit", arguments).err;
+  };
+  for (const char* option : {"--plant", "--treadmill", "--in-place"}) {
+    const std::string jumps = edit("jumps.anim", {option});
+    EXPECT_TRUE(has_code(jumps, "edit-jump")) << option;
+    EXPECT_THAT(jumps, HasSubstr(fmt::format("frame {} of", jump)));
+    EXPECT_FALSE(has_code(edit("walk.anim", {option}), "edit-jump")) << option;
+    const std::string before = edit("jumps.anim", {option, "--to", fmt::format("{}f", jump - 1)});
+    EXPECT_FALSE(has_code(before, "edit-jump")) << option;
+  }
+}
+
+// Would fail if walks half a cycle apart were joined, and skated, without a word.
+TEST_F(EditEvents, JoinsOutOfStepAreWarnedOf) {
+  const auto joined_from = [&](const std::string& event) {
+    EXPECT_EQ(
+        run_here("krok-edit", {"walk.anim", "--from", event, "-o", "second.anim", "-q"}).exit_code,
+        0);
+    EXPECT_EQ(
+        run_here("krok-edit", {"walk.anim", "--to", "left_strike[3]", "-o", "first.anim", "-q"})
+            .exit_code,
+        0);
+    return run_here("krok-edit",
+                    {"first.anim", "--append", "second.anim", "--blend", "0", "-o", "out.anim"})
+        .err;
+  };
+  EXPECT_TRUE(has_code(joined_from("right_strike[2]"), "edit-join"));
+  EXPECT_FALSE(has_code(joined_from("left_strike[2]"), "edit-join"));
 }
 
 TEST_F(EditEvents, KeytimesThatAreNotThereAreNamed) {

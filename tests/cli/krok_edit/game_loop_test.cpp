@@ -7,9 +7,8 @@
 #include <set>
 
 #include "cli/motion_fixture.h"
-#include "math/euler.h"
-#include "motion/ground_frame.h"
-#include "motion/place.h"
+#include "math/quaternion.h"
+#include "motion/hips_root.h"
 #include "motion/travel.h"
 
 namespace krok::test {

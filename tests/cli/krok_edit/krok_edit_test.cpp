@@ -8,11 +8,11 @@
 
 #include "cli/motion_fixture.h"
 #include "math/quaternion.h"
-#include "motion/cut.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/local_motion.h"
-#include "motion/place.h"
-#include "roles/stature.h"
+#include "motion/sample.h"
+#include "motion/travel.h"
+#include "roles/body_frame.h"
 #include "samples/generator/walk.h"
 
 namespace krok::test {

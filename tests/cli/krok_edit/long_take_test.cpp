@@ -174,15 +174,16 @@ TEST_F(LongTake, RigsAndCamerasAreMadeInParts) {
   peak("krok-cam", "walk.anim", {"--follow", "hips", "-o", "out.cam"});
   EXPECT_EQ(json::parse(get(path("report.json")))["result"]["frames"], walk.frame_count());
   peak("krok-export", "walk.anim", {"-o", "skeleton.glb"});
-  // Threads of the renderer have memory that is not used.
+  // Threads of the renderer have memory that is not used, and that of this process as it forks
+  // counts, too.
   data_ = 0;
   EXPECT_LT(peak("krok-plot", "walk.anim", {"--strip", "s.png", "--from", "1s", "--to", "2s"}),
-            130);
+            150);
   const auto film = [](const char* frame, const char* output) {
     return std::vector<std::string>{"--from",      frame, "--size", "96x54",
                                     "--no-labels", "-o",  output};
   };
-  EXPECT_LT(peak("krok-render", "walk.anim", film("250f", "long.png")), 130);
+  EXPECT_LT(peak("krok-render", "walk.anim", film("250f", "long.png")), 150);
   peak("krok-render", "p.anim", film("150f", "part.png"));
   EXPECT_EQ(get(path("long.png")), get(path("part.png")));
 }

@@ -3,15 +3,19 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/krok_import/imported.h"
 #include "formats/model/model_format.h"
+#include "support/this_build.h"
 
 namespace krok::test {
 namespace {
 
 using PlainJson = nlohmann::json;
+const std::string kWalk = source_folder() + "/samples/captures/walk.bvh";
 using testing::HasSubstr;
 using testing::Not;
 
@@ -64,6 +68,41 @@ TEST_F(ImportTest, RatesAreTakenAndResampled) {
         run_tool("krok-import", {path("in.bvh"), "-o", path("no.anim"), "--fps", rate});
     EXPECT_EQ(run.exit_code, 2) << rate;
   }
+}
+
+// Would fail if a root in another unit than the skeleton put the body high up without a word.
+TEST_F(ImportTest, ABodyHighOverTheGroundIsSaid) {
+  std::istringstream text(std::string(InputFile::open(kWalk)->text()));
+  std::string line, high;
+  for (bool frames = false; std::getline(text, line); frames |= line.starts_with("Frame Time")) {
+    std::istringstream numbers(line);
+    double x = 0, y = 0, z = 0;
+    if (frames && numbers >> x >> y >> z) {
+      std::string rest;
+      std::getline(numbers, rest);
+      line = std::to_string(2.54 * x) + ' ' + std::to_string(2.54 * y) + ' ' +
+             std::to_string(2.54 * z) + rest;
+    }
+    high += line + '\n';
+  }
+  put("high.bvh", high);
+  const auto said = [&](const std::string& file) {
+    return run_tool("krok-import", {file, "-o", path("out.anim")}).err;
+  };
+  EXPECT_THAT(said(path("high.bvh")), HasSubstr("motion-height"));
+  EXPECT_THAT(said(kWalk), Not(HasSubstr("motion-height")));
+}
+
+// Would fail if steps were lost on the way through arrays, whose contacts come with them.
+TEST_F(ImportTest, ArraysOfAWalkHaveItsSteps) {
+  ASSERT_EQ(run_tool("krok-export", {kWalk, "-o", path("w.npz")}).exit_code, 0);
+  ASSERT_EQ(run_tool("krok-import", {path("w.npz"), "-o", path("w.anim")}).exit_code, 0);
+  const auto events = [&](const std::string& motion) {
+    EXPECT_EQ(run_tool("krok-keys", {motion, "-o", path("e.csv")}).exit_code, 0);
+    return std::ranges::count(InputFile::open(path("e.csv"))->text(), '\n');
+  };
+  EXPECT_EQ(events(path("w.anim")), events(kWalk));
+  EXPECT_GT(events(kWalk), 4);
 }
 
 TEST_F(ImportTest, TheModelIsTheSkeleton) {

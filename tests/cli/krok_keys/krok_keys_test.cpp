@@ -105,6 +105,38 @@ TEST_F(KrokKeys, TheTableHasARowForEachMotion) {
   EXPECT_EQ(get(table), text);
 }
 
+// A walk that goes back to where it began every two metres. Would fail if strides led across that
+// (0.005 m/s), or nobody were warned of it.
+TEST_F(KrokKeys, PathsThatGoBackToTheirStartAreWarnedOf) {
+  std::istringstream walk(get(motion_));
+  std::string wrapped, line;
+  bool frames = false;
+  for (double start = 0, at = 0; std::getline(walk, line); wrapped += line + "\n") {
+    std::istringstream numbers(line);
+    std::string x, y, z, rest;
+    if (frames && numbers >> x >> y >> z) {
+      std::getline(numbers, rest);
+      at = std::stod(z);
+      if (start == 0) start = at;
+      line = x + " " + y + " " + std::to_string(start + std::fmod(at - start, 200)) + rest;
+    }
+    frames = frames || line.starts_with("Frame Time");
+  }
+  const std::string table = path("gait.csv");
+  const ToolRun plain = run_tool("krok-keys", {motion_, "--json"});
+  const ToolRun run = run_tool("krok-keys", {put("wrapped.bvh", wrapped), "--json"});
+  EXPECT_THAT(plain.err, testing::Not(HasSubstr("keys-jump")));
+  EXPECT_THAT(run.err, HasSubstr("keys-jump"));
+  const auto gait = [](const ToolRun& made) { return json::parse(made.out)["result"]["gait"]; };
+  for (const char* name : {"speed", "stride_length"}) {
+    const double right = gait(plain)[name];
+    EXPECT_NEAR(gait(run)[name].get<double>(), right, 0.1 * right) << name;
+  }
+  EXPECT_LT(gait(run)["slide_speed"].get<double>(), 0.02);
+  EXPECT_THAT(run_tool("krok-keys", {path("wrapped.bvh"), "--table", table}).err,
+              HasSubstr("keys-jump"));
+}
+
 // Would fail if the events of a spreadsheet were not those of the report, or got under another
 // motion's name.
 TEST_F(KrokKeys, EventsAsATable) {

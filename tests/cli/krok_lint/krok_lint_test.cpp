@@ -7,8 +7,8 @@
 #include "cli/motion_fixture.h"
 #include "core/index.h"
 #include "math/quaternion.h"
-#include "motion/cut.h"
 #include "motion/local_motion.h"
+#include "motion/sample.h"
 #include "support/glb_builder.h"
 
 namespace krok::lint_test {

@@ -83,6 +83,23 @@ TEST_F(KrokPlot, CyclesAreOfAllTakesAndKeysNeedNotBeThere) {
   expect_trouble({kWalk, "--show", "cycles", "--to", "0.3s"}, "plot-cycles", "no whole gait cycle");
 }
 
+// Would fail if the mean over takes were that of one long take, without a word.
+TEST_F(KrokPlot, CyclesMostlyOfOneTakeAreWarnedOf) {
+  std::vector<std::string> takes = {kWalk};
+  for (const char* name : {"a.anim", "b.anim"}) {
+    ASSERT_EQ(run_tool("krok-edit", {kWalk, "--cycle", "left", "-o", path(name), "-q"}).exit_code,
+              0);
+    takes.push_back(path(name));
+  }
+  takes.insert(takes.end(), {"--show", "cycles"});
+  const ToolRun run = plot(takes);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, testing::ContainsRegex(
+                           "[0-9]+ of [0-9]+ gait cycles are of one of 3 motions, .*walk"));
+  EXPECT_THAT(plot({kWalk, kTurn, "--show", "cycles"}).err,
+              testing::Not(HasSubstr("gait cycles are of one")));
+}
+
 // Would fail if one broken file of a folder kept the chart, the sheet or the page from all others.
 // A loop has the cycles of its circle. Would fail if clips for engines, cut elsewhere than at a
 // strike, were said to have none.
@@ -296,6 +313,23 @@ TEST_F(KrokPlot, DrawsATableByColumnNames) {
   EXPECT_THAT(svg(), HasSubstr(">error (mm)<"));
   EXPECT_THAT(svg(), HasSubstr(">0.01<"));
   EXPECT_THAT(svg(), HasSubstr("<circle"));
+}
+
+// Would fail if a line went from the end of one file, or angle, to the start of the next.
+TEST_F(KrokPlot, ATableOfSeveralFilesAndAnglesHasALineForEach) {
+  const std::string table = put("all.csv",
+                                "file,time,angle,value\na,0,knee,1\na,0,hip,2\na,1,knee,3\n"
+                                "a,1,hip,4\nb,0,knee,5\nb,0,hip,6\nb,1,knee,7\nb,1,hip,8\n");
+  ASSERT_EQ(plot({table}).exit_code, 0);
+  EXPECT_THAT(lines(0), ElementsAre("a knee", "a hip", "b knee", "b hip"));
+  ASSERT_EQ(plot({table, "--where", "angle=knee"}).exit_code, 0);
+  EXPECT_THAT(lines(0), ElementsAre("a", "b"));
+}
+
+TEST_F(KrokPlot, ATableOfOpenSimBeginsAfterItsHeader) {
+  const std::string table = put("a.sto", "angles\nversion=1\nendheader\ntime\tknee\n0\t1\n1\t9\n");
+  ASSERT_EQ(plot({table}).exit_code, 0);
+  EXPECT_EQ(panels()[0]["lines"][0]["largest"], 9.0);
 }
 
 TEST_F(KrokPlot, TakesATableOfAnyNameWhereItIsTold) {

@@ -201,11 +201,29 @@ TEST_F(KrokRetarget, MissedContactsAreWarnedOf) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, HasSubstr("contacts missed; worst: "));
   EXPECT_THAT(run.err, HasSubstr("[retarget-contact]"));
+  // Would fail if it blamed proportions, which are the walker's.
+  EXPECT_THAT(run.err, testing::ContainsRegex("worst: (left|right) [a-z]+ .(Left|Right)[A-Za-z]+. "
+                                              "on ground.* slides [0-9]+ mm/s .the input's"));
+  EXPECT_THAT(run.err, HasSubstr("hint: lengths are scaled by 1.5, legs are 0.6"));
   // Of a doll, which is 5 cm off nowhere, too.
   write("doll.model", test::tube_model(test::human_skeleton(0.12)));
   const auto doll =
       retarget({"walk.anim", "--onto", "doll.model", "-o", "out.anim", "--scale", "0.15"});
   EXPECT_THAT(doll.err, HasSubstr("[retarget-contact]"));
+}
+
+// Would fail if hands of long arms went into the ground without a word.
+TEST_F(KrokRetarget, HandsInTheGroundAreWarnedOf) {
+  Skeleton ape = test::human_skeleton(1.6);
+  for (std::size_t j = 0; j < ape.names.size(); ++j) {
+    Vec3& place = ape.reference[j].position;
+    if (ape.names[j].find("Hand") != std::string::npos) place.x() *= 2.4;
+  }
+  write("ape.model", test::tube_model(ape));
+  const auto run = retarget({"walk.anim", "--onto", "ape.model", "-o", "out.anim"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err,
+              testing::ContainsRegex("Hand.* goes .* deeper into the ground .*retarget-sunk"));
 }
 
 // The alignment of one take for another whose own would be another: each joint keeps the same

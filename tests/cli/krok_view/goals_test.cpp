@@ -8,7 +8,7 @@
 
 #include "cli/fixture.h"
 #include "cli/kept_files.h"
-#include "math/types.h"
+#include "math/transform.h"
 #include "shown_page.h"
 
 namespace krok::test {

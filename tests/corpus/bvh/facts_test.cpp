@@ -12,7 +12,7 @@
 #include <set>
 #include <sstream>
 
-#include "capture/exporter.h"
+#include "capture/convention_choice.h"
 #include "core/numbers.h"
 #include "formats/bvh/bvh_reader.h"
 #include "roles/roles.h"

@@ -10,7 +10,7 @@
 #include "corpus/bvh/corpus_files.h"
 #include "formats/bvh/bvh_reader.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "support/planted_measures.h"
 #include "support/this_build.h"
 

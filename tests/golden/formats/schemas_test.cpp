@@ -12,7 +12,6 @@
 #include "formats/alignment/alignment_format.h"
 #include "formats/camera_keys/camera_keys.h"
 #include "formats/character/character_format.h"
-#include "formats/correctives/corrective_poses.h"
 #include "formats/correctives/correctives_format.h"
 #include "formats/goals/goals.h"
 #include "formats/height_field/height_image.h"

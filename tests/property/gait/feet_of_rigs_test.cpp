@@ -7,9 +7,8 @@
 
 #include "core/index.h"
 #include "gait/plan_prints.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "parametric/thin_out.h"
 #include "unit/gait/walkers.h"
 

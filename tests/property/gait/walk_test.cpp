@@ -7,9 +7,8 @@
 #include <random>
 
 #include "gait/plan_prints.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "unit/gait/walkers.h"
 
 namespace krok::gait {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <random>
 
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "scene/skeleton.h"
 

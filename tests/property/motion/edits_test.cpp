@@ -9,13 +9,12 @@
 #include "filter/smooth_clip.h"
 #include "filter/spikes.h"
 #include "math/quaternion.h"
-#include "motion/cut.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/join.h"
 #include "motion/local_motion.h"
 #include "motion/loop.h"
 #include "motion/mirror.h"
-#include "motion/place.h"
+#include "motion/sample.h"
 #include "motion/travel.h"
 
 namespace krok {

@@ -9,12 +9,11 @@
 #include <functional>
 
 #include "blend/warp_by_shape.h"
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "motion/hips_root.h"
 #include "motion/join.h"
 #include "motion/loop.h"
 #include "motion/mirror.h"
-#include "motion/retime.h"
 #include "motion/sample.h"
 #include "motion/travel.h"
 #include "parametric/cut_steps.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "motion/cut.h"
-#include "motion/place.h"
+#include "motion/sample.h"
+#include "motion/travel.h"
 #include "plant/plant_feet.h"
 #include "samples/generator/gesture.h"
 #include "support/foot_skate.h"

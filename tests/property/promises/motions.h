@@ -10,8 +10,8 @@
 #include "core/file.h"
 #include "formats/bvh/bvh_reader.h"
 #include "math/quaternion.h"
-#include "motion/cut.h"
 #include "motion/local_motion.h"
+#include "motion/sample.h"
 #include "support/this_build.h"
 #include "unit/blend/rigged_walks.h"
 

@@ -7,20 +7,16 @@
 
 #include "blend/blend_clips.h"
 #include "blend/correspondence.h"
-#include "camera/spring.h"
+#include "camera/look_at.h"
 #include "compare/clip_difference.h"
-#include "filter/rotation_series.h"
 #include "filter/smooth_clip.h"
 #include "filter/spikes.h"
 #include "formats/anim/anim.h"
 #include "formats/container/packed_orientation.h"
 #include "ik/goal_motion.h"
-#include "motion/ground_frame.h"
 #include "motion/hips_root.h"
 #include "motion/join.h"
 #include "motion/loop.h"
-#include "motion/place.h"
-#include "motion/retime.h"
 #include "motion/sample.h"
 #include "motion/travel.h"
 #include "positions/from_positions.h"
@@ -43,7 +39,7 @@ int carrier_of(const Clip& clip) {
   return carrying_joint(find_roles(clip.skeleton));
 }
 
-// motion/cut.h: "Copies every step-th frame".
+// motion/sample.h: "Copies every step-th frame".
 TEST(Promises, CutOfAllFramesIsTheMotion) {
   for (const auto& [name, clip] : test::promised_motions()) {
     EXPECT_TRUE(same_bits(cut(clip, 0, clip.frame_count() - 1), clip)) << name;
@@ -77,7 +73,7 @@ TEST(Promises, ResampledUpAndDownIsTheMotion) {
   }
 }
 
-// motion/retime.h: "The clip at `rate`, played `speed` times as fast; the rate may be unchanged".
+// motion/sample.h: "The clip at `rate`, played `speed` times as fast; the rate may be unchanged".
 TEST(Promises, RetimedByNothingIsTheMotion) {
   for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
@@ -140,7 +136,7 @@ TEST(Promises, CutAndAppendedIsTheMotion) {
   }
 }
 
-// motion/place.h, each function; done twice it is done once.
+// motion/travel.h, each function; done twice it is done once.
 TEST(Promises, PlacedTwiceIsPlacedOnce) {
   Dice dice(1);
   for (const auto& [name, clip] : test::promised_motions()) {
@@ -213,7 +209,7 @@ TEST(Promises, RootedAndRestoredIsTheMotion) {
 }
 
 // filter/smooth_clip.h: "Preserves bone lengths, timing, frame rate and frame count"; "Joints with
-// 0 in `joints` keep"; "returned unchanged". filter/rotation_series.h: "preserves constants".
+// 0 in `joints` keep"; "returned unchanged". filter/smooth_clip.h: "preserves constants".
 TEST(Promises, FiltersKeepWhatTheySayTheyKeep) {
   for (const auto& [name, clip] : test::promised_motions()) {
     const double size = extent(clip);
@@ -251,7 +247,7 @@ TEST(Promises, FiltersKeepWhatTheySayTheyKeep) {
   }
 }
 
-// filter/rotation_series.h: "uniform motion is unchanged"; "A uniform or zero rotation is
+// filter/smooth_clip.h: "uniform motion is unchanged"; "A uniform or zero rotation is
 // unchanged"; "filtering a q(t) b gives a filtered(q(t)) b"; "q and -q are equivalent".
 TEST(Promises, SeriesFiltersKeepUniformMotion) {
   Dice dice(2);
@@ -469,7 +465,7 @@ TEST(Promises, BlendedWithItselfIsTheMotion) {
   }
 }
 
-// camera/spring.h: "motion at constant velocity is unchanged up to both ends"; "Exact for any
+// camera/look_at.h: "motion at constant velocity is unchanged up to both ends"; "Exact for any
 // step"; "A time of 0 or less changes nothing".
 TEST(Promises, SpringsFollowUniformMotion) {
   Dice dice(6);

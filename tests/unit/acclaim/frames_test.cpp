@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "unit/acclaim/reading.h"
 #include "unit/acclaim/small_files.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // Bytes of binary files, written one after the other.
 

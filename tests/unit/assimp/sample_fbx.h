@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 // A small FBX in ASCII, by what is known of the format: two nodes with pivots that turn, and a mesh
 // skinned to them with a morph target.

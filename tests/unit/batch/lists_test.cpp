@@ -9,7 +9,7 @@
 
 #include "core/glob.h"
 #include "core/in_order.h"
-#include "tools/batch/manifest.h"
+#include "tools/batch/option_sets.h"
 
 namespace krok::cli::batch {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "unit/blend/blended_walks.h"
 
 namespace krok::blend {

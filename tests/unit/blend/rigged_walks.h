@@ -7,8 +7,8 @@
 #include "formats/bvh/bvh_reader.h"
 #include "formats/bvh/bvh_writer.h"
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
-#include "motion/place.h"
+#include "motion/hips_root.h"
+#include "motion/travel.h"
 #include "samples/generator/rig.h"
 #include "unit/blend/blended_walks.h"
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/index.h"
 #include "math/quaternion.h"
 #include "support/human_skeleton.h"
 #include "unit/body/mesh_checks.h"
@@ -322,6 +323,31 @@ TEST(HumanBody, AFootThatHangsOnAJointUnderTheAnkleStaysLevel) {
                           body.model.influence_joints[4 * v] == carrier);
   }
   EXPECT_TRUE(carried);
+}
+
+// Would fail if a leg that ends in a point below the ankle got a foot that hangs straight down.
+TEST(HumanBody, ALegThatEndsBelowItsAnkleHasALevelFoot) {
+  const Skeleton human = human_skeleton();
+  Clip clip;
+  for (int j = 0; j < human.joint_count(); ++j) {
+    const std::string& name = human.names[at(j)];
+    Transform place = human.reference[at(j)];
+    if (name.ends_with("ToeBase_end")) continue;
+    const bool end = name.ends_with("ToeBase");
+    if (end) place.position = clip.skeleton.reference.back().position - Vec3(0, 0.08, 0);
+    const int parent = human.parents[at(j)];
+    clip.skeleton.add(end ? name + "_end" : name,
+                      parent < 0 ? -1 : clip.skeleton.find(human.names[at(parent)]), place,
+                      human.end_sites[at(j)] != 0 || end);
+  }
+  clip.resize(1);
+  clip.set_pose(0, clip.skeleton.reference);
+  const Model model = make_body(clip, {.detail = BodyDetail::low}).value().model;
+  const auto ankle = static_cast<std::size_t>(model.skeleton.find("LeftFoot"));
+  const Quat turn = model.skeleton.reference[ankle].orientation *
+                    clip.skeleton.reference[ankle].orientation.conjugate();
+  EXPECT_LT(angle_between(turn, Quat::Identity()), 0.3);
+  EXPECT_GT(extent_at(model, 0.02, 2, 0.5), 0.2);
 }
 
 TEST(HumanBody, TheNumberOfThreadsDoesNotMatter) {

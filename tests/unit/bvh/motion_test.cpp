@@ -151,6 +151,30 @@ TEST(Motion, TheGroundTellsWhetherTheRootsPositionsReplaceItsOffset) {
   EXPECT_EQ(choice("0 -20 0", "0 200 0\n").confidence, Confidence::guess);
 }
 
+// Takes of one rig whose OFFSET is horizontal, far above the ground in both readings. If the values
+// along the OFFSET decided, where a take starts would, and takes would be shifted against others.
+TEST(Motion, TheOffsetsHorizontalPartSaysNothingOfPositions) {
+  const auto choice = [](const std::string& offset, const std::string& row) {
+    ReadOptions options = plain_options();
+    options.positions = Positions::automatic;
+    return read_ok("HIERARCHY\nROOT a\n{\nOFFSET " + offset +
+                       "\nCHANNELS 3 Xposition Yposition Zposition\n"
+                       "JOINT b\n{\nOFFSET 0 10 0\n}\nJOINT c\n{\nOFFSET 0 -90 0\n}\n}\n" +
+                       motion(1, row),
+                   options)
+        .positions;
+  };
+  for (const std::string row : {"-24 110 126\n", "-30 110 8\n", "0 110 0\n"}) {
+    const Choice horizontal = choice("0 0 97", row);
+    EXPECT_EQ(horizontal.choice, "absolute") << row;
+    EXPECT_EQ(horizontal.confidence, Confidence::likely) << row;
+    EXPECT_NE(horizontal.reason.find("horizontal"), std::string::npos) << horizontal.reason;
+  }
+  for (const std::string row : {"0 15 900\n", "0 15 0\n"}) {
+    EXPECT_EQ(choice("0 90 900", row).choice, "additive") << row;
+  }
+}
+
 // A person who leaps, in a file whose reference pose has the legs folded up: its up axis is a
 // guess, but the same in both readings, in one of which it would leap under the ground.
 TEST(Motion, TheGroundTellsItWhereUpIsAGuessThatDoesNotDependOnIt) {

@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
-#include "motion/place.h"
+#include "motion/hips_root.h"
+#include "motion/travel.h"
 #include "samples/generator/walk.h"
 #include "scene/camera_track.h"
 

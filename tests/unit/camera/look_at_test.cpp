@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "math/euler.h"
 #include "math/quaternion.h"
 
 namespace krok {

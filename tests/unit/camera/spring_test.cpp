@@ -1,6 +1,6 @@
 // If these fail, a following camera swings, lags, or moves otherwise at another frame rate.
 
-#include "camera/spring.h"
+#include "camera/look_at.h"
 
 #include <gtest/gtest.h>
 

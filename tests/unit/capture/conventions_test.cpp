@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "math/euler.h"
 #include "math/quaternion.h"
 
 namespace krok {

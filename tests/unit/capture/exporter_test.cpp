@@ -1,5 +1,5 @@
 // If these fail, a user is told a wrong exporter, or iPi's files are not recognised.
-#include "capture/exporter.h"
+#include "capture/convention_choice.h"
 
 #include <gtest/gtest.h>
 

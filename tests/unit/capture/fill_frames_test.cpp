@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 
 namespace krok {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "support/human_skeleton.h"
 
 namespace krok {

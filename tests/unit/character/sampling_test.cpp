@@ -109,6 +109,18 @@ TEST(Sampling, UnevenKeysAreSampledAtSixty) {
   EXPECT_EQ(result.sampling.frames, 61);  // the last key is reached
 }
 
+// Assimp adds keys where Euler angles go far round: packs with a key a frame were read at 60 fps,
+// with poses from halfway round in every other frame.
+TEST(Sampling, KeysBesideThoseOfEachFrameAreBetweenFrames) {
+  std::vector<float> times = even_times(25, 30);
+  times.insert(times.begin() + 8, {0.2389f, 0.2512f});
+  const auto result = chosen(keyed(times));
+  EXPECT_EQ(result.sampling.rate, 30);
+  EXPECT_EQ(result.sampling.frames, 25);
+  times.erase(times.begin() + 15);
+  EXPECT_EQ(chosen(keyed(times)).sampling.rate, 60) << "a frame without a key";
+}
+
 TEST(Sampling, TheLastKeyIsReached) {
   SamplingOptions options;
   options.rate = 7;

@@ -1,6 +1,6 @@
 // If these fail, a name in another script or a broken byte makes a line of a batch's journal that
 // no one can read, or ends the batch.
-#include "tools/cli/json.h"
+#include "tools/cli/report.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,6 @@
 
 #include "compare/clip_difference.h"
 #include "compare/model_difference.h"
-#include "compare/skeleton_match.h"
 
 namespace krok::compare {
 namespace {

@@ -442,6 +442,45 @@ TEST(Nearest, APointCloudIsHeldAgainstASurface) {
   EXPECT_EQ(found.normals.count, 0);
 }
 
+// Triangles that became lines or points. Would fail if a surface that vanishes were the same.
+TEST(Nearest, ASurfaceThatIsGoneIsADifference) {
+  const Grid grid = make_grid();
+  Scene lines = scene_of(grid);
+  lines.meshes[0].triangles = {};
+  EXPECT_FALSE(compare_by_place(scene_of(grid), lines).same());
+  EXPECT_FALSE(compare_by_place(lines, scene_of(grid)).same());
+}
+
+// Two sheets 0.016 mm apart, 30 m in size. Would fail if what is nearly as near as the nearest,
+// which a large scene has more of, were a hole.
+TEST(Nearest, InALargeSceneTheNearestCounts) {
+  const Grid grid = in_two_parts(make_grid());
+  const Change sheets = [](double, SceneState& state) {
+    for (std::size_t m = 0; m < state.positions.size(); ++m) {
+      for (Vec3& place : state.positions[m]) {
+        place *= 30;
+        if (m == 1) place.z() += 1.6e-5;
+      }
+    }
+  };
+  EXPECT_TRUE(compare_by_place(scene_of(grid, sheets), scene_of(grid, sheets)).same());
+}
+
+// Names that a program gave anew, shifted by one. Would fail if meshes were paired by a name
+// although others alone have as many vertices.
+TEST(MatchedMeshes, AreThoseOfTheSameSizeWhereNamesAreShifted) {
+  Grid grid = in_two_parts(make_grid());
+  grid.triangles[1].pop_back();
+  grid.vertices[1].push_back(grid.vertices[1].front());
+  Scene first = scene_of(grid), second = scene_of(grid);
+  first.meshes[0].name = "Mesh.001";
+  first.meshes[1].name = "Mesh.002";
+  second.meshes[0].name = "Mesh.002";
+  second.meshes[1].name = "Mesh.003";
+  const SceneDifference found = compare_scenes(first, second);
+  EXPECT_TRUE(found.same()) << found.structure.size();
+}
+
 TEST(Nearest, NothingToCompareWithIsADifference) {
   const Grid grid = make_grid(2);
   Scene none;

@@ -3,6 +3,7 @@
 
 #include "compare/scene_difference.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -96,6 +97,12 @@ TEST(SceneDifference, FindsAJointThatIsTurnedAtRestAlone) {
     EXPECT_EQ(found.structure[0], "without an animation, at rest: joint Hips is turned by 45 deg");
     EXPECT_TRUE(found.joint_orientations.within());
   }
+  // A motion's reference pose is not the pose in which a mesh is bound.
+  other.only_joints = true;
+  other.meshes.clear();
+  const SceneDifference motion = compare_scenes(moving_triangle(), other);
+  EXPECT_TRUE(motion.same()) << motion.structure[0];
+  EXPECT_THAT(motion.notes, testing::Contains(testing::HasSubstr("at rest: joint Hips")));
 }
 
 TEST(SceneDifference, ResultsDoNotDependOnTheNumberOfJobs) {

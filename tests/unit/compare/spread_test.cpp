@@ -1,6 +1,6 @@
 // If these fail, percentiles of differences are wrong, or depend on the number of threads.
 
-#include "compare/spread.h"
+#include "compare/measure.h"
 
 #include <gtest/gtest.h>
 

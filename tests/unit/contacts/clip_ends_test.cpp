@@ -9,7 +9,7 @@
 
 #include "contacts/contacts.h"
 #include "events.h"
-#include "motion/cut.h"
+#include "motion/sample.h"
 #include "samples/generator/walk.h"
 
 namespace krok {

@@ -10,10 +10,10 @@
 #include <limits>
 
 #include "contacts/gait_metrics.h"
-#include "contacts/slide_speed.h"
+#include "contacts/sole_points.h"
 #include "contacts/step_measures.h"
 #include "events.h"
-#include "motion/cut.h"
+#include "motion/sample.h"
 #include "motion/travel.h"
 
 namespace krok {
@@ -199,6 +199,35 @@ TEST(Cycloid, StancesThatTheEndsCutCount) {
   EXPECT_GE(steps.steps, 1);
   EXPECT_NEAR(steps.speed.value_or(0), options.step_length / walk.step_time, 0.05);
   EXPECT_NEAR(steps.stride_length.value_or(0), 2 * options.step_length, 0.05);
+}
+
+// Would fail if a take that is held for seconds with a foot in the air had its sole where it is
+// then, by which a retarget turns feet round.
+TEST(Soles, AreNotThoseOfAHeldStart) {
+  samples::WalkOptions options;
+  options.steps = 10;
+  options.rate = 60;
+  const Clip walk = samples::make_walk(options).value().clip;
+  const RoleMap roles = find_roles(walk.skeleton);
+  const auto foot = static_cast<std::size_t>(roles.joint(Role::left_foot));
+  const auto toes = static_cast<std::size_t>(roles.joint(Role::left_toes));
+  const auto slope = [&](int f) {
+    return walk.frame_positions(f)[toes].y() - walk.frame_positions(f)[foot].y();
+  };
+  int steepest = 0;
+  for (int f = 0; f < walk.frame_count() / 2; ++f) {
+    if (slope(f) < slope(steepest)) steepest = f;
+  }
+  constexpr int kHeld = 300;
+  Clip held = walk;
+  held.resize(kHeld + walk.frame_count() - steepest);
+  std::vector<Transform> pose(walk.skeleton.reference.size());
+  for (int f = 0; f < held.frame_count(); ++f) {
+    walk.get_pose(steepest + std::max(0, f - kHeld), pose);
+    held.set_pose(f, pose);
+  }
+  const Vec3 heel = find_feet(walk, roles).points[0].front().offset;
+  EXPECT_LT((find_feet(held, roles).points[0].front().offset - heel).norm(), 0.005);
 }
 
 // Would fail if steps on the spot passed for a walk or a run.

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "events.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "samples/generator/rig.h"
 
 namespace krok {

@@ -9,7 +9,7 @@
 #include "contacts/contacts.h"
 #include "contacts/gait_keytimes.h"
 #include "contacts/long_take.h"
-#include "contacts/slide_speed.h"
+#include "contacts/sole_points.h"
 #include "samples/generator/walk.h"
 
 namespace krok {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "events.h"
-#include "motion/cut.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
+#include "motion/sample.h"
 #include "motion/travel.h"
 
 namespace krok {

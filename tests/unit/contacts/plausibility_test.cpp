@@ -1,7 +1,7 @@
 // If these fail, keytimes that nobody could have walked are handed on without a word: steps without
 // double support at a stroll, a foot that is down all the time, strikes that were lost.
 
-#include "contacts/gait_plausibility.h"
+#include "contacts/gait_metrics.h"
 
 #include <gtest/gtest.h>
 

@@ -125,13 +125,31 @@ TEST_F(ChildProcess, AHangIsStoppedInTime) {
       },
       limits);
   EXPECT_EQ(asleep.end, ChildEnd::out_of_time);
+  EXPECT_EQ(asleep.signal, 0) << asleep.what;
   const auto busy = run_in_child(
       []() -> Bytes {
         for (volatile int i = 0;;) i = i + 1;
       },
       limits);
   EXPECT_EQ(busy.end, ChildEnd::out_of_time);
+  // Unless the machine is so busy that the child gets less than a tenth of the time.
+  if (std::stod(busy.what) < 1) {
+    EXPECT_EQ(busy.signal, SIGPROF) << busy.what;
+  }
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10));
+}
+
+// A child that gets little of a busy machine, and so takes longer than its CPU time allows.
+TEST_F(ChildProcess, TimeInWhichItDoesNotRunHardlyCounts) {
+  ChildLimits limits;
+  limits.seconds = 0.2;
+  const auto slow = run_in_child(
+      [] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        return Bytes(1, std::byte{7});
+      },
+      limits);
+  EXPECT_EQ(slow.end, ChildEnd::returned) << slow.what;
 }
 
 TEST_F(ChildProcess, MemoryIsBounded) {

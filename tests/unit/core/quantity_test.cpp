@@ -1,5 +1,5 @@
 // If these fail, an option's length, angle or time is taken in another unit than the user wrote.
-#include "core/quantity.h"
+#include "core/numbers.h"
 
 #include <gtest/gtest.h>
 

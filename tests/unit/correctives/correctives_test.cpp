@@ -8,7 +8,6 @@
 #include <random>
 
 #include "bent_tube.h"
-#include "formats/correctives/corrective_poses.h"
 #include "formats/correctives/correctives_format.h"
 #include "skin/morph.h"
 

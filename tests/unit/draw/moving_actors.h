@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "draw/motion_charts.h"
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "support/human_skeleton.h"
 
 // Motions for tests of charts, made joint by joint.

@@ -1,13 +1,11 @@
 // If these fail, expressions cross-fade otherwise than motions do, or people blink too often, at
 // the wrong speed, or otherwise with the same seed.
 
-#include "face/mix.h"
+#include "face/visemes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-
-#include "face/blinks.h"
 
 namespace krok::face {
 namespace {

@@ -1,14 +1,12 @@
 // If these fail, rotations are filtered like numbers that they are not: the result would depend on
 // the axes a joint happens to have, turn at another pace, or be pulled off where nothing jitters.
 
-#include "filter/rotation_series.h"
+#include "filter/smooth_clip.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/butterworth.h"
-#include "filter/savitzky_golay.h"
 #include "math/quaternion.h"
 #include "samples/generator/noise.h"
 

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <complex>
 
-#include "filter/butterworth.h"
-#include "filter/savitzky_golay.h"
+#include "filter/smooth_clip.h"
 
 namespace krok::filter {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "fit/new_rows_internal.h"
+#include "fit/joint_rows_internal.h"
 #include "support/arm.h"
 
 namespace krok::fit::detail {

@@ -5,8 +5,7 @@
 
 #include <cmath>
 
-#include "terrain/height_field.h"
-#include "terrain/mesh_ground.h"
+#include "terrain/shapes.h"
 #include "terrain/spec.h"
 
 namespace krok::gait {

@@ -5,7 +5,7 @@
 
 #include "core/index.h"
 #include "motion/local_motion.h"
-#include "terrain/mesh_ground.h"
+#include "terrain/shapes.h"
 #include "unit/gait/walkers.h"
 
 namespace krok::gait {

@@ -7,7 +7,7 @@
 
 #include "core/index.h"
 #include "gait/plan_prints.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "parametric/thin_out.h"
 #include "walkers.h"
 

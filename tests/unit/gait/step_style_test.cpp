@@ -10,7 +10,6 @@
 
 #include "core/index.h"
 #include "gait/body_motion_internal.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
 #include "parametric/example_sums.h"
 #include "parametric/style_groups.h"

@@ -228,6 +228,32 @@ TEST(GltfMorphTargets, EachClipHasItsOwnWeights) {
   }
 }
 
+// Equal weights of two clips are one accessor in compressed files. Would fail if a clip took a
+// sampler of another one's: files were broken, or the program crashed.
+TEST(GltfMorphTargets, ClipsOfEqualWeightsKeepSamplersOfTheirOwn) {
+  const Face face(3);
+  Clip still = test::swinging_clip(face.model.skeleton, 5, 30);
+  for (int f = 0; f < 5; ++f) still.set_pose(f, face.model.skeleton.reference);
+  const auto many =
+      gltf::joint_tracks(face.model.skeleton, test::swinging_clip(face.model.skeleton, 5, 30));
+  const auto few = gltf::joint_tracks(face.model.skeleton, still);
+  ASSERT_TRUE(many.ok() && few.ok());
+  const std::vector<gltf::NamedTracks> clips = {{"many", &*many, &face.weights},
+                                                {"few", &*few, &face.weights}};
+  gltf::WriteOptions options = face.options;
+  options.weights = nullptr;
+  options.compressed = true;
+  const test::Glb glb = test::written(
+      [&](OutputFile& file) { return gltf::write_rig(face.model, clips, options, file); });
+  for (const auto& animation : glb.json["animations"]) {
+    for (const auto& channel : animation["channels"]) {
+      if (channel["target"]["path"] != "weights") continue;
+      const auto& sampler = animation["samplers"][channel["sampler"].get<std::size_t>()];
+      EXPECT_EQ(glb.json["accessors"][sampler["output"].get<std::size_t>()]["type"], "SCALAR");
+    }
+  }
+}
+
 // Would fail if each mesh of a character had the targets of its face: 15 kB of 141 for a robot of
 // 19 meshes, three of which move.
 TEST(GltfMorphTargets, AreOnlyOnMeshesThatTheyMove) {

@@ -1,7 +1,7 @@
 // If these fail, krok-lint finds other faults in a long take than in a short one: at the borders of
 // its parts they are missed, come twice, or are cut.
 
-#include "lint/long_take.h"
+#include "lint/lint.h"
 
 #include <gtest/gtest.h>
 

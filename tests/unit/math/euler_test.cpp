@@ -1,11 +1,10 @@
 // If these fail, BVH files in some channel order are read or written with wrong rotations.
-#include "math/euler.h"
+#include "math/quaternion.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "math/quaternion.h"
 #include "math/transform.h"
 
 namespace krok {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 
 namespace krok {
 namespace {

@@ -1,6 +1,6 @@
 // Would fail if a part of a motion began or ended at another frame, or played at another speed.
 
-#include "motion/cut.h"
+#include "motion/sample.h"
 
 #include <gtest/gtest.h>
 

@@ -8,13 +8,11 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
-#include "motion/cut.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/local_motion.h"
-#include "motion/place.h"
-#include "motion/retime.h"
+#include "motion/sample.h"
+#include "motion/travel.h"
 #include "roles/roles.h"
 #include "support/human_skeleton.h"
 #include "support/test_scenes.h"

@@ -8,11 +8,9 @@
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "motion/cut.h"
-#include "motion/displacement.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/local_motion.h"
-#include "motion/place.h"
+#include "motion/sample.h"
 #include "motion/travel.h"
 #include "samples/generator/walk.h"
 #include "support/test_scenes.h"

@@ -1,17 +1,16 @@
 // If these fail, a motion begins elsewhere, faces another way, floats, has another size or pace
 // than was asked for.
 
-#include "motion/place.h"
+#include "motion/travel.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "math/quaternion.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/joint_selection.h"
-#include "motion/retime.h"
-#include "motion/travel.h"
+#include "motion/sample.h"
 #include "support/test_scenes.h"
 
 namespace krok {

@@ -1,7 +1,7 @@
 // If these fail, motions resampled along Hermite curves leave their frames, bend at them, or do not
 // stop at them with full tension.
 
-#include "motion/retime.h"
+#include "motion/sample.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::nodes {
 namespace {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "motion/sample.h"
-#include "pose/local_to_model.h"
+#include "pose/packed_pose.h"
 #include "walks.h"
 
 namespace krok::parametric {

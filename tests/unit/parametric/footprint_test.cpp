@@ -5,7 +5,7 @@
 
 #include <gmock/gmock.h>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "walks.h"
 
 namespace krok::parametric {

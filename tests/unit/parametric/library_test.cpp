@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "motion/place.h"
+#include "motion/travel.h"
 #include "walks.h"
 
 namespace krok::parametric {

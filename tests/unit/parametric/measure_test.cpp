@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/parallel.h"
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "motion/sample.h"
 #include "parametric/blended_motion.h"
 #include "walks.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "math/types.h"
+#include "math/transform.h"
 
 namespace krok::parametric {
 namespace {

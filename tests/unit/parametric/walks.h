@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "math/euler.h"
-#include "motion/ground_frame.h"
+#include "math/quaternion.h"
+#include "motion/hips_root.h"
 #include "parametric/cut_steps.h"
 #include "samples/generator/walk.h"
 

@@ -9,7 +9,7 @@
 
 #include "contacts/legs.h"
 #include "core/index.h"
-#include "motion/displacement.h"
+#include "motion/travel.h"
 #include "support/planted_measures.h"
 
 namespace krok {

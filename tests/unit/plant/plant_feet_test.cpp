@@ -11,7 +11,7 @@
 #include <limits>
 #include <random>
 
-#include "motion/ground_frame.h"
+#include "motion/hips_root.h"
 #include "plant/foot_paths_internal.h"
 #include "samples/generator/gesture.h"
 #include "support/human_skeleton.h"

@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "pose/blend_pose.h"
-#include "pose/local_to_model.h"
 #include "pose/packed_pose.h"
 #include "poses.h"
 #include "support/counted_allocations.h"

@@ -1,14 +1,13 @@
 // Would fail if a blend were not the weighted mean of its poses, if the sign of a quaternion told,
 // or if an instruction set, a tail or the number of terms changed the result.
 
-#include "pose/blend_pose.h"
+#include "pose/packed_pose.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "pose/packed_pose.h"
 #include "poses.h"
 
 namespace krok {

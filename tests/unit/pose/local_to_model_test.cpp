@@ -1,7 +1,7 @@
 // Would fail if a joint landed elsewhere than the chain of its parents puts it, or if a number of
 // poses or joints, or an instruction set, changed a single bit.
 
-#include "pose/local_to_model.h"
+#include "pose/packed_pose.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "positions/from_positions.h"
 #include "samples/generator/noise.h"
 

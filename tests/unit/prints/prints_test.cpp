@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "math/types.h"
+#include "math/transform.h"
 #include "support/told_mistakes.h"
 #include "support/written_bytes.h"
 

@@ -8,11 +8,10 @@
 #include <cmath>
 
 #include "core/index.h"
-#include "math/euler.h"
 #include "math/quaternion.h"
-#include "motion/cut.h"
 #include "motion/mirror.h"
-#include "motion/place.h"
+#include "motion/sample.h"
+#include "motion/travel.h"
 #include "samples/generator/rise.h"
 
 namespace krok::ragdoll {

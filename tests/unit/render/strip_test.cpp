@@ -1,6 +1,6 @@
 // If these fail, a motion strip tells the wrong story of where and when the figure was.
 
-#include "render/strip.h"
+#include "render/sheet.h"
 
 #include <gmock/gmock.h>
 

@@ -158,6 +158,31 @@ TEST(SameSkeleton, EitherMayHaveMoreJoints) {
   EXPECT_FALSE(same(twisted).has_value());
 }
 
+// Takes of one character whose file shows another pose: where no mesh binds the limbs, that is
+// their reference pose. Would fail if such takes were retargeted, with feet 60 degrees off.
+TEST(SameSkeleton, APoseOfTheFileDoesNotMakeItAnother) {
+  const Skeleton skeleton = with_turned_joints(human_skeleton());
+  const auto twisted = [](const Skeleton& from, const std::string& side) {
+    const Vec3 bone = from.reference[at(from.find(side + "Hand"))].position -
+                      from.reference[at(from.find(side + "ForeArm"))].position;
+    return posed(from, side + "ForeArm", from_rotation_vector(1.9 * bone.normalized()));
+  };
+  Skeleton shown = twisted(skeleton, "Left");
+  shown = posed(shown, "RightLeg", from_rotation_vector(Vec3(0.8, 0, 0)));
+  const Clip clip = swinging_clip(shown, 20, 30);
+  Skeleton hero = skeleton;
+  const int finger = hero.find("LeftHand_end");
+  ASSERT_GE(finger, 0);
+  hero.reference[at(finger)].position.y() += 0.005;
+  const auto result = transfer(clip, hero);
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(result->report.method, Method::same_skeleton);
+  // Both forearms turned are other axes.
+  const Skeleton other = twisted(shown, "Right");
+  const auto roles = find_roles(hero);
+  EXPECT_FALSE(retarget::same_person(other, roles, hero, roles).has_value());
+}
+
 // Under other names only if the bones show it and no role says otherwise.
 TEST(SameSkeleton, UnderOtherNamesItMustBeThatOfTheSameBody) {
   const Skeleton skeleton = with_turned_joints(human_skeleton());

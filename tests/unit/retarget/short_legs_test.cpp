@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "contacts/hip_widths.h"
 #include "contacts/legs.h"
 #include "contacts/sole_points.h"
 #include "motion/local_motion.h"

@@ -121,6 +121,32 @@ TEST(Touches, EndsFarFromTheirHandsAreNoHands) {
   EXPECT_NEAR(apart(made->clip, "rig:"), made->report.scale * apart(source, ""), 0.03);
 }
 
+// The bent arms of runners, hands beside the pelvis. Would fail if palms above the hip joint were
+// on the thigh: arms were pulled straight down, by up to 70 degrees, on actors of other
+// proportions.
+TEST(Touches, HandsBesideThePelvisAreNotOnTheThigh) {
+  int near = 0;
+  for (const double back : {0.3, 0.4, 0.5, 0.6}) {
+    for (const double bend : {1.2, 1.3, 1.4}) {
+      const Vec3 upper = Vec3(-0.2, -std::cos(back), -std::sin(back)).normalized();
+      const Quat arm = Quat::FromTwoVectors(Vec3::UnitX(), upper);
+      const Vec3 elbow = arm.conjugate() * upper.cross(Vec3(0, -std::sin(back), std::cos(back)));
+      const Clip source =
+          into_pose({{"LeftArm", rotation_vector(arm)}, {"LeftForeArm", bend * elbow.normalized()}},
+                    Vec3::Zero());
+      const Vec3 hip = place(source, 90, "LeftUpLeg"), hand = palm(source, 90, "LeftHand");
+      if (hand.y() < hip.y()) continue;
+      near += (hand - hip).norm() < 0.1 ? 1 : 0;
+      const auto made = transfer(source, long_armed());
+      ASSERT_TRUE(made.ok());
+      EXPECT_TRUE(std::ranges::none_of(
+          made->report.contacts, [](const auto& contact) { return contact.on == "left thigh"; }))
+          << back << ' ' << bend << ' ' << (hand - hip).norm();
+    }
+  }
+  EXPECT_GT(near, 0);
+}
+
 // Upside down on straight arms, hands on the ground.
 Clip handstand() {
   return into_pose({{"LeftArm", Vec3(0, 0, 1.5)}, {"RightArm", Vec3(0, 0, -1.5)}}, Vec3(3.0, 0, 0));
@@ -147,6 +173,18 @@ TEST(Touches, HandsOfAHandstandNeitherSlideNorHover) {
   EXPECT_GT(hovered, 0.1);
   EXPECT_LT(slides, 0.005);
   EXPECT_GT(kept->report.largest_shift, 0.05);
+}
+
+// Nobody knew of hands 0.1 m and more in the ground.
+TEST(Touches, HandsInTheGroundAreReported) {
+  const Clip source = handstand();
+  const auto kept = transfer(source, long_armed());
+  const auto free = transfer(source, long_armed(), {.touches = retarget::Touches::free});
+  ASSERT_TRUE(kept.ok() && free.ok());
+  EXPECT_LT(kept->report.largest_depth, 0.02);
+  EXPECT_GT(free->report.largest_depth, 0.1);
+  EXPECT_EQ(free->clip.skeleton.names[at(free->report.largest_depth_joint)].find("rig:"), 0u);
+  EXPECT_NEAR(free->report.largest_depth_time, 1.5, 0.6);
 }
 
 // Would fail if a body that lies hovered by as much as its ankles are higher than the source's.

@@ -436,6 +436,31 @@ TEST(Retarget, HipsUnderARootThatStaysCarryTheTravelByNames) {
               2, 1e-4);
 }
 
+// Would fail if animals whose legs are shorter than the rest of them hung in the air by the
+// source's legs, as a cat by 0.13 m in the motions of a fox, or longer legs went into the ground.
+TEST(Retarget, PawsStayOnTheGroundByNames) {
+  const auto animal = [](double leg) {
+    Skeleton made = skeleton_from_text("Hips .Spine ..Chest ...Head ...Paw .Tail");
+    const double heights[] = {leg, leg, leg, leg + 0.1, 0, leg};
+    for (int j = 0; j < made.joint_count(); ++j) {
+      made.reference[at(j)].position = Vec3(0, heights[j], j == 5 ? -0.4 : 0.3 * std::min(j, 2));
+    }
+    return made;
+  };
+  Clip clip;
+  clip.skeleton = animal(0.5);
+  clip.resize(1);
+  clip.set_pose(0, clip.skeleton.reference);
+  for (const double leg : {0.2, 0.9}) {
+    Skeleton to = animal(leg);
+    to.add("Ear", to.find("Head"), to.reference[at(to.find("Head"))]);
+    const auto result = transfer(clip, to);
+    ASSERT_TRUE(result.ok());
+    ASSERT_EQ(result->report.method, Method::names);
+    EXPECT_NEAR(result->clip.frame_positions(0)[at(to.find("Paw"))].y(), 0, 1e-5) << leg;
+  }
+}
+
 TEST(Retarget, WhatIsMissingIsSaid) {
   const Skeleton snake = skeleton_from_text("a .b ..c ...d");
   const auto result = transfer(lively_clip(human_skeleton(), 2), snake);

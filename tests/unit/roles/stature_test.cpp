@@ -1,6 +1,6 @@
 // If these fail, one actor is said to be of different sizes by different tools, poses or units.
 
-#include "roles/stature.h"
+#include "roles/body_frame.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // If these fail, sampling a clip shows a neighbouring frame, or a mixture where a frame stands.
-#include "scene/frame_moment.h"
+#include "scene/clip.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "settle/rolled_ground_internal.h"
-#include "settle/support_points_internal.h"
+#include "settle/settler_internal.h"
 #include "terrain/spec.h"
 
 namespace krok::settling {

@@ -11,10 +11,10 @@
 #include <string_view>
 
 #include "core/index.h"
-#include "math/euler.h"
 #include "math/hermite.h"
+#include "math/quaternion.h"
 #include "motion/local_motion.h"
-#include "motion/place.h"
+#include "motion/travel.h"
 #include "ragdoll/get_up.h"
 #include "samples/generator/rise.h"
 #include "terrain/spec.h"

@@ -8,7 +8,7 @@
 
 #include <numeric>
 
-#include "motion/cut.h"
+#include "motion/sample.h"
 #include "support/linear_blend.h"
 #include "support/test_scenes.h"
 

@@ -1,7 +1,7 @@
 // Would fail if a matrix and the two phases that it is split into were not the same map, or if the
 // joint did not stay in its place in the first.
 
-#include "skin/dual_quaternion.h"
+#include "skin/palette.h"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // If these fail, a morph target shows more or less than its keys say, or keys that cannot be are
 // taken for a curve.
 
-#include "skin/morph_curves.h"
+#include "skin/morph.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "skin/dual_quaternion.h"
+#include "skin/palette.h"
 #include "skinned.h"
 
 namespace krok::test {

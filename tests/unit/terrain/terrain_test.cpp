@@ -5,8 +5,6 @@
 #include <limits>
 #include <random>
 
-#include "terrain/height_field.h"
-#include "terrain/mesh_ground.h"
 #include "terrain/shapes.h"
 #include "terrain/spec.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "math/euler.h"
+#include "math/quaternion.h"
 #include "timeline/mix.h"
 #include "unit/blend/blended_walks.h"
 
