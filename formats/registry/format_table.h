@@ -29,7 +29,8 @@
   ROW(amc, capture, "amc", "an Acclaim motion (AMC)", is_amc, .open_capture = open_amc)           \
   ROW(asf, capture, "asf", "an Acclaim skeleton (ASF)", is_asf, .open_capture = open_asf,         \
       .companion = true)                                                                          \
-  ROW(glb, gltf, "glb", "a binary glTF file (.glb)", starts<"glTF">, .read_scene = read_gltf)     \
+  ROW(glb, gltf, "glb vrm vrma", "a binary glTF file (.glb)", starts<"glTF">,                     \
+      .read_scene = read_gltf)                                                                    \
   ROW(material, own, "material", "Krok materials (.material)", is_json<kMaterialSchema>)          \
   ROW(character, own, "character", "a Krok character (.character)", is_json<kCharacterSchema>,    \
       .read_actor = read_character)                                                               \

@@ -103,9 +103,9 @@ void map_surface(const Mesh& mesh, const BlockedField& field, int jobs, Model& m
   std::vector<double> along(count, 0);
   parallel_for(count, 256, jobs, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const auto places = field.places(mesh.positions[i]);
-      if (places.empty()) continue;
-      const Station station = field.field().station_at(places.front());
+      const TubePoint place = field.nearest_place(mesh.positions[i]);
+      if (place.tube < 0) continue;
+      const Station station = field.field().station_at(place);
       const Vec3 offset = mesh.positions[i] - station.center;
       const double x = std::abs(offset.dot(station.side)), y = offset.dot(station.front);
       // Angle from the front without trigonometry: 0 front, 1/2 side, 1 back.
@@ -133,30 +133,32 @@ using namespace body;
 
 struct Level {
   std::size_t vertices;
-  int smoothing;  // passes over the weights
+  std::size_t lattice_vertices;  // of the surface before it is simplified
+  int smoothing;                 // passes over the weights
 };
 
 Level level_of(BodyDetail detail) {
   switch (detail) {
+    case BodyDetail::preview:
+      return {1200, 24000, 1};
     case BodyDetail::low:
-      return {2500, 2};
+      return {2500, 120000, 2};
     case BodyDetail::high:
-      return {40000, 12};
+      return {40000, 200000, 12};
     case BodyDetail::medium:
       break;
   }
-  return {10000, 5};
+  return {10000, 160000, 5};
 }
 
-// A cell size fine enough for the thinnest limb, within the limit of the vertex count.
-double cell_size(const Field& field, std::size_t target) {
+// A cell size fine enough for the thinnest limb, within the limits of the level.
+double cell_size(const Field& field, const Level& level) {
   // A lattice of this kind has about four vertices per squared cell.
-  const double finest =
-      std::sqrt(4 * field.area_estimate() /
-                static_cast<double>(std::clamp<std::size_t>(
-                    16 * target, 120000, std::max<std::size_t>(160000, 5 * target))));
-  const double coarsest = std::sqrt(4 * field.area_estimate() / static_cast<double>(4 * target));
-  return std::clamp(0.8 * field.smallest_radius(), finest, coarsest);
+  const auto of_vertices = [&field](std::size_t count) {
+    return std::sqrt(4 * field.area_estimate() / static_cast<double>(count));
+  };
+  return std::clamp(0.8 * field.smallest_radius(), of_vertices(level.lattice_vertices),
+                    of_vertices(4 * level.vertices));
 }
 
 // Thickens limbs that are thinner than the lattice resolution and would break up.
@@ -300,7 +302,7 @@ Result<Body> make_body(const FrameSource& source, const BodyOptions& options) {
   Plan plan = *std::move(planned);
 
   const Level level = level_of(options.detail);
-  const double cell = cell_size(Field(plan.shape), level.vertices);
+  const double cell = cell_size(Field(plan.shape), level);
   thicken(plan.shape, 0.8 * cell);
   const Field field(plan.shape);
   const double size = field.bounds().diagonal().norm();

@@ -9,6 +9,7 @@ namespace krok::body {
 
 namespace {
 
+constexpr double kFar = std::numeric_limits<double>::max();
 constexpr int kPieces = 5;  // linear segments of a spline between two stations
 
 double cubic(double a, double b, double c, double d, double t) {
@@ -95,7 +96,7 @@ Field::Field(const Shape& shape) : blends_(shape.blends) {
   smallest_radius_ = std::numeric_limits<double>::max();
   const std::size_t count = shape.tubes.size();
   for (const Tube& tube : shape.tubes) {
-    Path path{smooth_path(tube), {}, tube.cuts, tube.joints};
+    Path path{smooth_path(tube), {}, tube.cuts, tube.joints, 0};
     for (std::size_t i = 0; i + 1 < std::max<std::size_t>(path.stations.size(), 2); ++i) {
       const Station& a = path.stations[i];
       const Station& b = path.stations[std::min(i + 1, path.stations.size() - 1)];
@@ -120,17 +121,20 @@ Field::Field(const Shape& shape) : blends_(shape.blends) {
     paths_.push_back(std::move(path));
   }
   pair_radius_.assign(count, std::vector<double>(count, 0.0));
+  double margin = 0;
   for (const Blend& blend : blends_) {
-    margin_ = std::max(margin_, blend.radius);
+    margin = std::max(margin, blend.radius);
     for (const int a : blend.tubes) {
+      double& own = paths_[static_cast<std::size_t>(a)].margin;
+      own = std::max(own, blend.radius);
       for (const int b : blend.tubes) {
         double& radius = pair_radius_[static_cast<std::size_t>(a)][static_cast<std::size_t>(b)];
         radius = std::max(radius, blend.radius);
       }
     }
   }
-  bounds_.extend(bounds_.min() - Vec3::Constant(margin_));
-  bounds_.extend(bounds_.max() + Vec3::Constant(margin_));
+  bounds_.extend(bounds_.min() - Vec3::Constant(margin));
+  bounds_.extend(bounds_.max() + Vec3::Constant(margin));
 }
 
 Field::Near Field::near(const Vec3& center, double radius) const {
@@ -142,7 +146,7 @@ Field::Near Field::near(const Vec3& center, double radius) const {
     int first = segments, last = -1;
     for (int s = 0; s < segments; ++s) {
       const Ball& ball = balls[static_cast<std::size_t>(s)];
-      if ((ball.center - center).norm() > radius + ball.radius + 1.5 * margin_) continue;
+      if ((ball.center - center).norm() > radius + ball.radius + 1.5 * paths_[t].margin) continue;
       first = std::min(first, s);
       last = std::max(last, s);
     }
@@ -190,16 +194,21 @@ double Field::segment_value(const Path& path, int segment, const Vec3& point,
   return k0 * (k0 - 1) / k1;
 }
 
-double Field::tube_value(int tube, int first, int last, const Vec3& point, int* segment,
-                         double* fraction) const {
+double Field::tube_value(int tube, int first, int last, const Vec3& point, double limit,
+                         int* segment, double* fraction) const {
   const Path& path = paths_[static_cast<std::size_t>(tube)];
   // Starts with the segment whose midpoint is nearest, so that most others can be rejected.
   int start = first;
   double shortest = std::numeric_limits<double>::max();
+  bool within = false;
+  const double beyond = std::max(limit, 0.0);
   for (int s = first; s <= last; ++s) {
-    const double away = (path.balls[static_cast<std::size_t>(s)].center - point).squaredNorm();
+    const Ball& ball = path.balls[static_cast<std::size_t>(s)];
+    const double away = (ball.center - point).squaredNorm(), bound = ball.radius + beyond;
     if (away < shortest) shortest = away, start = s;
+    within = within || away <= bound * bound;
   }
+  if (!within) return kFar;
   double t = 0;
   double best = segment_value(path, start, point, &t);
   if (segment) *segment = start;
@@ -231,10 +240,11 @@ double Field::value(const Vec3& point, const Near& near) const {
     many.resize(near.ranges.size());
     values = many.data();
   }
-  double result = std::numeric_limits<double>::max();
+  double result = kFar;
   for (std::size_t i = 0; i < near.ranges.size(); ++i) {
     const Near::Range& range = near.ranges[i];
-    values[i] = tube_value(range.tube, range.first, range.last, point, nullptr, nullptr);
+    const double limit = limit_of(range.tube, result);
+    values[i] = tube_value(range.tube, range.first, range.last, point, limit, nullptr, nullptr);
     result = std::min(result, values[i]);
   }
   for (const int index : near.blends) {
@@ -262,6 +272,11 @@ double Field::value(const Vec3& point, const Near& near) const {
   return result;
 }
 
+double Field::limit_of(int tube, double nearest) const {
+  // Beyond what it blends with; the rest is for values below the distance, see segment_value().
+  return nearest + 1.5 * paths_[static_cast<std::size_t>(tube)].margin;
+}
+
 Vec3 Field::gradient(const Vec3& point, double value_there, const Near& near, double step) const {
   Vec3 result;
   for (int axis = 0; axis < 3; ++axis) {
@@ -278,8 +293,9 @@ TubePoint Field::nearest_place(const Vec3& point, const Near& near) const {
   for (const Near::Range& range : near.ranges) {
     TubePoint place;
     place.tube = range.tube;
-    place.value =
-        tube_value(range.tube, range.first, range.last, point, &place.segment, &place.fraction);
+    const double limit = nearest.tube < 0 ? kFar : limit_of(range.tube, nearest.value);
+    place.value = tube_value(range.tube, range.first, range.last, point, limit, &place.segment,
+                             &place.fraction);
     if (nearest.tube < 0 || place.value < nearest.value) nearest = place;
   }
   return nearest;
@@ -291,8 +307,8 @@ std::vector<TubePoint> Field::places(const Vec3& point, const Near& near) const 
     TubePoint place;
     place.tube = range.tube;
     place.segment = range.first;
-    place.value =
-        tube_value(range.tube, range.first, range.last, point, &place.segment, &place.fraction);
+    place.value = tube_value(range.tube, range.first, range.last, point, kFar, &place.segment,
+                             &place.fraction);
     places.push_back(place);
   }
   std::stable_sort(places.begin(), places.end(),
@@ -345,7 +361,7 @@ double Field::blend_radius(int tube_a, int tube_b) const {
 std::vector<Field::Ball> Field::balls() const {
   std::vector<Ball> balls;
   for (const Path& path : paths_) {
-    for (const Ball& ball : path.balls) balls.push_back({ball.center, ball.radius + margin_});
+    for (const Ball& ball : path.balls) balls.push_back({ball.center, ball.radius + path.margin});
   }
   return balls;
 }

@@ -118,16 +118,20 @@ class Field {
     std::vector<Ball> balls;        // around each segment
     std::vector<Cut> cuts;
     std::vector<TubeJoint> joints;
+    double margin = 0;  // the largest radius that it is blended with
   };
   double segment_value(const Path& path, int segment, const Vec3& point, double* fraction) const;
-  double tube_value(int tube, int first, int last, const Vec3& point, int* segment,
+  // From which value on a tube changes nothing where another one's is `nearest`.
+  double limit_of(int tube, double nearest) const;
+  // Where it is more than `limit`, the largest number may come instead.
+  double tube_value(int tube, int first, int last, const Vec3& point, double limit, int* segment,
                     double* fraction) const;
 
   std::vector<Path> paths_;
   std::vector<Blend> blends_;
   std::vector<std::vector<double>> pair_radius_;  // [tubes x tubes], 0 where not blended
   Eigen::AlignedBox3d bounds_;
-  double area_ = 0, smallest_radius_ = 0, margin_ = 0;
+  double area_ = 0, smallest_radius_ = 0;
 };
 
 }  // namespace krok::body

@@ -159,28 +159,41 @@ Lattice::Lattice(const BlockedField& field, int jobs)
 
 void Lattice::sample(std::size_t block) {
   const auto& [corner, near] = field_.blocks()[block];
-  constexpr int kPart = kCells / 2;
-  double* values = &values_[block * kPoints];
-  for (int part = 0; part < 8; ++part) {
-    const int x0 = (part & 1) * kPart, y0 = ((part >> 1) & 1) * kPart,
-              z0 = ((part >> 2) & 1) * kPart;
-    // The value at the centre decides whether the surface is beyond all points and their
-    // neighbours. Outside, values are at most the distance; inside they may be up to twice that.
-    const double half = 0.5 * (kPart - 1);
-    const double middle =
-        field_.field().value(field_.lattice_point(corner[0] + x0, corner[1] + y0, corner[2] + z0) +
-                                 Vec3::Constant(half * field_.cell()),
-                             near);
-    const double reach = std::sqrt(3.0) * (half + 1) * field_.cell();
-    const bool far = middle > 1.2 * reach || middle < -2.2 * reach;
-    for (int z = z0; z < z0 + kPart; ++z) {
-      for (int y = y0; y < y0 + kPart; ++y) {
-        for (int x = x0; x < x0 + kPart; ++x) {
-          values[x + kCells * (y + kCells * z)] =
-              far ? middle
-                  : field_.field().value(
-                        field_.lattice_point(corner[0] + x, corner[1] + y, corner[2] + z), near);
-        }
+  sample_part(corner, near, {0, 0, 0}, kCells, &values_[block * kPoints]);
+}
+
+void Lattice::sample_part(const std::array<std::int64_t, 3>& corner, const Field::Near& near,
+                          const std::array<int, 3>& first, int size, double* values) const {
+  const auto point = [&](int x, int y, int z) {
+    return field_.lattice_point(corner[0] + first[0] + x, corner[1] + first[1] + y,
+                                corner[2] + first[2] + z);
+  };
+  const auto put = [&](int x, int y, int z, double value) {
+    values[first[0] + x + kCells * (first[1] + y + kCells * (first[2] + z))] = value;
+  };
+  // The value at the centre decides whether the surface is beyond all points and their
+  // neighbours. Outside, values are at most the distance; inside they may be up to twice that.
+  const double half = 0.5 * (size - 1);
+  const Vec3 centre = point(0, 0, 0) + Vec3::Constant(half * field_.cell());
+  const double middle = field_.field().value(centre, near);
+  const double reach = std::sqrt(3.0) * (half + 1) * field_.cell();
+  const bool far = middle > 1.2 * reach || middle < -2.2 * reach;
+  if (!far && size > 2) {
+    const Field::Near nearer =
+        size < kCells ? field_.field().near(centre, reach + field_.cell()) : near;
+    for (int part = 0; part < 8; ++part) {
+      const int step = size / 2;
+      sample_part(corner, nearer,
+                  {first[0] + (part & 1) * step, first[1] + (part >> 1 & 1) * step,
+                   first[2] + (part >> 2) * step},
+                  step, values);
+    }
+    return;
+  }
+  for (int z = 0; z < size; ++z) {
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) {
+        put(x, y, z, far ? middle : field_.field().value(point(x, y, z), near));
       }
     }
   }

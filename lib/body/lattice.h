@@ -91,6 +91,9 @@ class Lattice {
   };
   static constexpr std::size_t kPoints = static_cast<std::size_t>(kCells * kCells * kCells);
   void sample(std::size_t block);
+  // Points [first, first + size) of the block with this corner, in octants.
+  void sample_part(const std::array<std::int64_t, 3>& corner, const Field::Near& near,
+                   const std::array<int, 3>& first, int size, double* values) const;
   // The point offset by -1, 0 or 1 along each axis; block -1 if there is none.
   Point neighbour(Point point, int dx, int dy, int dz) const;
 

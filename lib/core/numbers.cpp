@@ -89,7 +89,8 @@ struct Split {
 // What to write instead: "1.5s" for 00:00:01.5.
 std::string hint_for(std::string_view text) {
   if (text.ends_with('%'))
-    return "write the quantity itself: what it would be a share of is not known";
+    return "write the quantity itself with its unit, as 0.1mm: what it would be a share of is not "
+           "known";
   double seconds = 0;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(':', begin), text.size());

@@ -21,7 +21,7 @@ std::string animation_list(const Scene& scene) {
   for (std::size_t i = 0; i < scene.animations.size() && i < kMaxListed; ++i) {
     list += fmt::format("{}{} ({})", i == 0 ? "" : ", ", i, shown(animation_name(scene, i)));
   }
-  return list + (scene.animations.size() > kMaxListed ? ", ..." : "");
+  return list + (scene.animations.size() > kMaxListed ? ", ...; krok-info lists all" : "");
 }
 
 Result<int> find_animation(const Scene& scene, const std::string& wanted, const std::string& file) {

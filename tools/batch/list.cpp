@@ -14,6 +14,7 @@
 #include "core/text.h"
 #include "formats/io/open_scene.h"
 #include "tools/cli/option_kinds.h"
+#include "tools/cli/paths.h"
 #include "tools/cli/usage.h"
 
 namespace krok::cli::batch {
@@ -165,7 +166,7 @@ class Lister {
       const bool may_be_result = line_.inputs.size() == 2 && argument == line_.inputs.back();
       fail(Error("file-missing", "no such file",
                  may_be_result ? "check the path; a file to be written is given with -o"
-                               : "check the path")
+                               : missing_file_hint(argument))
                .in_file(argument));
       return {};
     }

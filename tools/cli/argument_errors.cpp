@@ -280,6 +280,15 @@ Error CommandLine::parse_error(const std::vector<std::string>& arguments,
                           type.ends_with(".steps") ? ", which krok-fit makes" : "");
     break;
   }
+  // "krok diff walk.anim": what is given beside what is missing
+  std::string form;
+  std::size_t positionals = 0;
+  for (const CLI::Option* option : app_.get_options()) {
+    if (!option->get_positional()) continue;
+    form += " " + option->get_name();
+    ++positionals;
+  }
+  if (positionals > 1 && !missing.empty()) missing += fmt::format("write {}{}; ", spec_.name, form);
   return Error("usage", error.what(),
                fmt::format("{}see {} --help{}", missing, spec_.name,
                            too_many ? "; for several inputs, use --out-dir DIR" : ""));

@@ -290,11 +290,18 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
                     : "write the name of the file");
   }
   if (form_ == Form::single && spec_.has_output && spec_.needs_output && output.empty()) {
+    std::vector<std::string> inputs;
     for (const CLI::Option* option : app_.get_options()) {
-      if (!spec_.batch || !option->get_positional() || option->empty()) continue;
-      return no_output_for(option->results().front());
+      if (option->get_positional())
+        std::ranges::copy(option->results(), std::back_inserter(inputs));
     }
-    return no_output();
+    // "krok export walk.anim walk.glb"
+    std::error_code unknown;
+    if (inputs.size() > 1 && !extension(inputs.back()).empty() &&
+        !std::filesystem::exists(inputs.back(), unknown)) {
+      return no_output(fmt::format("write -o {}", shown(inputs.back())));
+    }
+    return spec_.batch && !inputs.empty() ? no_output_for(inputs.front()) : no_output();
   }
   if (Status status = open_folders(); !status) return status.error();
   if (of_folder) {

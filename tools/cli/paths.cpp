@@ -214,7 +214,38 @@ Diagnostics keep_one_of_each_take(const std::string& folder, std::vector<std::st
   return {std::move(twice)};
 }
 
+// "HEAD~1", "origin/main:walk.anim"
+bool names_commit(const std::string& path) {
+  return path.starts_with("HEAD") || path.starts_with("origin/") || path.starts_with("main:") ||
+         path.starts_with("master:");
+}
+
 }  // namespace
+
+std::string missing_file_hint(const std::string& path) {
+  if (names_commit(path)) {
+    return "check the path; for files of commits, krok git-setup once, then git diff COMMIT -- "
+           "FILE";
+  }
+  constexpr std::size_t kMaxNames = 5000;
+  std::vector<std::string> names;
+  const fs::path folder = fs::path(path).parent_path();
+  std::error_code unreadable;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, unreadable), end;
+       !unreadable && entry != end && names.size() < kMaxNames; entry.increment(unreadable)) {
+    names.push_back(entry->path().filename().string());
+  }
+  std::ranges::sort(names);
+  // "walks.bvh" beside a folder "walks"
+  const std::string stem = fs::path(path).stem().string();
+  const bool is_folder =
+      std::ranges::binary_search(names, stem) && fs::is_directory(folder / stem, unreadable);
+  const std::string near = nearest_name(fs::path(path).filename().string(), names);
+  std::string hint = "check the path";
+  if (!near.empty()) hint += fmt::format("; did you mean {}?", shown((folder / near).string()));
+  if (is_folder) hint += fmt::format("; {} is a folder", shown((folder / stem).string()));
+  return hint;
+}
 
 Diagnostics keep_inputs(const std::string& folder, const std::vector<std::string>& endings,
                         std::vector<std::string>& paths) {

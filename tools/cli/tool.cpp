@@ -178,6 +178,7 @@ int run_single(const CommandLine& line) {
       error.hint = "krok-fit " + error.where.file + " -o OUT.steps makes a library of its steps";
     }
     if (error.code == "file-missing") {
+      if (error.hint == "check the path") error.hint = missing_file_hint(error.where.file);
       // "krok-view walk.anim page.html"
       const std::string written = " .html .htm .svg .pdf .png .mp4 .gif .webp .glb ";
       if (spec.has_output &&

@@ -13,8 +13,10 @@ namespace {
 
 Result<PushAt> parse_push(const std::string& text) {
   const auto wrong = [&](const std::string& why) {
-    return usage(fmt::format("'{}': {}", shown(text), why),
-                 "write Spine2=120Ns,0,40Ns or Spine2=120Ns,0,40Ns@2s");
+    return usage(
+        fmt::format("'{}': {}", shown(text), why),
+        "write Spine2=120Ns,0,40Ns or Spine2=120Ns,0,40Ns@2s; --push-every 2s pushes again "
+        "and again");
   };
   PushAt push;
   const std::size_t equals = text.rfind('=');

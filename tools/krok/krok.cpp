@@ -162,7 +162,9 @@ int refuse_verb(const std::string& verb, int argc, char** argv) {
   const std::string message =
       verb.empty() ? "no verb given" : fmt::format("unknown verb '{}'", verb);
   std::string hint = hint_for(verb);
-  if (verb == "convert" && argc > 3) {
+  const bool option = verb.starts_with('-');  // "krok -i walk.bvh walk.glb"
+  if (option) hint = "the verb comes first: krok VERB INPUT -o OUTPUT; see krok --help";
+  if ((verb == "convert" || option) && argc > 3) {
     if (std::string wanted = hint_for_conversion(argv[2], argv[argc - 1]); !wanted.empty()) {
       hint = std::move(wanted);
     }

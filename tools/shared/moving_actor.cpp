@@ -117,6 +117,7 @@ struct Read {
   struct Place {
     std::size_t index;  // of the input
     std::string path;
+    std::string clip = {};  // of several of a file
   };
   struct One {
     Actor actor;
@@ -165,6 +166,7 @@ void Read::draw(One one, SkinMethod method, bool bones) {
     drawn.carrier = carrying_joint(roles);
     drawn.front = front_of(drawn.skeleton, roles);
     MovingActor made = moving(one.places[i].path, std::move(drawn));
+    if (!one.places[i].clip.empty()) made.name += ": " + shown(one.places[i].clip);
     made.facts = std::move(facts);
     if (one.frame_count > 0) made.duration = (one.frame_count - 1) / made.rate;
     actors.emplace(one.places[i].index, std::move(made));
@@ -188,13 +190,27 @@ void report_scene(const nodes::Scene& scene, ToolContext& context) {
   }
 }
 
-// glTF files are drawn as viewers show them.
+// glTF files are drawn as viewers show them; the joints of one character without a mesh get a body,
+// as other motions do.
 Status read_gltf(const InputFile& input, std::size_t place, const ActorOptions& options,
                  ToolContext& context, Read& all) {
   const std::string& path = input.path();
   const bool bones = options.body == BodyChoice::none;
   auto read = io::open_scene(input, context, !bones);
   if (!read) return read.error();
+  if (!bones && read->meshes.empty()) {
+    auto actor = io::open_actor(
+        input, context,
+        {.clip = options.clip, .every_clip = options.every_clip && options.clip.empty()});
+    if (actor && !actor->motions.empty()) {
+      Read::One one{*std::move(actor), {}};
+      for (const Actor::Motion& motion : one.actor.motions) {
+        one.places.push_back({place, path, one.actor.motions.size() > 1 ? motion.name : ""});
+      }
+      all.motions.push_back(std::move(one));
+      return {};
+    }
+  }
   const auto file = std::make_shared<const nodes::Scene>(*std::move(read));
   decode_base_colours(file->materials, path, context, all.images);
   report_scene(*file, context);
@@ -360,11 +376,11 @@ Status add_files(const std::vector<std::string>& paths, const ActorOptions& opti
   return result;
 }
 
-// Moves a motion to another actor of its skeleton, which then is not shown at rest.
-void move_motion(Read::One& from, Read::One& to) {
+// Moves motions to another actor of their skeleton, which then is not shown at rest.
+void move_motions(Read::One& from, Read::One& to) {
   if (to.actor.motions.empty()) to.places.clear();
-  to.actor.motions.push_back(std::move(from.actor.motions[0]));
-  to.places.push_back(std::move(from.places[0]));
+  std::ranges::move(from.actor.motions, std::back_inserter(to.actor.motions));
+  std::ranges::move(from.places, std::back_inserter(to.places));
   from.places.clear();
 }
 
@@ -377,7 +393,7 @@ void share_models(bool bones, Read& read) {
         continue;
       }
       if (!bones && model.actor.has_mesh()) {
-        move_motion(motion, model);
+        move_motions(motion, model);
       } else {
         model.places.clear();
       }
@@ -399,7 +415,8 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
     return !motion.places.empty() && !motion.actor.has_mesh();
   };
   const auto bare = std::ranges::count_if(read.motions, is_bare);
-  if (choice == BodyChoice::automatic) choice = bare > 2 ? BodyChoice::low : BodyChoice::medium;
+  const bool automatic = choice == BodyChoice::automatic;
+  if (automatic) choice = bare > 2 ? BodyChoice::low : BodyChoice::medium;
   BodyOptions how = body_options(choice, context);
   how.progress = nullptr;
   std::vector<Read::One*> made;  // a motion of each skeleton
@@ -409,11 +426,13 @@ Status make_bodies(BodyChoice choice, ToolContext& context, Read& read) {
       return same_reference(other->actor.motions[0].clip.skeleton, motion.actor.skeleton());
     });
     if (same != made.end()) {
-      move_motion(motion, **same);
+      move_motions(motion, **same);
     } else {
       made.push_back(&motion);
     }
   }
+  constexpr std::size_t kMany = 24;  // each is small in a picture of all
+  if (automatic && made.size() > kMany) how.detail = BodyDetail::preview;
   context.progress->begin("shaping bodies", made.size());
   Status status = make_in_order(
       made.size(), context.jobs,

@@ -101,6 +101,19 @@ TEST_F(KrokPlotSheet, TheBodyStandsOnTheGroundAndIsAsTallAsTheActor) {
   }
 }
 
+TEST_F(KrokPlotSheet, JointsOfGltfWithoutAMeshGetABody) {
+  ASSERT_EQ(run_tool("krok-export", {kWalk, "-o", path("walk.glb")}).exit_code, 0);
+  std::vector<int> pixels;
+  for (const char* body : {"automatic", "none"}) {
+    ASSERT_EQ(plot({path("walk.glb"), "--sheet", path("s.png"), "--moments", "1", "--body", body})
+                  .exit_code,
+              0);
+    const json sheet = report()["sheet"];
+    pixels.push_back(silhouette(image("s.png"), sheet["cells"][0], 16).pixels);
+  }
+  EXPECT_GT(pixels[0], 1.3 * pixels[1]);
+}
+
 TEST_F(KrokPlotSheet, TheLeftIsBlueAndToTheRightOfWhoeverLooksAtTheFront) {
   ASSERT_EQ(
       plot({kWalk, "--body", "none", "--sheet", path("s.png"), "--view", "front,back"}).exit_code,

@@ -66,8 +66,10 @@ TEST(HumanBody, HasTheVolumeOfAPerson) {
 }
 
 TEST(HumanBody, DetailSetsTheNumberOfVertices) {
-  const std::pair<BodyDetail, int> levels[] = {
-      {BodyDetail::low, 2500}, {BodyDetail::medium, 10000}, {BodyDetail::high, 40000}};
+  const std::pair<BodyDetail, int> levels[] = {{BodyDetail::preview, 1200},
+                                               {BodyDetail::low, 2500},
+                                               {BodyDetail::medium, 10000},
+                                               {BodyDetail::high, 40000}};
   for (const auto& [detail, vertices] : levels) {
     const Body body = build(human_skeleton(), {.detail = detail});
     expect_valid_body(body);

@@ -119,9 +119,9 @@ TEST_F(OpenFiles, AFormatThatIsAddedIsReadLikeAnyOther) {
   ASSERT_TRUE(imported) << imported.error().message;
   EXPECT_EQ(frames, 3);
   EXPECT_THAT(motion_endings(),
-              testing::ElementsAre(".anim", ".kanim", ".bvh", ".amc", ".glb", ".gltf", ".npy",
-                                   ".npz", ".zip", ".fbx", ".dae", ".smd", ".ms3d", ".3ds", ".ase",
-                                   ".md5anim", ".dots"));
+              testing::ElementsAre(".anim", ".kanim", ".bvh", ".amc", ".glb", ".vrm", ".vrma",
+                                   ".gltf", ".npy", ".npz", ".zip", ".fbx", ".dae", ".smd", ".ms3d",
+                                   ".3ds", ".ase", ".md5anim", ".dots"));
   // What is known goes before what a program added.
   EXPECT_GT(open_motion(capture(), inputs)->frame_count(), 3);
 }
