@@ -347,9 +347,23 @@ void LegPlacement::add_lack(std::span<const Transform> source_pose,
                             std::span<const Transform> target_pose, const FootStance& stance,
                             double bearing, ShiftSolver& solver) const {
   if (!(bearing > 0)) return;
-  const Vec3& ankle = target_pose[at(limb_.end())].position;
-  const Vec3 along = (ankle - target_pose[at(limb_.upper())].position).stableNormalized();
-  solver.add(bearing, along, 0, goal_of(source_pose, target_pose, stance) - ankle, {});
+  const Vec3& hip = target_pose[at(limb_.upper())].position;
+  const Vec3 leg = target_pose[at(limb_.end())].position - hip;
+  const Vec3 goal = goal_of(source_pose, target_pose, stance);
+  // A leg of other proportions, bent as the source's, may be folded until its ankle is in the hip,
+  // with no direction. No knee bends by over 150 degrees: then it is a quarter of the leg's length
+  // away.
+  constexpr double kFolded = 0.26, kFree = 0.75;
+  const double folded = std::min(
+      scale_ *
+          (source_pose[at(source_ankle_)].position - source_pose[at(source_hip_)].position).norm(),
+      kFolded * limb_.length(target_pose));
+  const double is_free = smooth_step(kFree * folded, folded, leg.norm());
+  const Vec3 along =
+      ((1 - is_free) * (goal - hip).stableNormalized() + is_free * leg.stableNormalized())
+          .stableNormalized();
+  const Vec3 ankle = hip + std::max(leg.norm(), kFree * folded) * along;
+  solver.add(bearing, along, 0, goal - ankle, {});
 }
 
 LegPlacement::Way LegPlacement::way(std::span<const Transform> source_pose,

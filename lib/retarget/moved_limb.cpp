@@ -74,12 +74,17 @@ MovedLimb::Outcome MovedLimb::move_end(const Vec3& wanted, std::span<const Trans
 
   // The direction of the middle joint: its present one if bent, from its hinge if straight.
   const Vec3 line = (end - root).stableNormalized();
-  const Vec3 by_hinge = line.cross(pose[at(carrier_)].orientation * hinge_).stableNormalized();
+  const Vec3 axis = pose[at(carrier_)].orientation * hinge_;
+  const Vec3 by_hinge = line.cross(axis).stableNormalized();
   const Vec3 bent = upper_bone - line * line.dot(upper_bone);
   // The direction of a knee within 25 degrees of straight is unreliable.
   const double straight = 1 - smooth_step(0.05 * full, 0.11 * full, bent.norm());
   const Vec3 outward = bent + soft * (0.005 + 0.06 * straight) * full * by_hinge;
-  TwoBoneChain chain{root, middle, end, outward.cross(line)};
+  // A limb that is folded until its end is at its root has no line: it bends about the axis.
+  const double open = smooth_step(0.1 * full, 0.25 * full, (end - root).norm());
+  const Vec3 square = upper_bone.cross(axis).cross(upper_bone).stableNormalized();
+  const Vec3 hinge = open * outward.cross(line).stableNormalized() + (1 - open) * square;
+  TwoBoneChain chain{root, middle, end, hinge};
   TwoBoneGoal to_reach;
   to_reach.target = goal;
   to_reach.pole = (goal - root).cross(chain.hinge);

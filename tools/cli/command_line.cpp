@@ -290,18 +290,17 @@ Result<CommandLine::Wish> CommandLine::parse(const std::vector<std::string>& arg
                     : "write the name of the file");
   }
   if (form_ == Form::single && spec_.has_output && spec_.needs_output && output.empty()) {
-    std::vector<std::string> inputs;
+    std::vector<std::string> given;
     for (const CLI::Option* option : app_.get_options()) {
-      if (option->get_positional())
-        std::ranges::copy(option->results(), std::back_inserter(inputs));
+      if (option->get_positional()) std::ranges::copy(option->results(), std::back_inserter(given));
     }
     // "krok export walk.anim walk.glb"
     std::error_code unknown;
-    if (inputs.size() > 1 && !extension(inputs.back()).empty() &&
-        !std::filesystem::exists(inputs.back(), unknown)) {
-      return no_output(fmt::format("write -o {}", shown(inputs.back())));
+    if (given.size() > 1 && !extension(given.back()).empty() &&
+        !std::filesystem::exists(given.back(), unknown)) {
+      return no_output(fmt::format("write -o {}", shown(given.back())));
     }
-    return spec_.batch && !inputs.empty() ? no_output_for(inputs.front()) : no_output();
+    return spec_.batch && !given.empty() ? no_output_for(given.front()) : no_output();
   }
   if (Status status = open_folders(); !status) return status.error();
   if (of_folder) {

@@ -348,6 +348,47 @@ TEST(ShortLegs, UnevenLegsOfTheInputDoNotBendKnees) {
   EXPECT_LT(std::abs(mean), 3);
 }
 
+// Who has short thighs folds his knees further than others can: their ankles went through their
+// hips, and a leg turned by 171 degrees, through the floor, for some frames.
+TEST(ShortLegs, DeepSquatsOfShortThighsFoldNoLegThroughItsHip) {
+  const auto with_thighs = [](double longer) {
+    Skeleton skeleton = human_skeleton(1.75);
+    for (const char* knee : {"LeftLeg", "RightLeg"}) {
+      skeleton.reference[at(skeleton.find(knee))].position.y() -= longer;
+    }
+    return skeleton;
+  };
+  const Skeleton skeleton = with_thighs(-0.113);
+  Clip clip = resting(skeleton);
+  clip.rate = 60;
+  clip.resize(120);
+  for (int f = 0; f < 120; ++f) {
+    const double fold = 0.5 - 0.5 * std::cos(2 * kPi * f / 119);
+    Skeleton pose = skeleton;
+    for (const char* side : {"Left", "Right"}) {
+      const std::string of = side;
+      const auto turn = [&](const char* joint, double degrees) {
+        pose = posed(pose, of + joint,
+                     from_rotation_vector(degrees * kRadiansPerDegree * fold * Vec3::UnitX()));
+      };
+      turn("UpLeg", -200);
+      turn("Leg", 184);
+      turn("Foot", 16);
+    }
+    const auto foot = at(skeleton.find("LeftFoot"));
+    const Vec3 down = skeleton.reference[foot].position - pose.reference[foot].position;
+    for (Transform& joint : pose.reference) joint.position += down;
+    clip.set_pose(f, pose.reference);
+  }
+  const auto made = transfer(clip, with_other_axes(with_thighs(0.02), 4));
+  ASSERT_TRUE(made.ok());
+  const auto thigh = [&](int f) { return bone(made->clip, f, "rig:LeftUpLeg", "rig:LeftLeg"); };
+  for (int f = 1; f < 120; ++f) {
+    EXPECT_LT(degrees_between(thigh(f - 1), thigh(f)), 10) << f;
+    EXPECT_GT(place_of(made->clip, f, joint_of(made->clip, Role::left_lower_leg)).y(), 0.1) << f;
+  }
+}
+
 // A leg that is too short for its steps straightened from 25 degrees and more in a frame.
 TEST(ShortLegs, KneesDoNotSnapStraight) {
   samples::WalkOptions options;
