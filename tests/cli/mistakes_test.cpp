@@ -274,7 +274,14 @@ TEST_F(Mistakes, MissingAndSwappedArgumentsLeadOn) {
               AllOf(HasSubstr("give --onto IN.model"), Not(HasSubstr("'--'"))));
   EXPECT_THAT(refused("krok-walk", {"takes", "--goal", "0m,5m", "-o", "a.anim"}),
               HasSubstr("krok-fit takes -o OUT.steps"));
-  EXPECT_THAT(refused("krok-diff", {"in.bvh"}), HasSubstr("give B;"));
+  EXPECT_THAT(refused("krok-diff", {"in.bvh"}), HasSubstr("give B; write krok-diff A B"));
+  EXPECT_THAT(refused("krok-diff", {"HEAD~1", "in.bvh"}), HasSubstr("krok git-setup"));
+  EXPECT_THAT(refused("krok", {"-i", "in.bvh", "a.glb"}), HasSubstr("krok export in.bvh -o a.glb"));
+  EXPECT_THAT(refused("krok-export", {"in.bvh", "a.glb"}), HasSubstr("write -o a.glb"));
+  EXPECT_THAT(refused("krok-info", {"inn.bvh"}), HasSubstr("did you mean in.bvh?"));
+  EXPECT_THAT(refused("krok-info", {"takes.bvh"}), HasSubstr("takes is a folder"));
+  EXPECT_THAT(refused("krok-ragdoll", {"in.bvh", "--push", "2s", "-o", "a.anim"}),
+              HasSubstr("--push-every 2s"));
   EXPECT_THAT(refused("krok-skin", {"in.bvh", "in.bvh", "-o", "a.glb"}),
               HasSubstr("the mesh comes first"));
   EXPECT_THAT(refused("krok-skin", {"takes", "hero.character", "-o", "a.glb"}),

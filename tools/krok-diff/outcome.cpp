@@ -167,12 +167,16 @@ double excess_of(const compare::Measure& measure) {
   return measure.within() ? 0.0 : measure.largest / std::max(measure.tolerance, 1e-12);
 }
 
-// What is farthest beyond its tolerance; null if nothing measured is.
+// What is farthest beyond its tolerance, of what shows where something does: a reference pose may
+// differ where the motion does not. Null if nothing measured is.
 const Row* worst_row(const Outcome& outcome) {
+  const auto rank = [](const Row& row) {
+    return std::pair(!row.what.starts_with("reference "), excess_of(row.measure));
+  };
   const Row* worst = nullptr;
   for (const Row& row : outcome.rows) {
     if (row.measure.within()) continue;
-    if (worst == nullptr || excess_of(row.measure) > excess_of(worst->measure)) worst = &row;
+    if (worst == nullptr || rank(row) > rank(*worst)) worst = &row;
   }
   return worst;
 }

@@ -123,7 +123,8 @@ int git_setup(const std::vector<std::string>& arguments) {
     hook = true;
   }
   const Ran top = run({"git", "rev-parse", "--show-toplevel"});
-  if (!top.good || top.text.empty()) return fail("this folder is in no git repository");
+  if (!top.good || top.text.empty())
+    return fail("this folder is in no git repository: go to one, or make it one by git init");
   if (Status status = add_attributes(top.text + "/.gitattributes"); !status) {
     return fail(status.error().message);
   }

@@ -21,8 +21,8 @@ class KrokDiffFolders : public CliTest {
     fs::create_directories(fs::path(path(name)).parent_path());
     put(name, text);
   }
-  // A motion of two joints; one of them `off` metres aside in frame 3.
-  void put_motion(const std::string& name, float off = 0) const {
+  // A motion of two joints; one of them `off` metres aside in frame 3, the reference pose all over.
+  void put_motion(const std::string& name, float off = 0, double reference_off = 0) const {
     Clip clip;
     clip.rate = 10;
     clip.skeleton.add("Hips", -1, {Vec3(0, 1, 0), Quat::Identity()});
@@ -30,6 +30,7 @@ class KrokDiffFolders : public CliTest {
     clip.resize(5);
     for (int frame = 0; frame < 5; ++frame) clip.set_pose(frame, clip.skeleton.reference);
     clip.frame_positions(3)[1].x() += off;
+    for (Transform& joint : clip.skeleton.reference) joint.position.x() += reference_off;
     fs::create_directories(fs::path(path(name)).parent_path());
     auto file = OutputFile::create(path(name));
     ASSERT_TRUE(file.ok() && anim::write(clip, {}, *file).ok() && file->commit().ok());
@@ -362,6 +363,18 @@ TEST_F(KrokDiffFolders, JUnitHasATestCaseForEachFile) {
       xml,
       HasSubstr("name=\"&lt;b&gt;&amp;.txt\" time=\"0.000\"><failure message=\"only in b\"/>"));
   EXPECT_EQ(diff({"a", "b", "--summary", "out.pdf"}).exit_code, 2);
+}
+
+// A reference pose 1.2 m away, which no picture shows, was the only reason that a gate gave for a
+// motion that was turned.
+TEST_F(KrokDiffFolders, WhatShowsIsTheReasonBeforeTheReferencePose) {
+  put_motion("a/walk.anim");
+  put_motion("b/walk.anim", 0.1F, 1.2);
+  ASSERT_EQ(diff({"a", "b", "--summary", "d.xml"}).exit_code, 1);
+  EXPECT_THAT(get(path("d.xml")), HasSubstr("message=\"differs: positions 100 mm"));
+  put_motion("b/walk.anim", 0, 1.2);
+  ASSERT_EQ(diff({"a", "b", "--summary", "d.xml"}).exit_code, 1);
+  EXPECT_THAT(get(path("d.xml")), HasSubstr("message=\"differs: reference positions 1200 mm"));
 }
 
 TEST_F(KrokDiffFolders, ThePageBeginsWithTheWorst) {
