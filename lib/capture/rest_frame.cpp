@@ -84,12 +84,18 @@ class Steps {
   std::vector<Transform> world_, before_, now_;  // before_, now_: local
 };
 
-// Fraction of joints, without root and end sites, that are not rotated relative to their parents.
-double unturned_share(const Clip& clip, int frame) {
-  const auto joints = static_cast<std::size_t>(clip.joint_count());
-  std::vector<Transform> world(joints), local(joints);
+// Of each joint in its parent.
+std::vector<Transform> local_pose(const Clip& clip, int frame) {
+  std::vector<Transform> world(static_cast<std::size_t>(clip.joint_count())), local(world.size());
   clip.get_pose(frame, world);
   world_to_local(clip.skeleton.parents, world, local);
+  return local;
+}
+
+// Fraction of joints, without root and end sites, that are not rotated relative to their parents.
+double unturned_share(const Clip& clip, int frame) {
+  const std::vector<Transform> local = local_pose(clip, frame);
+  const std::size_t joints = local.size();
   int asked = 0;
   int unturned = 0;
   for (std::size_t j = 1; j < joints; ++j) {
@@ -112,6 +118,31 @@ const char* name_of(PoseKind kind) {
       break;
   }
   return "of unknown kind, as no humanoid was recognised";
+}
+
+// The frames of a T-pose that is held at the start and of the way from it: 0 where none is, or
+// where the motion goes on as fast.
+int frames_of_held_pose(const Clip& clip, int fewest_joints) {
+  constexpr int kMaxHeld = 5, kMaxSteps = 15;
+  constexpr double kHeld = 1, kMinStep = 15;  // degrees
+  constexpr double kFactor = 1.8;
+  Steps steps(clip);
+  std::vector<Step> all;
+  while (static_cast<int>(all.size()) < std::min(clip.frame_count() - 1, kMaxSteps)) {
+    all.push_back(steps.next());
+  }
+  const auto away =
+      std::ranges::find_if(all, [](const Step& step) { return step.largest >= kHeld; });
+  if (away == all.end() || away - all.begin() >= kMaxHeld || away->largest < kMinStep ||
+      away->many_degrees < fewest_joints) {
+    return 0;
+  }
+  auto end = away + 1;
+  if (end != all.end() && end->largest >= away->largest / 2) ++end;
+  double later = 0;
+  for (auto step = end; step != all.end(); ++step) later = std::max(later, step->largest);
+  return end != all.end() && away->largest >= kFactor * later ? static_cast<int>(end - all.begin())
+                                                              : 0;
 }
 
 }  // namespace
@@ -139,10 +170,22 @@ RestPose find_rest_pose(const Clip& clip, const RoleMap& roles) {
   const bool apart = first_step.largest >= kMinStep && first_step.largest >= factor * later_step &&
                      first_step.many_degrees >= fewest_joints;
   if (!apart || (!t_pose && unturned_share(clip, 0) < 0.6)) {
-    if (t_pose) result.reference += "; the motion starts in a T-pose";
+    if (!t_pose) return result;
+    result.reference += "; the motion starts in a T-pose";
+    const int frames = frames_of_held_pose(clip, fewest_joints);
+    if (frames < 2) return result;
+    result.frames = frames;
+    const std::vector<Transform> held = local_pose(clip, 0), moving = local_pose(clip, frames);
+    double turn = 0;
+    for (std::size_t j = 0; j < held.size(); ++j) {
+      turn = std::max(turn, angle_between(held[j].orientation, moving[j].orientation));
+    }
+    result.reason = fmt::format("frames 0 to {} are a T-pose, {:.0f} degrees away from frame {}",
+                                frames - 1, turn / kRadiansPerDegree, frames);
     return result;
   }
   result.first_frame_is_rest = true;
+  result.frames = 1;
   result.reason = fmt::format("frame 0 is a {}, {:.0f} degrees away from frame 1",
                               t_pose ? "T-pose" : "rest pose", first_step.largest);
   return result;
@@ -160,12 +203,17 @@ bool settle_rest_frame(const RestPose& rest, RestFrame wish, const std::string& 
     clip.orientations.erase(clip.orientations.begin(), clip.orientations.begin() + joints);
     clip.provenance.conversions.emplace_back("the first frame, a rest pose, was dropped");
   }
-  if (!drop && !rest.first_frame_is_rest) return drop;
+  if (!drop && rest.frames == 0) return drop;
   Diagnostic diagnostic;
   diagnostic.severity = drop ? Severity::note : Severity::warning;
   diagnostic.code = prefix + "-rest-frame";
   diagnostic.where.file = file_name;
-  if (rest.first_frame_is_rest) {
+  if (rest.frames > 1) {
+    diagnostic.message = rest.reason + (drop ? "; the first was dropped" : "; they were kept");
+    diagnostic.hint =
+        fmt::format("drop them with krok-edit --from {}f", rest.frames - (drop ? 1 : 0));
+    diagnostic.severity = Severity::warning;
+  } else if (rest.first_frame_is_rest) {
     diagnostic.message = fmt::format("{}; it {}", rest.reason, drop ? "was dropped" : "was kept");
     if (!drop) diagnostic.hint = "drop it with --skip-rest-frame auto";
   } else {

@@ -292,9 +292,11 @@ Result<Clip> make_motion(const nodes::Evaluator& evaluator, const Rig& rig, cons
   auto clip = make_clip(evaluator, rig, place.conversion, animation, sampling.sampling, jobs,
                         progress, diagnostics, stretches);
   if (!clip) return clip;
-  if (const RestPose rest = find_rest_pose(*clip, roles); rest.first_frame_is_rest) {
-    diagnostics.push_back(make_warning("import-rest-frame", rest.reason + "; it was kept",
-                                       "drop it with krok-edit --from 1f"));
+  if (const RestPose rest = find_rest_pose(*clip, roles); rest.frames > 0) {
+    diagnostics.push_back(make_warning(
+        "import-rest-frame", rest.reason + (rest.frames > 1 ? "; they were kept" : "; it was kept"),
+        fmt::format("drop {} with krok-edit --from {}f", rest.frames > 1 ? "them" : "it",
+                    rest.frames)));
   }
   if (!rig.has_mesh && retarget::is_frame_of_motion(clip->skeleton, roles)) {
     clip->skeleton.reference = retarget::stance_from_frame(*clip, roles);

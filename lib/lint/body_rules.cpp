@@ -240,9 +240,9 @@ void find_body_faults(const Series& series, MotionFaults& out) {
   if (series.has(Rule::joint_limit)) find_limits(series, out);
   if (series.frames < 3) return;
   const RestPose rest = find_rest_pose(series.clip, series.roles);
-  if (rest.first_frame_is_rest) {
+  if (rest.frames > 0) {
     Finding finding = finding_of(Rule::rest_frame, series, 1, series.whole());
-    finding.last = 0;
+    finding.last = rest.frames - 1;
     finding.detail = rest.reason;
     out.findings.push_back(finding);
   }

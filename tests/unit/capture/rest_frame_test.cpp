@@ -74,6 +74,21 @@ TEST(RestFrame, ATPoseInFrontOfAMotionIsFound) {
               testing::ElementsAre("the first frame, a rest pose, was dropped"));
 }
 
+// Packs of ReadyPlayerMe hold it for two or three frames, with one halfway: no word of it, and a
+// gait table was wrong by 14 %.
+TEST(RestFrame, ATPoseThatIsHeldIsFoundWithTheWayFromIt) {
+  Capture capture;
+  const RestPose held = settle({0, 0, 0, 70, 71, 72, 73, 74}, RestFrame::automatic, capture);
+  EXPECT_FALSE(held.first_frame_is_rest);
+  EXPECT_EQ(held.frames, 3);
+  EXPECT_EQ(held.reason, "frames 0 to 2 are a T-pose, 70 degrees away from frame 3");
+  ASSERT_EQ(capture.diagnostics.size(), 1u);
+  EXPECT_EQ(capture.diagnostics[0].hint, "drop them with krok-edit --from 3f");
+  EXPECT_EQ(settle({0, 0, 35, 70, 71, 72, 73}, RestFrame::keep, capture).frames, 3);
+  EXPECT_EQ(settle({0, 0, 20, 40, 60, 80, 100}, RestFrame::keep, capture).frames, 0);
+  EXPECT_EQ(settle({0, 0, 0, 0, 0, 0, 0, 0}, RestFrame::keep, capture).frames, 0);
+}
+
 TEST(RestFrame, AMotionThatBeginsInATPoseIsNone) {
   Capture capture;
   const RestPose rest = settle(kEven, RestFrame::automatic, capture);
