@@ -131,6 +131,11 @@ Result<InputFile> ToolContext::open_long_input(const std::string& address) {
   }
   auto file = io::open_address(address);
   if (file) report.inputs.push_back({path, "", file->part()});
+  if (!file && file.error().hint == "check the path") {
+    Error error = file.error();
+    error.hint = missing_file_hint(path);
+    return error;
+  }
   return file;
 }
 
