@@ -204,6 +204,7 @@ Status read_gltf(const InputFile& input, std::size_t place, const ActorOptions& 
         {.clip = options.clip, .every_clip = options.every_clip && options.clip.empty()});
     if (actor && !actor->motions.empty()) {
       Read::One one{*std::move(actor), {}};
+      one.actor.materials.clear();  // of no mesh
       for (const Actor::Motion& motion : one.actor.motions) {
         one.places.push_back({place, path, one.actor.motions.size() > 1 ? motion.name : ""});
       }
