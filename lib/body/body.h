@@ -11,7 +11,7 @@
 namespace krok {
 
 // About 1,200, 2,500, 10,000 and 40,000 vertices for a human body; a preview, for pictures the size
-// of a thumb, has thick fingers and is made in a fifth of the time.
+// of a thumb, has thick fingers and is made in a third of the time of low.
 enum class BodyDetail { preview, low, medium, high };
 
 // The pose that the body is built in, which becomes the model's reference pose. `automatic` is the

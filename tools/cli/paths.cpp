@@ -216,8 +216,9 @@ Diagnostics keep_one_of_each_take(const std::string& folder, std::vector<std::st
 
 // "HEAD~1", "origin/main:walk.anim"
 bool names_commit(const std::string& path) {
-  return path.starts_with("HEAD") || path.starts_with("origin/") || path.starts_with("main:") ||
-         path.starts_with("master:");
+  const std::string name = path.substr(0, path.find_first_of("~^:@"));
+  return name == "HEAD" || (name.size() < path.size() && (name == "main" || name == "master")) ||
+         name.starts_with("origin/");
 }
 
 }  // namespace
@@ -227,7 +228,7 @@ std::string missing_file_hint(const std::string& path) {
     return "check the path; for files of commits, krok git-setup once, then git diff COMMIT -- "
            "FILE";
   }
-  constexpr std::size_t kMaxNames = 5000;
+  constexpr std::size_t kMaxNames = 1000;
   std::vector<std::string> names;
   const fs::path folder = fs::path(path).parent_path();
   std::error_code unreadable;

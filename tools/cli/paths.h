@@ -50,7 +50,9 @@ std::string beside(const std::string& path, const std::string& ending);
 // "takes/walk.bvh", "takes/hero_Run" for the animation "takes/hero.glb#Run".
 std::string path_without_ending(const std::string& path);
 
-// Hint for a file that is not there: one of like name beside it; what a commit of git needs.
+// Hint for a file that is not there: one of like name beside it, among the first 1,000; a folder of
+// its name without the ending; for "HEAD~1" and the like, how git compares commits. Reads the
+// folder.
 std::string missing_file_hint(const std::string& path);
 
 // Display name of an input: the base name, "walk.bvh", or "standard input" for "-".
